@@ -194,7 +194,8 @@ def _library(shapes: Shapes, held: list[int], dependent: list[int], free: list[i
         f"static const int {name}[] = {{{', '.join(map(str, places))}}};\n" for name, places in lists.items() if places
     )
     sources = (FOLDER / "ode.c", FOLDER / ("ode_robot.c" if shapes.rows else "ode_leg.c"))
-    library, _ = compiled_library(key, lambda: functions(shapes), sources, command, sizes)
+    text = "\n".join([sizes, *(path.read_text(encoding="utf-8") for path in sources)])
+    library, _ = compiled_library(key, lambda: functions(shapes), command, text)
     library.rates.restype = library.jacobian.restype = None
     library.rates.argtypes = [c_void_p, c_double, c_void_p, c_void_p]
     library.jacobian.argtypes = [c_void_p, c_double, c_void_p, c_long, c_long, c_double, c_double, c_void_p]

@@ -100,7 +100,10 @@ def casadi_count(function: casadi.Function) -> Count:
 
 def compile_counting(arguments: list[str]) -> int:
     """Take the place of a C compiler: C++ with the counting number in place of double."""
-    source = Path(next(a for a in arguments if a.endswith(".c")))
+    sources = [a for a in arguments if a.endswith(".c")]
+    if not sources:  # what is compiled is linked
+        return subprocess.run(["c++", *(a for a in arguments if not a.startswith("-std="))], check=False).returncode
+    source = Path(sources[0])
     text = source.with_suffix(".cpp")
     body = source.read_text(encoding="utf-8")
     for pattern, words in REWRITTEN:

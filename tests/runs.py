@@ -63,6 +63,6 @@ def uncompiled(basis, modes, axial_modes, *, planar=False):
 
 
 @cache
-def uncompiled_kernel(shapes, march=True, within=False):
+def uncompiled_kernel(shapes):
     """Functions of a robot for tests that need few matrices: no C compiler need run for that."""
     return interpreted_kernel(shapes)

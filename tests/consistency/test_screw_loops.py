@@ -13,8 +13,6 @@ import flexapod as fx
 from flexapod import model
 from flexapod.errors import InputError
 from flexapod.model import Encoder, Feedback, Geometry, Heat, LengthSpread, Loop, RatioSpread, Rotor, Tolerances
-from flexapod.solve import robot_march
-from flexapod.solve.robot_system import robot_system
 
 TEXT = model.preset_text("machine-hexapod")
 PARTS = {"rotor": [], "stroke": ["screw", "twist", "nut", "bearing", "bracket"],
@@ -311,17 +309,6 @@ class TestIntegral:
         given = study(robot.replace(legs=legs), fidelity="lumped", step=1e-3, duration=0.01)
         sag = fx.modes(given.robot, fidelity="lumped").com_sag.values
         np.testing.assert_allclose(fx.simulate(given).com_deviation.values[0], sag, rtol=0, atol=1e-12)
-
-    def test_its_start_takes_the_library_of_its_run(self, monkeypatch):
-        asked = []
-
-        def common(*args, within=False, **more):
-            asked.append(within)
-            return robot_system(*args, **more)  # without Radau's method, as in other tests
-
-        monkeypatch.setattr(robot_march, "robot_system", common)
-        robot_march.prepare(study(machine(drive=SUMS), fidelity="lumped"))
-        assert asked == [True, True]
 
     def test_files(self):
         old = 'command = "position"         # ours'

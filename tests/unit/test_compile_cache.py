@@ -19,7 +19,7 @@ from flexapod.model import preset
 from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.robot_system import robot_system
 from flexapod.symbolic import cache, compiler
-from flexapod.symbolic.compiler import CompiledFunction, compiled_library
+from flexapod.symbolic.compiler import CompiledFunction, compiled_library, written_library
 from flexapod.symbolic.functions import NamedFunction
 from flexapod.symbolic.vocabulary import symbol
 
@@ -37,12 +37,12 @@ class Compile:
     def __init__(self) -> None:
         self.built = 0
 
-    def __call__(self, factor: float = 2.0, sources: tuple[Path, ...] = ()) -> np.ndarray:
+    def __call__(self, factor: float = 2.0, *comments: str) -> np.ndarray:
         def build() -> list[NamedFunction]:
             self.built += 1
             return functions(factor)
 
-        library, signatures = compiled_library([factor], build, sources, compiler.compiler())
+        library, signatures = compiled_library([factor, *comments], build, compiler.compiler())
         return CompiledFunction(library, "scaled", signatures["scaled"])([1.0, 2.0, 3.0])[0]
 
 
@@ -52,7 +52,7 @@ def kernel(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("made") / "cache"
     code = "from tests.unit.test_compile_cache import Compile; print(Compile()())"
     python(code, FLEXAPOD_CACHE=str(folder))
-    (only,) = folder.iterdir()
+    (only,) = libraries(folder)
     return only
 
 
@@ -77,6 +77,10 @@ def python(code: str, **environment: str) -> str:
     return done.stdout
 
 
+def libraries(folder: Path) -> list[Path]:
+    return sorted(folder.glob("*.so"))
+
+
 def doubled(values: np.ndarray) -> bool:
     return values.tolist() == [2.0, 4.0, 6.0]  # doubling rounds nothing
 
@@ -89,7 +93,7 @@ def test_compiled_once_and_kept_for_this_user_alone(scaled, folder):
         os.umask(old)
     assert doubled(scaled())
     assert scaled.built == 1
-    (library,) = folder.iterdir()
+    (library,) = libraries(folder)
     if sys.platform != "win32":
         assert folder.stat().st_mode & 0o777 == library.stat().st_mode & 0o777 == 0o700
 
@@ -98,7 +102,7 @@ def test_whatever_the_library_depends_on_changes_its_name(tmp_path, monkeypatch)
     names = []
 
     def note(key=(b"ab", b"c"), command=(sys.executable,)) -> None:
-        names.append(compiler._name(key, list(command)))
+        names.append(compiler._name(key, compiler.FLAGS, list(command)))
 
     note()
     note(key=(b"a", b"bc"))
@@ -113,7 +117,6 @@ def test_whatever_the_library_depends_on_changes_its_name(tmp_path, monkeypatch)
         (compiler.platform, "machine", lambda: "another"),
         (compiler.sys, "platform", "another"),
         (compiler, "FLAGS", ("-O2",)),
-        (compiler, "version", lambda _: "another"),
     ):
         with monkeypatch.context() as changed:
             changed.setattr(where, what, value)
@@ -123,12 +126,36 @@ def test_whatever_the_library_depends_on_changes_its_name(tmp_path, monkeypatch)
     assert names[-1] == names[0]
 
 
-def test_a_changed_c_source_is_compiled(scaled, folder, tmp_path):
+def test_a_changed_c_source_is_compiled(folder, tmp_path):
     source = tmp_path / "more.c"
     for text in ("int more;", "int less;"):
         source.write_text(text)
-        scaled(sources=(source,))
-    assert scaled.built == len(list(folder.iterdir())) == 2
+        written_library((source,), compiler.compiler())
+    assert len(libraries(folder)) == 2
+
+
+def test_what_leaves_the_equations_as_they_are_compiles_nothing(scaled, folder, monkeypatch):
+    """A comment, a docstring, another release of casadi: the text is built once more, and is known from then on."""
+    assert doubled(scaled())
+    monkeypatch.setattr(compiler, "_build", None)
+    for _ in range(2):
+        assert doubled(scaled(2.0, "a comment"))
+    with monkeypatch.context() as changed:
+        changed.setattr(compiler, "version", lambda _: "another")
+        assert doubled(scaled())
+    assert scaled.built == 3
+    assert len(libraries(folder)) == 1
+
+
+@pytest.mark.parametrize("text", ["", "nothing", "0" * 32])
+def test_a_damaged_note_of_what_equations_are(scaled, folder, text):
+    assert doubled(scaled())
+    (note,) = folder.glob("*.text")
+    note.write_text(text)
+    for built in (2, 2):
+        assert doubled(scaled())
+        assert scaled.built == built
+    assert len(libraries(folder)) == 1
 
 
 def test_eight_processes_on_an_empty_folder(folder, tmp_path):
@@ -155,8 +182,9 @@ def test_eight_processes_on_an_empty_folder(folder, tmp_path):
     assert [words for _, words in answers] == [""] * 8
     assert [out.split()[0] for out, _ in answers] == ["True"] * 8
     assert sum(int(out.split()[1]) for out, _ in answers) >= 2, "they did not start together: nothing is tested"
-    (library,) = folder.iterdir()  # one library, and nothing unfinished
+    library, note = sorted(folder.iterdir(), key=lambda path: path.suffix)  # one library, and nothing unfinished
     assert cache.LIBRARY.fullmatch(library.name)
+    assert cache.TEXT.fullmatch(note.name)
 
 
 def named(kernel: Path, content: bytes) -> str:
@@ -210,7 +238,7 @@ def test_a_folder_that_others_may_write_to_is_not_trusted(scaled, folder, kernel
     assert doubled(scaled())
     assert doubled(scaled())
     assert scaled.built == 2  # neither loaded from there nor left there
-    assert [path.name for path in folder.iterdir()] == [kernel.name]
+    assert [path.name for path in libraries(folder)] == [kernel.name]
     assert len(caplog.records) == 1
     assert "others may write to it" in caplog.text
     assert cache.cache_content().unused_because
@@ -329,13 +357,13 @@ def test_least_recently_used_go_first(scaled, folder, kernel, monkeypatch):
     scaled(1.0)  # the oldest is used again
     monkeypatch.setenv("FLEXAPOD_CACHE_MEGABYTES", str(3.5 * size / 1e6))  # room for three: sizes differ by some bytes
     scaled(4.0)
-    left = {path.name for path in folder.iterdir()}
+    left = {path.name for path in libraries(folder)}
     assert {names[1.0], names[3.0]} < left
     assert names[2.0] not in left
     assert len(left) == 3
     monkeypatch.setenv("FLEXAPOD_CACHE_MEGABYTES", "1e-6")
     assert scaled(5.0).tolist() == [5.0, 10.0, 15.0]  # one larger than the bound is kept, alone
-    assert len(list(folder.iterdir())) == 1
+    assert len(libraries(folder)) == 1
 
 
 @pytest.mark.parametrize("text", ["many", "0", "-1", "nan", "inf"])
@@ -354,7 +382,8 @@ def test_only_what_was_abandoned_long_ago_is_swept(scaled, folder):
     os.utime(old, (0, 0))
     os.utime(foreign, (0, 0))
     scaled()
-    assert {path for path in folder.iterdir() if not cache.LIBRARY.fullmatch(path.name)} == {young, foreign}
+    ours = {path for path in folder.iterdir() if cache.LIBRARY.fullmatch(path.name) or cache.TEXT.fullmatch(path.name)}
+    assert set(folder.iterdir()) - ours == {young, foreign}
 
 
 @pytest.mark.parametrize("relative", [".", "cache"])
@@ -386,21 +415,16 @@ def test_a_compiler_that_fails_says_why(folder, tmp_path):
     source = tmp_path / "wrong.c"
     source.write_text("no C at all")
     with pytest.raises(ComputationError, match=r"error.*FLEXAPOD_COMPILER=none"):
-        Compile()(sources=(source,))
+        written_library((source,), compiler.compiler())
     assert not list(folder.iterdir())
     with pytest.raises(ComputationError, match="no such program"):
-        compiled_library([1.0], lambda: functions(1.0), (), [str(tmp_path / "nothing")])
+        compiled_library([1.0], lambda: functions(1.0), [str(tmp_path / "nothing")])
     (tmp_path / "text").write_text("not a program")
     with pytest.raises(ComputationError, match=r"Permission denied|Exec format"):
-        compiled_library([1.0], lambda: functions(1.0), (), [str(tmp_path / "text")])
+        compiled_library([1.0], lambda: functions(1.0), [str(tmp_path / "text")])
 
 
-def test_modes_after_steps_within_a_tolerance_compile_nothing_more(monkeypatch):
+def test_all_uses_of_a_robot_share_one_library(folder):
     study = preset("paper-robot")
-    made = robot_system(study.robot, study.simulation, 0.0, within=True).kernel
-    after = locked_poses(study.robot, study.simulation, home_pose(study.robot))
-    assert after.system.kernel is made
-    monkeypatch.setattr("flexapod.solve.kernel._within", {})
-    alone = locked_poses(study.robot, study.simulation, home_pose(study.robot))
-    assert alone.system.kernel.library is not made.library
-    assert np.array_equal(after.m.K, alone.m.K) and np.array_equal(after.m.M, alone.m.M)
+    made = robot_system(study.robot, study.simulation, 0.0).kernel
+    assert locked_poses(study.robot, study.simulation, home_pose(study.robot)).system.kernel is made

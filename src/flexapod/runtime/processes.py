@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from functools import cache
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from multiprocessing.connection import Connection
     from multiprocessing.process import BaseProcess
 
-__all__ = ["call", "started"]
+__all__ = ["call", "calls", "started"]
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -47,20 +48,36 @@ def call(
     OSError
         It cannot be started.
     """
-    spoken = folder / "spoken.txt"
-    with spoken.open("wb") as file, _guard() as group:
-        process = subprocess.Popen(
-            command, cwd=folder, env=os.environ | dict(environment or {}), stdin=subprocess.DEVNULL,
-            stdout=file, stderr=subprocess.STDOUT, process_group=group,
-        )  # fmt: skip
+    return calls([command], folder, time_limit, environment)[0]
+
+
+def calls(
+    commands: Sequence[Sequence[str]], folder: Path, time_limit: float, environment: Mapping[str, str] | None = None
+) -> list[tuple[str, int | None]]:
+    """Run programs side by side; of each what `call` returns of one."""
+    spoken = [folder / f"spoken{k}.txt" for k in range(len(commands))]
+    end, codes, processes = time.monotonic() + time_limit, [], []
+    with _guard() as group:
         try:
-            code: int | None = process.wait(timeout=time_limit)
-        except subprocess.TimeoutExpired:
-            code = None
+            for path, command in zip(spoken, commands, strict=True):
+                with path.open("wb") as file:
+                    processes.append(subprocess.Popen(
+                        command, cwd=folder, env=os.environ | dict(environment or {}), stdin=subprocess.DEVNULL,
+                        stdout=file, stderr=subprocess.STDOUT, process_group=group,
+                    ))  # fmt: skip
+            codes = [_waited(process, end - time.monotonic()) for process in processes]
         finally:
-            if process.poll() is None:
-                _stop(process, group)
-    return spoken.read_text(encoding="utf-8", errors="replace"), code
+            for process in processes:
+                if process.poll() is None:
+                    _stop(process, group)
+    said = (path.read_text(encoding="utf-8", errors="replace") for path in spoken)
+    return list(zip(said, codes, strict=True))
+
+
+def _waited(process: subprocess.Popen[bytes], seconds: float) -> int | None:
+    with suppress(subprocess.TimeoutExpired):
+        return process.wait(timeout=max(seconds, 0.0))
+    return None
 
 
 @contextmanager

@@ -45,7 +45,7 @@ def actuator_system(
     actuator: Actuator, simulation: Simulation, *, rotation: bool = True, extension: bool = True, elevation: bool = True
 ) -> System:
     """Equations of an actuator; ``rotation``, ``extension``, ``elevation`` say whether they are prescribed."""
-    functions = kernel(actuator_shapes(actuator, simulation), within=simulation.tolerance is not None)
+    functions = kernel(actuator_shapes(actuator, simulation))
     given = {"rotation": rotation, "extension": extension, "elevation": elevation}
     held = np.zeros((1, functions.shapes.size), dtype=bool)
     for name, at in places(functions.shapes).items():

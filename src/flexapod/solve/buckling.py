@@ -31,7 +31,7 @@ def leg_loads(robot: Robot, length: Array, system: System | None = None) -> Arra
     system : System, optional
         Whose shapes count; default assumed modes.
     """
-    system = robot_system(robot, Simulation(), 0.0, march=False) if system is None else system
+    system = robot_system(robot, Simulation(), 0.0) if system is None else system
     found = kinematics.built_limbs(robot, kinematics.robot_limbs(robot))
     if len(length) <= LENGTHS:
         return np.array([_loads(system, found, row) for row in length])

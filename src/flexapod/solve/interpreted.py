@@ -44,7 +44,7 @@ def advance(
     tables: tuple[Array, Array],
     every: int,
     counters: Counters,
-    resumed: bool = False,
+    before: Advance | None = None,
 ) -> Advance:
     """Advance by the rows of ``tables``, recording each ``every`` steps; see `native.advance`."""
     rows, x, steps = [], flow.copy(), list(zip(*tables, strict=True))

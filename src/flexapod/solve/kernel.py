@@ -8,7 +8,6 @@ from functools import cache, lru_cache
 from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING
-from weakref import WeakValueDictionary
 
 import numpy as np
 
@@ -22,9 +21,12 @@ if TYPE_CHECKING:
     from flexapod.symbolic.functions import NamedFunction
 
 Function = Callable[..., tuple[Array, ...]]
-NATIVE = Path(__file__).parent / "native"
-SOURCES = tuple(NATIVE / name for name in ("system.h", "lu.c", "legs.c", "arrow.c", "state.c", "march.c"))
-RADAU = tuple(NATIVE / name for name in ("complex.c", "radau.c"))
+#: Functions that the time loops call, in the order of ``native/system.h``.
+FOR_LOOPS = (
+    *(f"leg_{name}" for name in ("residual", "matrices", "energies", "closing", "friction", "friction_matrix")),
+    *("leg_sliding", "leg_loop", "joint_residual", "joint_matrices", "joint_closing"),
+    *("payload_residual", "payload_matrices", "payload_energies"),
+)
 _log = logging.getLogger("flexapod")
 
 
@@ -34,7 +36,8 @@ class Kernel:
 
     ``leg_closing``, ``joint_closing``: for steps within a tolerance. ``leg_friction``,
     ``leg_friction_matrix``, ``leg_sliding``: of legs with friction. ``leg_loop``: of those with loops not symmetric.
-    ``library``: functions and time loop as compiled; None where no C compiler was found and casadi interprets them.
+    ``library``: functions as compiled, ``equations`` what time loops know of them; None where no C compiler was found
+    and casadi interprets them.
     """
 
     shapes: Shapes
@@ -47,6 +50,7 @@ class Kernel:
     payload_matrices: Function
     payload_energies: Function
     library: ctypes.CDLL | None
+    equations: "Equations | None" = None
     leg_closing: Function | None = None
     joint_closing: Function | None = None
     leg_friction: Function | None = None
@@ -55,35 +59,16 @@ class Kernel:
     leg_loop: Function | None = None
 
 
-NAMES = tuple(field.name for field in fields(Kernel) if field.name not in ("shapes", "library"))
+NAMES = tuple(field.name for field in fields(Kernel) if field.name not in ("shapes", "library", "equations"))
 
 
 @lru_cache(maxsize=32)  # solid pistons and tip bodies of many sizes have shapes of their own
-def kernel(shapes: Shapes, march: bool = True, within: bool = False) -> Kernel:
-    """Kernel of legs with the given shapes and joints, see `shapes`; without ``march`` its library has no time loop.
-
-    ``within``: with the time loop whose steps follow a tolerance, too; it takes as long to compile as all else.
-    """
+def kernel(shapes: Shapes) -> Kernel:
+    """Kernel of legs with the given shapes and joints, see `shapes`."""
     if command := compiler():
-        sources = (SOURCES if march else ()) + (RADAU if within else ())
-        library, signatures = compiled_library(
-            _fingerprint(shapes), lambda: _functions(shapes), sources, command, sizes(shapes)
-        )
-        compiled = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES if name in signatures}
-        made = Kernel(shapes=shapes, library=library, **compiled)
-        if within:
-            _within[shapes] = made
-        return made
+        return loaded_kernel(shapes, *compiled_library(_fingerprint(shapes), lambda: _functions(shapes), command))
     _warn_interpreted()
     return interpreted_kernel(shapes)
-
-
-_within: WeakValueDictionary[Shapes, Kernel] = WeakValueDictionary()
-
-
-def kernel_at_hand(shapes: Shapes) -> Kernel:
-    """Kernel for single evaluations, the same bits in all: that of steps within a tolerance once it is there."""
-    return _within.get(shapes) or kernel(shapes)
 
 
 @cache
@@ -102,26 +87,43 @@ def interpreted_kernel(shapes: Shapes) -> Kernel:
     return Kernel(shapes=shapes, library=None, **{f.name: Interpreted(f) for f in _functions(shapes)})
 
 
-def sizes(shapes: Shapes, leg_p: int = 0, joint: int = 3) -> str:
-    """C text of the sizes of a leg, and of the order of its coordinates: from the closure first, shared ones last."""
+class Equations(ctypes.Structure):
+    """What the compiled time loops know of a kind of robot, as in ``native/system.h``."""
+
+    _fields_ = [
+        *[(name, ctypes.c_long) for name in ("n", "rows", "leg_p", "joint", "command", "common", "plate", "posed")],
+        *[(name, ctypes.c_long) for name in ("floor", "bristles", "loop")],
+        *[(name, ctypes.POINTER(ctypes.c_long)) for name in ("order", "place")],
+        *[(name, ctypes.c_void_p) for name in FOR_LOOPS],
+    ]
+
+
+def loaded_kernel(
+    shapes: Shapes, library: ctypes.CDLL, signatures: dict[str, dict], leg_p: int = 0, joint: int = 3
+) -> Kernel:
+    """Kernel of compiled functions; ``leg_p``, ``joint``: numbers that a leg's and its joint's read."""
     n, pivots, leg_p = shapes.size, shapes.pivots, leg_p or sum(size for _, size in leg_parameters(shapes))
-    order = [*pivots, *(i for i in range(n) if i not in (*pivots, *shapes.shared)), *shapes.shared]
-    places = sorted(range(n), key=order.__getitem__)
-    values = {"N": n, "ROWS": shapes.rows, "LEG_P": leg_p, "JOINT": joint, "COMMAND": shapes.commands}
-    values |= {"COMMON": len(shapes.shared), "PLATE": shapes.plate, "POSED": int(shapes.posed)}
-    values["FLOOR"] = shapes.index("g") if shapes.has("g") else n
-    lists = (f"{name}[] = {{{', '.join(map(str, x))}}}" for name, x in (("ORDER", order), ("PLACE", places)))
-    constants = ", ".join(f"{name} = {value}" for name, value in values.items())
-    friction = f"#define BRISTLES {shapes.bristles}\n" if shapes.bristles else ""
-    loop = f"#define LOOP {shapes.index('j')}\n" if shapes.has("j") else ""
-    return f"{friction}{loop}enum {{ {constants} }};\nstatic const int {', '.join(lists)};"
+    order = [*pivots, *(i for i in range(n) if i not in (*pivots, *shapes.shared)), *shapes.shared]  # as in system.h
+    values = {"n": n, "rows": shapes.rows, "leg_p": leg_p, "joint": joint, "command": shapes.commands}
+    values |= {"common": len(shapes.shared), "plate": shapes.plate, "posed": int(shapes.posed)}
+    values |= {"bristles": shapes.bristles, "floor": shapes.index("g") if shapes.has("g") else n}
+    lists = {"order": order, "place": sorted(range(n), key=order.__getitem__)}
+    kinds = {name: "double" if name.startswith("payload") else "lanes" for name in FOR_LOOPS if name in signatures}
+    equations = Equations(
+        **values,
+        loop=shapes.index("j") if shapes.has("j") else n,
+        **{name: (ctypes.c_long * n)(*x) for name, x in lists.items()},
+        **{name: ctypes.cast(getattr(library, f"{name}_{kind}"), ctypes.c_void_p) for name, kind in kinds.items()},
+    )
+    functions = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES if name in signatures}
+    return Kernel(shapes=shapes, library=library, equations=equations, **functions)
 
 
 def generated_text(shapes: Shapes) -> dict[str, str]:
-    """C text of each function of the equations, by name, and of their sizes."""
+    """C text of each function of the equations, by name."""
     from flexapod.symbolic.c_source import c_source
 
-    return {function.name: c_source(function) for function in _functions(shapes)} | {"sizes": sizes(shapes)}
+    return {function.name: c_source(function) for function in _functions(shapes)}
 
 
 def _functions(shapes: Shapes) -> "list[NamedFunction]":

@@ -17,7 +17,6 @@ from flexapod.solve.batch import RestMatrices, RestStates, matrices_at_rest
 from flexapod.solve.branch import refuse_fallen
 from flexapod.solve.equilibrium import FOUND, TOO_FAR, Equilibria, Equilibrium, equilibria
 from flexapod.solve.friction import with_friction
-from flexapod.solve.kernel import kernel_at_hand
 from flexapod.solve.reduction import Motions, independent
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.robot_system import at_rotors, robot_system, smooth
@@ -152,8 +151,6 @@ def lock(
     refuse_pure_force(robot, "a static equilibrium")
     refuse_taut(robot, simulation)
     robot, system = _at_rest(robot, simulation, per_loss)
-    if system.kernel is not (hand := kernel_at_hand(system.kernel.shapes)):
-        system = replace(system, kernel=hand)
     start, acts = rigid_rest(system, robot, path), rest_load(system, robot, path, load, time)
     command = rest_commands(system, robot, start.q, time)
     found = equilibria(system, start, command, acts.force, acts.wrench)
@@ -177,7 +174,7 @@ def lock(
 def _model(robot: Robot, simulation: Simulation, per_loss: float) -> tuple[Robot, System]:
     """The robot without a motion of its base, and its equations at rest with what stands for held pivots."""
     robot = robot if robot.base_motion is None else robot.replace(base_motion=None)  # poses are those of a base at rest
-    system = robot_system(smooth(robot), simulation.replace(play="static"), per_loss, at_rest=True, evaluated=True)
+    system = robot_system(smooth(robot), simulation.replace(play="static"), per_loss, at_rest=True)
     return robot, with_substitutes(system, rigid_rest(system, robot, kinematics.home_pose(robot)))
 
 

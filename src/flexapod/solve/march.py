@@ -232,9 +232,7 @@ class _Control:
         while result is None or first < len(t) - 1:
             tables = (grid[1], grid[2]) if grid[1:] else p.tables(t[first : first + CHUNK_STEPS + 1])
             many = min(every, len(tables[0]) - 1)
-            result = _loop(p.system).advance(
-                p.system, p.method, flow, h, tables, many, self.counters, resumed=first > 0
-            )
+            result = _loop(p.system).advance(p.system, p.method, flow, h, tables, many, self.counters, before=result)
             if result.status:
                 where = f" in leg {result.leg + 1}" if 0 <= result.leg < p.system.legs else ""
                 raise ComputationError(

@@ -3,16 +3,25 @@
 import ctypes
 from ctypes import Structure, byref, c_double, c_long, c_void_p
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 
 import numpy as np
 
 from flexapod.arrays import Array
 from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
+from flexapod.solve.kernel import Equations
 from flexapod.solve.recording import Counters, record_width
 from flexapod.solve.system import Flow, System
+from flexapod.symbolic.compiler import compiler, written_library
 
+NATIVE = Path(__file__).parent / "native"
+SOURCES = tuple(
+    NATIVE / name for name in ("system.h", "lu.c", "legs.c", "arrow.c", "state.c", "march.c", "complex.c", "radau.c")
+)
 PORTS = 24  # as in system.h
+LINE = 64  # bytes of the processor's cache, and of its longest vectors
 TOL_CLOSURE, TOL_FORCE = 1e-14, 1e-10  # m; relative to the largest force: rounding floors of metres and kilonewtons
 MAX_ITERATIONS, MAX_AGE = 12, 16
 #: Matrices of legs with more coordinates than this serve eight times as many steps: they cost more than what their age
@@ -22,6 +31,7 @@ LARGE = 30
 
 class _Settings(Structure):
     _fields_ = [
+        ("equations", ctypes.POINTER(Equations)),
         *[(name, c_long) for name in ("legs", "hub", "ports")],
         ("port", c_long * PORTS),
         *[(name, c_void_p) for name in ("held", "hub_held", "leg_p", "joint_p", "payload_p")],
@@ -44,13 +54,14 @@ class _State(Structure):
 
 @dataclass(frozen=True, kw_only=True)
 class Advance:
-    """Outcome of a chunk: new flow, output rows, status (0 = done), and where it failed."""
+    """Outcome of a chunk: new flow, output rows, status (0 = done), where it failed, and C's memory of its end."""
 
     flow: Flow
     rows: Array
     status: int
     step: int
     leg: int
+    memory: Array | None = None
 
 
 def address(array: Array) -> c_void_p:
@@ -62,24 +73,43 @@ class Call:
     """Structures of one call, and the arrays that they point to."""
 
     def __init__(self, system: System, flow: Flow, rows: Array, method: GeneralizedAlpha, h: float, every: int) -> None:
-        self.kept = system.as_read_by_c
-        self.settings = _Settings(
-            system.legs, int(system.hub), system.ports.size, (c_long * PORTS)(*system.ports.tolist()),
-            *[address(x) for x in self.kept],
-            h, method.alpha_m, method.alpha_f, method.beta, method.gamma, TOL_CLOSURE, TOL_FORCE, system.force_floor,
-            MAX_ITERATIONS, MAX_AGE * (8 if system.n > LARGE else 1), every,
-        )  # fmt: skip
+        self.settings = settings(system, method, h, every)
         arrays = (flow.q, flow.v, flow.v_dot, flow.a, flow.lam, flow.drive, flow.pose, flow.bristles)
         arrays += (flow.sums, flow.powers, rows)
         self.state = _State(*[address(x) for x in arrays])
 
 
-def compiled(system: System) -> ctypes.CDLL:
-    """The library of a system's kernel."""
-    library = system.kernel.library
-    if library is None:
+def settings(system: System, method: GeneralizedAlpha, h: float, every: int) -> Structure:
+    """What does not change in a call; it points to arrays of the system."""
+    if system.kernel.equations is None:
         raise RuntimeError("this kernel is not compiled: its steps are those of solve.interpreted")
+    return _Settings(
+        ctypes.pointer(system.kernel.equations),
+        system.legs, int(system.hub), system.ports.size, (c_long * PORTS)(*system.ports.tolist()),
+        *[address(x) for x in system.as_read_by_c],
+        h, method.alpha_m, method.alpha_f, method.beta, method.gamma, TOL_CLOSURE, TOL_FORCE, system.force_floor,
+        MAX_ITERATIONS, MAX_AGE * (8 if system.n > LARGE else 1), every,
+    )  # fmt: skip
+
+
+@cache
+def loops() -> ctypes.CDLL:
+    """The compiled time loops, the same for all robots."""
+    library = written_library(SOURCES, compiler() or [])
+    library.march_memory.restype = library.radau_memory.restype = c_long
+    library.record_state.restype = None
     return library
+
+
+def memory(size: int) -> Array:
+    """Zeros for so many bytes, from where a line of the processor's cache begins."""
+    found = np.zeros(size // 8 + 8)
+    first = -found.ctypes.data % LINE // 8
+    return found[first : first + size // 8]
+
+
+def _of_march(call: Call) -> Array:
+    return memory(loops().march_memory(byref(call.settings)))
 
 
 def advance(
@@ -90,36 +120,35 @@ def advance(
     tables: tuple[Array, Array],
     every: int,
     counters: Counters,
-    resumed: bool = False,
+    before: Advance | None = None,
 ) -> Advance:
     """Advance by the rows of ``tables`` ((T, legs, ports, 4), (T, load_size)), recording each ``every`` steps.
 
-    ``resumed``: from where the call before ended, with the bits of a single call for both.
+    ``before``: the call that ended there, to go on with the bits of a single call for both.
     """
-    library = compiled(system)
     table, wrench = (np.ascontiguousarray(x) for x in tables)
     steps = len(table) - 1
     new, rows = flow.copy(), np.empty((steps // every, record_width(system)))
     call = Call(system, new, rows, method, h, every)
-    state = call.state
-    status = library.march(
-        byref(call.settings), byref(state), address(table), address(wrench), c_long(steps), c_long(resumed)
+    state, left = call.state, before.memory if before else None
+    kept, given = _of_march(call) if left is None else left, [address(x) for x in (table, wrench)]
+    status = loops().march(
+        byref(call.settings), byref(state), *given, c_long(steps), c_long(left is not None), address(kept)
     )
     counters.steps += state.steps
     counters.iterations += state.iterations
     counters.factorisations += state.factorisations
     done = steps if status == 0 else state.steps - 1
-    return Advance(flow=new, rows=rows[: done // every], status=status, step=done, leg=state.bad_leg)
+    return Advance(flow=new, rows=rows[: done // every], status=status, step=done, leg=state.bad_leg, memory=kept)
 
 
 def first_record(system: System, flow: Flow, table: Array, wrench: Array) -> tuple[Flow, Array]:
     """Output row of the start, and the flow with its powers set."""
-    library = compiled(system)
     new, rows = flow.copy(), np.zeros((1, record_width(system)))
     call = Call(system, new, rows, GeneralizedAlpha(1.0), 1.0, 1)
     table, wrench = (np.ascontiguousarray(x) for x in (table, wrench))
-    library.record_state.restype = None
-    library.record_state(byref(call.settings), byref(call.state), address(table), address(wrench))
+    kept = _of_march(call)
+    loops().record_state(byref(call.settings), byref(call.state), address(table), address(wrench), address(kept))
     return new, rows
 
 
@@ -133,8 +162,8 @@ def scaled_defect(system: System, flow: Flow, ratio: float) -> Flow:
     """
     new = flow.copy()
     call, none = Call(system, new, np.zeros(1), GeneralizedAlpha(1.0), 1.0, 1), np.zeros(system.load_size)
-    scale = compiled(system).scale_normal_velocity
-    if scale(byref(call.settings), byref(call.state), address(none), c_double(ratio - 1)):
+    scale, kept = loops().scale_normal_velocity, _of_march(call)
+    if scale(byref(call.settings), byref(call.state), address(none), c_double(ratio - 1), address(kept)):
         raise ComputationError(
             "the step cannot be changed here: the mass matrix is singular on the joints",
             next_step="Check for a leg without mass, or give a fixed simulation.step in place of a tolerance",

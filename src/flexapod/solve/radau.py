@@ -8,7 +8,7 @@ import numpy as np
 from flexapod.arrays import Array
 from flexapod.integration import GeneralizedAlpha
 from flexapod.solve.chebyshev import Series
-from flexapod.solve.native import Call, address, compiled
+from flexapod.solve.native import Call, address, loops, memory, settings
 from flexapod.solve.pieces import NODES
 from flexapod.solve.recording import Counters, record_width
 from flexapod.solve.system import Flow, System
@@ -48,7 +48,7 @@ class Advanced:
 
 
 class Within:
-    """The method's memory from call to call: time, step, local errors so far.
+    """The method's memory from call to call: time, step, local errors so far, and all that C works with.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class Within:
     def __init__(self, system: System, series: Series, horizon: float, tolerance: float) -> None:
         self.system, self.series, self.horizon, self.tolerance = system, series, horizon, tolerance
         self._along = _along(system)
-        self._memory = np.zeros(compiled(system).radau_memory())
+        self._memory = memory(loops().radau_memory(byref(settings(system, GeneralizedAlpha(1.0), 1.0, 1))))
         self._memory[STEP] = FIRST
 
     @property
@@ -117,9 +117,7 @@ class Within:
             address(edges), address(series), address(stops), *self._along,
         )  # fmt: skip
         before = self._memory[REJECTED]
-        status = compiled(self.system).radau(
-            byref(call.settings), byref(call.state), byref(control), address(self._memory)
-        )
+        status = loops().radau(byref(call.settings), byref(call.state), byref(control), address(self._memory))
         counters.steps += call.state.steps
         counters.iterations += call.state.iterations
         counters.factorisations += call.state.factorisations

@@ -56,7 +56,7 @@ def _ideal(leg: Leg) -> Leg:
 @once
 def rigid_system(robot: Robot) -> System:
     """Equations of the robot of the rigid path."""
-    return robot_system(released(robot), Simulation(fidelity="rigid"), 0.0, march=False)  # no spring is left
+    return robot_system(released(robot), Simulation(fidelity="rigid"), 0.0)  # no spring is left
 
 
 @dataclass(frozen=True, kw_only=True)

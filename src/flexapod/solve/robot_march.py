@@ -73,7 +73,7 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     refuse_growing_plates(study)
     refuse_gaps(study)
     robot, simulation = study.robot, study.simulation
-    system = robot_system(robot, simulation, per_loss(robot, simulation), within=simulation.tolerance is not None)
+    system = robot_system(robot, simulation, per_loss(robot, simulation))
     path = _Path(study)
     law = robot_law(system, robot, study.load, path.poses, path.knots)
     method = GeneralizedAlpha(simulation.rho_inf)
@@ -174,8 +174,7 @@ def _configuration(study: Study, system: System) -> State:
     refuse_pure_force(study.robot, "the equilibrium start")
     still = system
     if system.kernel.shapes.has("w") or system.kernel.shapes.has("j"):
-        lost, within = per_loss(study.robot, study.simulation), study.simulation.tolerance is not None
-        still = robot_system(study.robot, study.simulation, lost, at_rest=True, within=within)
+        still = robot_system(study.robot, study.simulation, per_loss(study.robot, study.simulation), at_rest=True)
         at_rest = replace(at_rest, drive=np.zeros((still.legs, still.ports.size)))
     acts = rest_load(still, study.robot, path, study.load)
     command = rest_commands(still, study.robot, straight.q[None])[0]

@@ -13,7 +13,7 @@ from flexapod.kinematics.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
 from flexapod.mechanics.layout import Shapes, columns
 from flexapod.mechanics.layout import leg_parameters as leg_layout
 from flexapod.model import Robot, Simulation
-from flexapod.solve.kernel import kernel, kernel_at_hand
+from flexapod.solve.kernel import kernel
 from flexapod.solve.parameters import leg_parameters, payload_parameters, standings
 from flexapod.solve.shapes import robot_shapes
 from flexapod.solve.system import System
@@ -25,23 +25,19 @@ def robot_system(
     robot: Robot,
     simulation: Simulation,
     per_loss: float,
-    march: bool = True,
     *,
     at_rest: bool = False,
-    within: bool = False,
-    evaluated: bool = False,
 ) -> System:
-    """System of a robot as built, in the fidelity and shapes of ``simulation``; ``march``: to be integrated.
+    """System of a robot as built, in the fidelity and shapes of ``simulation``.
 
     ``per_loss`` [s]: viscous damping over stiffness of a spring of loss factor 1, see `losses.per_loss`.
-    ``within``: with steps that follow a tolerance, too. ``evaluated``: not to be integrated, see `kernel_at_hand`.
     ``at_rest``: loops that sum their errors have left none, Eq. (T23.16).
     """
     legs = kinematics.built_limbs(robot, kinematics.robot_limbs(robot))
     shapes = robot_shapes(robot, simulation, legs)
     standing = standings(robot, legs, per_loss, at_rest=at_rest)
     return System(
-        kernel=kernel_at_hand(shapes) if evaluated else kernel(shapes, march, within),
+        kernel=kernel(shapes),
         leg_p=leg_parameters(robot, legs, shapes, per_loss, at_rest=at_rest),
         joint_p=np.ascontiguousarray(legs.platform - robot.com),
         payload_p=payload_parameters(robot, shapes, at_rest=at_rest),
@@ -109,7 +105,7 @@ def at_rotors(robot: Robot, simulation: Simulation, per_loss: float) -> System:
 
     ``per_loss``: as of `robot_system`.
     """
-    system = robot_system(robot, simulation, per_loss, evaluated=True)
+    system = robot_system(robot, simulation, per_loss)
     layout, leg_p, held = leg_layout(system.kernel.shapes), system.leg_p.copy(), system.held.copy()
     for i, leg in enumerate(robot.legs):
         if leg.screw is not None and leg.screw.loops:

@@ -160,7 +160,7 @@ def row_table(name: str, f: casadi.Function) -> Iterator[str]:
             most += place[value] == most
             table.append(place[value])
     results = [(k, j, place[value]) for k, j, value in rows.outputs]
-    yield f"static void {name}(const lanes *const *in, lanes *const *out) {{"
+    yield f"void {name}(const lanes *const *in, lanes *const *out) {{"
     yield f"  static const unsigned table[] = {{{_list([*table, 0])}}};"
     yield f"  static const RowInput known[] = {{{_list(rows.known.values())}}};"
     yield f"  static const RowOutput results[] = {{{_list(results)}}};"

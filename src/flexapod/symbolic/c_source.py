@@ -70,7 +70,7 @@ def _definition(name: str, kind: str, statements: list[str]) -> Iterator[str]:
     """A function of these statements, in parts where they are many; `w` holds what a later part needs."""
     taken = f"const {kind} *const *in, {kind} *const *out"
     if len(statements) <= WHOLE:
-        yield from (f"static void {name}({taken}) {{", *statements, "}")
+        yield from (f"void {name}({taken}) {{", *statements, "}")
         return
     parts = [statements[k : k + LONGEST] for k in range(0, len(statements), LONGEST)]
     found = [set(_VALUE.findall("\n".join(part))) for part in parts]
@@ -87,7 +87,7 @@ def _definition(name: str, kind: str, statements: list[str]) -> Iterator[str]:
                     yield f"  w[{places[value]}] = {value};"
         yield "}"
     calls = (f"  {name}_{k}(in, out, w);" for k in range(len(parts)))
-    yield from (f"static void {name}({taken}) {{", f"  {kind} w[{len(places)}];", *calls, "}")
+    yield from (f"void {name}({taken}) {{", f"  {kind} w[{len(places)}];", *calls, "}")
 
 
 def _statements(f: casadi.Function, kind: str) -> Iterator[str]:

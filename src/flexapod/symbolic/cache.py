@@ -23,7 +23,9 @@ __all__ = [
     "cache_directory",
     "clear_cache",
     "intact_libraries",
+    "known_text",
     "open_cache",
+    "remember_text",
     "size_limit",
     "store_library",
     "warn_unused",
@@ -36,6 +38,9 @@ LIMIT = "FLEXAPOD_CACHE_MEGABYTES"
 LARGEST = 100_000_000
 #: Key of what the code depends on, then the beginning of the hash of the file itself.
 LIBRARY = re.compile(r"[0-9a-f]{32}-[0-9a-f]{16}\.so")
+#: What a key of equations has given before: a file named after the key, with the hash of their C text.
+TEXT = re.compile(r"[0-9a-f]{32}\.text")
+SLACK = 60e9  # by how much longer than kernels these are kept [ns]
 _log = logging.getLogger("flexapod")
 
 
@@ -151,6 +156,24 @@ def store_library(folder: Path, key: str, built: Path) -> Path | None:
     return target
 
 
+def known_text(folder: Path, source: str) -> str | None:
+    """Hash of the C text that equations of this key have; None where they have not been written yet."""
+    path = folder / f"{source}.text"
+    with suppress(OSError, ValueError):
+        text = read_bytes(path, 32).decode("ascii")
+        if re.fullmatch("[0-9a-f]{32}", text) and not _distrust(path):
+            with suppress(OSError):
+                os.utime(path)  # used now
+            return text
+    return None
+
+
+def remember_text(folder: Path, source: str, text: str) -> None:
+    """Keep for `known_text`; a folder that cannot be written to is not told again."""
+    with suppress(OSError), whole(folder / f"{source}.text", mode=0o600) as unfinished:
+        unfinished.write_bytes(text.encode("ascii"))
+
+
 def _intact(key: str, path: Path) -> bool:
     try:
         return path.name == _name(key, path) and not _distrust(path)
@@ -163,12 +186,16 @@ def _name(key: str, path: Path) -> str:
 
 
 def _make_room(folder: Path, newest: Path) -> None:
-    """Remove libraries, least recently used first, until all fit; `newest` stays."""
+    """Remove libraries, least recently used first, until all fit, and what leads to them; `newest` stays."""
     files = [(path != newest, -found.st_mtime_ns, found.st_size, path) for path, found in _kernels(folder).items()]
-    used = 0
-    for older, _, size, path in sorted(files):
+    used, removed = 0, 0
+    for older, date, size, path in sorted(files):
         used += size
         if older and used > size_limit():
+            removed = removed or -date
+            _remove(path)
+    for path in _matching(folder, TEXT) if removed else ():
+        if (found := _stat(path)) and found.st_mtime_ns < removed - SLACK:
             _remove(path)
 
 
@@ -207,7 +234,7 @@ def clear_cache() -> CacheContent:
         Some could not be removed.
     """
     before = cache_content()
-    for path in (*_matching(before.folder, LIBRARY), *before.folder.glob(UNFINISHED)):
+    for path in (*_matching(before.folder, LIBRARY), *_matching(before.folder, TEXT), *before.folder.glob(UNFINISHED)):
         _remove(path)
     if left := cache_content().kernels:
         raise ComputationError(

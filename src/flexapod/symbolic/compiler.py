@@ -23,17 +23,30 @@ import numpy as np
 from flexapod.arrays import Array
 from flexapod.errors import ComputationError
 from flexapod.runtime.files import scratch
-from flexapod.runtime.processes import call
-from flexapod.symbolic.cache import intact_libraries, open_cache, store_library, warn_unused
+from flexapod.runtime.processes import calls
+from flexapod.symbolic.cache import (
+    intact_libraries,
+    known_text,
+    open_cache,
+    remember_text,
+    store_library,
+    warn_unused,
+)
 
 #: C text that every generated function needs before it.
 PRELUDE = Path(__file__).parent / "lanes.h"
 
-__all__ = ["CompiledFunction", "compiled_library", "compiler"]
+__all__ = ["CompiledFunction", "compiled_library", "compiler", "written_library"]
 
-#: -O1 runs straight-line code as fast as -O2 and compiles it in half the time. Without contraction of products and sums
-#: numbers do not depend on the processor.
-FLAGS = ("-O1", "-fPIC", "-shared", "-std=gnu11", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off")
+#: Without contraction of products and sums numbers do not depend on the processor.
+COMMON = ("-fPIC", "-std=gnu11", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off")
+#: -O1 runs straight-line code as fast as -O2 and compiles it in half the time; what is written by hand has loops.
+FLAGS, LOOPS = ("-O1",), ("-O3",)
+#: Operations stay in the order in which they are written: where gcc puts them together to expressions it needs more
+#: values at a time than there are registers, and straight-line code takes a tenth longer. No number depends on it.
+STRAIGHT = '#if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC optimize("no-tree-ter")\n#endif'
+#: Equations are compiled in so many units side by side, each of so many characters or more.
+UNITS, WORTH_IT = 2, 60_000
 #: Vectors as wide as the processor has them; left out where the compiler does not know it, or `CC` names a target.
 NATIVE = "-march=native"
 LONGEST = 300.0  # seconds that a compiler may take: usual are 2 to 20
@@ -115,57 +128,89 @@ class CompiledFunction:
 
 
 def compiled_library(
-    key: Sequence[object], functions: Callable[[], list], sources: Sequence[Path], command: list[str], sizes: str = ""
+    key: Sequence[object], functions: Callable[[], list], command: list[str], callers: str = ""
 ) -> tuple[ctypes.CDLL, dict[str, dict]]:
-    """Load (compiling on first use) the generated functions together with hand-written C ``sources``.
+    """Load (compiling on first use) generated functions, and their signatures.
 
     Parameters
     ----------
     key : sequence
-        Everything the generated code depends on: bytes, numbers or text.
+        Everything the generated code may depend on: bytes, numbers or text. What it is for a key is remembered.
     functions : callable
-        Builds the list of NamedFunction; called only when the cache has no library for ``key``.
-    sources : sequence of Path
-        C files appended after the generated code, in this order.
+        Builds the list of NamedFunction; called only where it is not known what the code is, or is not compiled.
     command : list of str
         C compiler.
-    sizes : str
-        C text that tells the ``sources`` of what size these functions are.
+    callers : str
+        C text that calls them.
 
     Raises
     ------
     ComputationError
         The compiler failed (the message carries its words), or its library cannot be loaded.
     """
-    with _announced():
-        return _library(key, functions, sources, command, sizes)
+    cache, source = open_cache(), _hash([*key, callers, version("casadi")])
+    if cache and (text := known_text(cache, source)):
+        if found := _first(intact_libraries(cache, _name([text], FLAGS, command))):
+            return found
+    with _announced(), scratch() as folder:
+        units = _generated(functions(), callers)
+        text = _hash(units)
+        found = _library(_name([text], FLAGS, command), units, FLAGS, command, cache, folder)
+    if cache:
+        remember_text(cache, source, text)
+    return found
+
+
+def written_library(sources: Sequence[Path], command: list[str]) -> ctypes.CDLL:
+    """Load (compiling on first use) hand-written C `sources`, in this order; raises as `compiled_library`."""
+    unit = "\n".join([PRELUDE.read_text(), *(path.read_text() for path in sources), _signatures({})])
+    cache, name = open_cache(), _name([unit], LOOPS, command)
+    if cache and (found := _first(intact_libraries(cache, name))):
+        return found[0]
+    with _announced(), scratch() as folder:
+        return _library(name, [unit], LOOPS, command, cache, folder)[0]
+
+
+def _generated(functions: list, callers: str) -> list[str]:
+    """C text of functions in units that take a compiler about as long: as many as it pays to compile side by side."""
+    from flexapod.symbolic.c_source import c_source
+
+    units: list[list[str]] = [[_signatures({f.name: f.signature() for f in functions})]]
+    texts = sorted(map(c_source, functions), key=len, reverse=True)
+    units += [[] for _ in range(min(UNITS, sum(map(len, texts)) // WORTH_IT + 1) - 1) if not callers]
+    for text in texts:
+        min(units, key=lambda unit: sum(map(len, unit))).append(text)
+    units[0].append(callers)
+    return ["\n".join([PRELUDE.read_text(), STRAIGHT, *unit]) for unit in units]
+
+
+def _signatures(known: dict[str, dict[str, object]]) -> str:
+    return f"const char* {SIGNATURES}(void) {{ return {json.dumps(json.dumps(known))}; }}"
 
 
 def _library(
-    key: Sequence[object], functions: Callable[[], list], sources: Sequence[Path], command: list[str], sizes: str = ""
+    name: str, units: list[str], flags: Sequence[str], command: list[str], cache: Path | None, folder: Path
 ) -> tuple[ctypes.CDLL, dict[str, dict]]:
-    name = _name([*key, sizes, *(path.read_bytes() for path in sources)], command)
-    cache = open_cache()
+    """Library `name` of these units, from the cache or made in `folder`."""
     if cache and (found := _first(intact_libraries(cache, name))):
-        return found
-    with scratch() as folder:
-        built = _build(functions(), sizes, sources, command, folder)
-        if cache and (found := _first(intact_libraries(cache, name))):
-            return found  # another process was faster
-        if cache and (stored := store_library(cache, name, built)):
-            try:
-                return _load(stored)
-            except OSError as error:
-                if stored.exists():  # else another process has just made room
-                    warn_unused(cache, f"libraries cannot be loaded from there ({error})")
+        return found  # other equations have the same text
+    built = _build(units, flags, command, folder)
+    if cache and (found := _first(intact_libraries(cache, name))):
+        return found  # another process was faster
+    if cache and (stored := store_library(cache, name, built)):
         try:
-            return _load(built)  # it stays in memory when the folder is removed
+            return _load(stored)
         except OSError as error:
-            raise ComputationError(
-                f"the compiled equations cannot be loaded: {error}",
-                next_step="Set FLEXAPOD_CACHE to a folder from which programs may be run, CC to another compiler, "
-                "or FLEXAPOD_COMPILER=none for the slow interpreted kernels.",
-            ) from None
+            if stored.exists():  # else another process has just made room
+                warn_unused(cache, f"libraries cannot be loaded from there ({error})")
+    try:
+        return _load(built)  # it stays in memory when the folder is removed
+    except OSError as error:
+        raise ComputationError(
+            f"the compiled equations cannot be loaded: {error}",
+            next_step="Set FLEXAPOD_CACHE to a folder from which programs may be run, CC to another compiler, "
+            "or FLEXAPOD_COMPILER=none for the slow interpreted kernels.",
+        ) from None
 
 
 @contextmanager
@@ -181,7 +226,7 @@ def _announced() -> Iterator[None]:
         timer.cancel()
 
 
-def _name(key: Sequence[object], command: list[str]) -> str:
+def _name(key: Sequence[object], flags: Sequence[str], command: list[str]) -> str:
     """Hash of everything that the library depends on, 32 hexadecimal digits."""
     program = Path(shutil.which(command[0]) or command[0]).resolve()
     if not program.exists():
@@ -189,8 +234,12 @@ def _name(key: Sequence[object], command: list[str]) -> str:
     made_by = [str(program), program.stat().st_size, program.stat().st_mtime_ns, *command[1:]]
     made_by += [version("ziglang")] if "ziglang" in command else []
     machine = [sys.platform, platform.machine(), sys.maxsize, _processor()]
+    return _hash([*key, *COMMON, *flags, *made_by, *machine])
+
+
+def _hash(parts: Sequence[object]) -> str:
     digest = hashlib.sha256()
-    for part in [*key, PRELUDE.read_bytes(), SIGNATURES, version("casadi"), *FLAGS, *made_by, *machine]:
+    for part in parts:
         text = part if isinstance(part, bytes) else repr(part).encode()
         digest.update(b"%d:" % len(text) + text)  # the length keeps neighbours apart
     return digest.hexdigest()[:32]
@@ -228,33 +277,41 @@ def _first(paths: Sequence[Path]) -> tuple[ctypes.CDLL, dict[str, dict]] | None:
     return None
 
 
-def _build(functions: list, sizes: str, sources: Sequence[Path], command: list[str], folder: Path) -> Path:
-    """Library of `functions` and `sources` for their `sizes`, made in `folder`."""
-    from flexapod.symbolic.c_source import c_source
-
-    signatures = json.dumps(json.dumps({f.name: f.signature() for f in functions}))
+def _build(units: list[str], flags: Sequence[str], command: list[str], folder: Path) -> Path:
+    """Library of these C texts, compiled side by side in `folder`."""
     program = shutil.which(command[0]) or command[0]
     # Relative names and a folder of its own: some linkers write paths into what they make, which would no longer
     # be the same from one process to the next.
-    line = [os.path.abspath(program), *command[1:], *FLAGS, "-o", "kernel.so", "kernel.c", "-lm"]
+    line = [os.path.abspath(program), *command[1:], *COMMON]
+    names = [f"unit{k}" for k in range(len(units))]
+    target = [] if any(word.startswith(("-march=", "-mcpu=")) for word in command) else [NATIVE]
     try:
-        tail = f"const char* {SIGNATURES}(void) {{ return {signatures}; }}"
-        generated = [c_source(function) for function in functions]
-        texts = [PRELUDE.read_text(), *generated, tail, sizes, *(path.read_text() for path in sources)]
-        (folder / "kernel.c").write_text("\n".join(texts))
-        target = [] if any(word.startswith(("-march=", "-mcpu=")) for word in command) else [NATIVE]
-        own = {"TMPDIR": str(folder)}  # of its files, too, nothing stays if it is killed
-        said, status = call([*line, *target], folder, LONGEST, own)
-        if status and target:
-            said, status = call(line, folder, LONGEST, own)
+        for name, unit in zip(names, units, strict=True):
+            (folder / f"{name}.c").write_text(unit)
+        for targets in [target, []] if target else [[]]:
+            each = [[*line, *flags, "-c", "-o", f"{name}.o", f"{name}.c", *targets] for name in names]
+            if not (fault := _fault(each, command, folder)):
+                link = [*line, "-shared", "-o", "kernel.so", *(f"{name}.o" for name in names), "-lm"]
+                fault = _fault([link], command, folder)
+                break
     except OSError as error:
         raise _failed(command, f"{error.filename or folder}: {error.strerror}") from None
-    if status is None:
-        raise _failed(command, f"it did not end within {LONGEST:g} s and was stopped")
-    if status or not (folder / "kernel.so").is_file():
-        made = "" if status else ", and made no library"
-        raise _failed(command, said.strip()[-600:] or f"it said nothing; its exit status is {status}{made}")
+    if not fault and not (folder / "kernel.so").is_file():
+        fault = "it said nothing; its exit status is 0, and made no library"
+    if fault:
+        raise _failed(command, fault)
     return folder / "kernel.so"
+
+
+def _fault(lines: list[list[str]], command: list[str], folder: Path) -> str:
+    """What went wrong in these calls, side by side, of a compiler; empty if nothing did."""
+    own = {"TMPDIR": str(folder)}  # of its files, too, nothing stays if it is killed
+    for said, status in calls(lines, folder, LONGEST, own):
+        if status is None:
+            raise _failed(command, f"it did not end within {LONGEST:g} s and was stopped")
+        if status:
+            return said.strip()[-600:] or f"it said nothing; its exit status is {status}"
+    return ""
 
 
 def _failed(command: list[str], words: str) -> ComputationError:

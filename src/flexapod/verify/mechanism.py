@@ -19,7 +19,7 @@ from flexapod.integration import GeneralizedAlpha
 from flexapod.mechanics.layout import COMMAND_SIZE, LEG_PARAMETERS, Shapes, columns
 from flexapod.mechanics.leg_chain import LegChain
 from flexapod.mechanics.section_layout import LegBeam
-from flexapod.solve.kernel import NAMES, SOURCES, Kernel, sizes
+from flexapod.solve.kernel import Kernel, loaded_kernel
 from flexapod.solve.march import march
 from flexapod.solve.problem import Problem
 from flexapod.solve.recording import Counters, Recording
@@ -28,7 +28,7 @@ from flexapod.solve.stops import Stops
 from flexapod.solve.system import COLUMNS, State, System
 from flexapod.solve.tables import Law
 from flexapod.symbolic import lagrange, vocabulary
-from flexapod.symbolic.compiler import CompiledFunction, compiled_library, compiler
+from flexapod.symbolic.compiler import compiled_library, compiler
 from flexapod.symbolic.functions import NamedFunction
 from flexapod.symbolic.lagrange import Lagrangian, inverse_dynamics, mass_matrix
 from flexapod.symbolic.vocabulary import (
@@ -178,15 +178,12 @@ def _kernel(mechanism: Mechanism, shapes: Shapes, general: int) -> Kernel:
     texts = [
         Path(str(file)).read_bytes() for file in (__file__, mechanism.file, lagrange.__file__, vocabulary.__file__)
     ]
-    library, signatures = compiled_library(
+    made = compiled_library(
         [*texts, shapes.size, general],
         lambda: [*_branch_functions(mechanism, shapes, general), *_hub_functions(mechanism)],
-        SOURCES,
         command,
-        sizes(shapes, general + mechanism.parameters.shape[1], joint=len(mechanism.parameters)),
     )
-    compiled = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES if name in signatures}
-    return Kernel(shapes=shapes, library=library, **compiled)
+    return loaded_kernel(shapes, *made, general + mechanism.parameters.shape[1], joint=len(mechanism.parameters))
 
 
 def _branch_functions(mechanism: Mechanism, shapes: Shapes, general: int) -> list[NamedFunction]:

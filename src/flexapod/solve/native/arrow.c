@@ -11,23 +11,36 @@
    loops are closed about other places than their rotors it is not, and E has its own, Er. A held
    coordinate that is not a pivot drops out of z; its force is what is left in its own row. Legs are in `ORDER` here.
    Coordinates that all legs share belong to y: Y = [Y1; 0; 1] with Y1 = J1^-1 [P, -J_shared], and y has HUB of them. */
-enum { M = N - ROWS - COMMON, BORDER = HUB + LEGS*ROWS };
-/* Whether a leg has so many coordinates that its functions and matrices cost more than a better start and steps counted */
-enum { LARGE = N > 30 };
-
 typedef struct {                        /* of a vector of legs */
-  lanes A[N*N], J[ROWS*N], P[ROWS*6], J1inv[ROWS*ROWS], N1[ROWS*M], Y1[ROWS*HUB], Binv[M*M], Et[M*HUB], C[M*HUB], Bd[ROWS*M];
-#ifdef LOOPING
-  lanes Er[M*HUB];
-#else
-#define Er Et
-  lanes half[LARGE ? M*(M + 1)/2 : 1];  /* of Binv, column by column */
-#endif
-  lanes held[N];
-  int unknown[ROWS][LANES], any[ROWS];  /* the border's unknown of a held pivot; 0: it is not held; and of any leg */
+  lanes *A, *J, *P, *J1inv, *N1, *Y1, *Binv, *Et, *C, *Bd;
+  lanes *Er;                            /* that of loops, else Et */
+  lanes *half;                          /* of Binv, column by column */
+  lanes *held;
+  int unknown[CLOSURES][LANES], any[CLOSURES];  /* the border's unknown of a held pivot; 0: it is not held; and of any leg */
 } LegBlock;
 
-typedef struct { LegBlock leg[GROUPS]; long size; double border[BORDER*BORDER]; } Arrow;
+typedef struct {
+  LegBlock leg[GROUPS]; long size; double *border;
+  lanes *AN, *B; double *sum;           /* scratch: (N, M), (M, M), that of the border */
+} Arrow;
+
+static long border_size(const Settings *s) { return 6 + s->of->common + s->legs*s->of->rows; }       /* at most */
+
+static void arrow_room(Room *m, const Settings *s, Arrow *w) {
+  SIZES(s);
+  long border = border_size(s);
+  for (int group = 0; group < groups(s); group++) {
+    LegBlock *b = &w->leg[group];
+    b->A = room_of_lanes(m, N*N); b->J = room_of_lanes(m, ROWS*N); b->P = room_of_lanes(m, ROWS*6);
+    b->J1inv = room_of_lanes(m, ROWS*ROWS); b->N1 = room_of_lanes(m, ROWS*M); b->Y1 = room_of_lanes(m, ROWS*HUB);
+    b->Binv = room_of_lanes(m, M*M); b->Et = room_of_lanes(m, M*HUB); b->C = room_of_lanes(m, M*HUB);
+    b->Bd = room_of_lanes(m, ROWS*M); b->held = room_of_lanes(m, N);
+    b->Er = LOOPING ? room_of_lanes(m, M*HUB) : b->Et;
+    b->half = LARGE && !LOOPING ? room_of_lanes(m, M*(M + 1)/2) : 0;
+  }
+  w->border = room_of_numbers(m, border*border); w->sum = room_of_numbers(m, border*border);
+  w->AN = room_of_lanes(m, N*M); w->B = room_of_lanes(m, M*M);
+}
 
 static void invert3(const lanes *m, lanes *inv) {        /* column-major */
   lanes c0 = m[4]*m[8] - m[7]*m[5], c1 = m[7]*m[2] - m[1]*m[8], c2 = m[1]*m[5] - m[4]*m[2];
@@ -43,7 +56,7 @@ static void product3(double s, const lanes *A, long ld_A, const lanes *B, long l
 }
 
 /* Inverse of J1 with three rows or six: place before attitude, and (alpha, beta, l) decide over the place */
-static void invert_pivots(const lanes *m, lanes *inv) {
+static void invert_pivots(long ROWS, const lanes *m, lanes *inv) {
   if (ROWS == 3) invert3(m, inv);
   if (ROWS != 6) return;
   lanes corner[9], inner[9], first[9], last[9], right[9] = {0}, left[9] = {0};
@@ -53,7 +66,7 @@ static void invert_pivots(const lanes *m, lanes *inv) {
   product3(1, m + 3, 6, first, 3, left, 3);
   product3(-1, m + 3, 6, right, 3, inner, 3);
   invert3(inner, last);
-  memset(inv, 0, sizeof(lanes)*ROWS*ROWS);
+  memset(inv, 0, sizeof(lanes)*36);
   product3(-1, right, 3, last, 3, inv + 18, 6);
   product3(-1, last, 3, left, 3, inv + 3, 6);
   for (int j = 0; j < 3; j++) for (int i = 0; i < 3; i++) { inv[i + 6*j] = first[i + 3*j]; inv[21 + i + 6*j] = last[i + 3*j]; }
@@ -62,7 +75,8 @@ static void invert_pivots(const lanes *m, lanes *inv) {
 
 /* Inverses of the matrices (M, M) of a vector of legs, leg by leg because each has its own pivots */
 static int invert_each(const Settings *s, int group, const lanes *A, lanes *inverse) {
-  double one[N*N], inv[N*N];
+  SIZES(s);
+  double one[M*M + 1], inv[M*M + 1];
   for (int i = 0; i < LANES; i++) {
     if (i < used(s, group)) {
       for (long j = 0; j < M*M; j++) one[j] = A[j][i];
@@ -76,6 +90,7 @@ static int invert_each(const Settings *s, int group, const lanes *A, lanes *inve
 /* The same for all legs at once, without seeking pivots: right where the matrices are positive, as mass and stiffness make
    them. Where one is not (a pivot vanishes or is negative: a leg buckles), each leg seeks its own. */
 static int invert_legs(const Settings *s, int group, const lanes *A, lanes *inverse) {
+  SIZES(s);
   lane_bits positive = ~(lane_bits){0};
   memcpy(inverse, A, sizeof(lanes)*M*M);
   for (long k = 0; k < M; k++) {
@@ -96,11 +111,12 @@ static int invert_legs(const Settings *s, int group, const lanes *A, lanes *inve
 
 /* Which coordinates of the legs are held, and the border's unknowns of those that are pivots */
 static void arrow_hold(Arrow *w, const Settings *s) {
+  SIZES(s);
   w->size = HUB;
   for (int group = 0; group < groups(s); group++) {
     LegBlock *b = &w->leg[group];
     lanes held[PORTS];
-    memset(b->held, 0, sizeof b->held); memset(b->unknown, 0, sizeof b->unknown);
+    memset(b->held, 0, sizeof(lanes)*N); memset(b->unknown, 0, sizeof b->unknown);
     gather(s, group, s->held, s->ports, s->ports, held);
     for (long k = 0; k < s->ports; k++) b->held[PLACE[s->port[k]]] = held[k];
     for (int p = 0; p < ROWS; p++) {
@@ -115,16 +131,19 @@ static void arrow_hold(Arrow *w, const Settings *s) {
 }
 
 /* Everything of a vector of legs that does not depend on residuals; its share of the border */
-static int leg_factor(const Settings *s, int group, LegBlock *b, double *border, long size) {
-  static _Thread_local lanes AN[N*M], B[M*M];
-  lanes AY[N*HUB];
-  memset(b->N1, 0, sizeof b->N1); memset(b->Y1, 0, sizeof b->Y1);
-  invert_pivots(b->J, b->J1inv);
+static int leg_factor(const Settings *s, int group, const Arrow *w) {
+  SIZES(s);
+  const LegBlock *b = &w->leg[group];
+  lanes *AN = w->AN, *B = w->B, AY[N*HUB];
+  double *border = w->sum;
+  long size = w->size;
+  memset(b->N1, 0, sizeof(lanes)*ROWS*M); memset(b->Y1, 0, sizeof(lanes)*ROWS*HUB);
+  invert_pivots(ROWS, b->J, b->J1inv);
   for (long j = 0; j < M; j++) lanes_gemv(ROWS, ROWS, -1, b->J1inv, b->J + ROWS*(ROWS + j), b->N1 + ROWS*j);
   for (long j = 0; j < 6; j++) lanes_gemv(ROWS, ROWS, 1, b->J1inv, b->P + ROWS*j, b->Y1 + ROWS*j);
   for (long j = 6; j < HUB; j++) lanes_gemv(ROWS, ROWS, -1, b->J1inv, b->J + ROWS*(ROWS + M + j - 6), b->Y1 + ROWS*j);
   for (long j = 0; j < M; j++) for (int p = 0; p < ROWS; p++) b->N1[p + ROWS*j] *= 1.0 - b->held[ROWS + j];
-  memcpy(AN, b->A + ROWS*N, sizeof AN); memset(AY, 0, sizeof AY);
+  memcpy(AN, b->A + ROWS*N, sizeof(lanes)*N*M); memset(AY, 0, sizeof(lanes)*N*HUB);
   memcpy(AY + 6*N, b->A + (ROWS + M)*N, sizeof(lanes)*COMMON*N);
   for (long j = 0; j < M; j++) lanes_gemv(N, ROWS, 1, b->A, b->N1 + ROWS*j, AN + j*N);
   for (long j = 0; j < HUB; j++) lanes_gemv(N, ROWS, 1, b->A, b->Y1 + ROWS*j, AY + j*N);
@@ -136,22 +155,19 @@ static int leg_factor(const Settings *s, int group, LegBlock *b, double *border,
     for (long j = 0; j < HUB; j++) b->Et[k + j*M] *= free;
     B[k + k*M] += held;
   }
-#ifdef LOOPING
-  for (long j = 0; j < HUB; j++) for (long k = 0; k < M; k++) {
+  if (LOOPING) for (long j = 0; j < HUB; j++) for (long k = 0; k < M; k++) {
     lanes t = {0};
     for (int p = 0; p < ROWS; p++) t += b->Y1[p + ROWS*j]*AN[p + k*N];
     if (j >= 6) t += AN[ROWS + M + j - 6 + k*N];
     b->Er[k + j*M] = t*(1.0 - b->held[ROWS + k]);
   }
-#endif
   if (invert_legs(s, group, B, b->Binv)) return SINGULAR;
-#ifndef LOOPING
-  if (LARGE) for (long j = 0; j < M; j++) memcpy(b->half + j*(j + 1)/2, b->Binv + j*M, sizeof(lanes)*(j + 1));
-#endif
-  memset(b->C, 0, sizeof b->C); memset(b->Bd, 0, sizeof b->Bd);
+  if (b->half) for (long j = 0; j < M; j++) memcpy(b->half + j*(j + 1)/2, b->Binv + j*M, sizeof(lanes)*(j + 1));
+  memset(b->C, 0, sizeof(lanes)*M*HUB); memset(b->Bd, 0, sizeof(lanes)*ROWS*M);
   for (long j = 0; j < HUB; j++) lanes_gemv(M, M, 1, b->Binv, b->Et + j*M, b->C + j*M);
   for (long j = 0; j < HUB; j++) {
-    lanes payload[HUB] = {0};
+    lanes payload[HUB];
+    memset(payload, 0, sizeof(lanes)*HUB);
     for (int i = 6; i < HUB; i++) payload[i] = AY[ROWS + M + i - 6 + j*N];
     lanes_gemv_t(ROWS, HUB, 1, b->Y1, AY + j*N, payload);
     lanes_gemv_t(M, HUB, -1, b->Er, b->C + j*M, payload);
@@ -163,12 +179,11 @@ static int leg_factor(const Settings *s, int group, LegBlock *b, double *border,
     for (long j = 0; j < HUB; j++) {
       lanes force = b->Y1[p + ROWS*j];
       for (long i = 0; i < M; i++) force -= b->N1[p + ROWS*i] * b->C[i + j*M];
-#ifdef LOOPING
-      lanes back = -b->Y1[p + ROWS*j];
-      for (long i = 0; i < M; i++) back += b->Er[i + j*M] * b->Bd[i + p*M];
-#else
       lanes back = -force;
-#endif
+      if (LOOPING) {
+        back = -b->Y1[p + ROWS*j];
+        for (long i = 0; i < M; i++) back += b->Er[i + j*M] * b->Bd[i + p*M];
+      }
       for (int i = 0; i < LANES; i++) {
         long f = b->unknown[p][i];
         if (f) { border[f + j*size] = force[i]; border[j + f*size] = back[i]; }
@@ -185,11 +200,12 @@ static int leg_factor(const Settings *s, int group, LegBlock *b, double *border,
 }
 
 static int arrow_factor(Arrow *w, const Settings *s, const double *A_payload) {
-  static _Thread_local double border[BORDER*BORDER];
+  SIZES(s);
+  double *border = w->sum;
   long size = w->size;
   memset(border, 0, sizeof(double)*size*size);
   for (int j = 0; j < HUB; j++) for (int i = 0; i < HUB; i++) border[i + j*size] = A_payload[i + HUB*j];
-  for (int group = 0; group < groups(s); group++) if (leg_factor(s, group, &w->leg[group], border, size)) return SINGULAR;
+  for (int group = 0; group < groups(s); group++) if (leg_factor(s, group, w)) return SINGULAR;
   for (int k = 0; k < 6; k++) {
     if (s->hub_held[k] == 0) continue;
     for (long j = 0; j < size; j++) border[k + j*size] = border[j + k*size] = 0;
@@ -199,9 +215,8 @@ static int arrow_factor(Arrow *w, const Settings *s, const double *A_payload) {
 }
 
 /* z -= B^-1 t. Of large legs, whose inverse does not fit into the nearest cache, half of it is read */
-static void times_inverse(const LegBlock *b, const lanes *restrict t, lanes *restrict z) {
-#ifndef LOOPING
-  if (LARGE) {
+static void times_inverse(long M, const LegBlock *b, const lanes *restrict t, lanes *restrict z) {
+  if (b->half) {
     const lanes *a = b->half;
     for (long j = 0; j < M; j++) {
       lanes along = {0}, own = t[j];
@@ -210,21 +225,22 @@ static void times_inverse(const LegBlock *b, const lanes *restrict t, lanes *res
     }
     return;
   }
-#endif
   lanes_gemv(M, M, -1, b->Binv, t, z);
 }
 
-/* r, g, dq, dlam: a row of N, ROWS, N, ROWS vectors a group; df: of a force for each port; rp (HUB), dy (6): of the payload.
+/* r, g, dq, dlam: N, ROWS, N, ROWS vectors a group; df: of a force for each port; rp (HUB), dy (6): of the payload.
    In r and rp those of shared coordinates are in rp alone. Without dlam no forces are sought. */
-static void arrow_solve(const Arrow *w, const Settings *s, lanes (*r)[N], lanes (*g)[ROWS], const double *rp,
-                        lanes (*dq)[N], lanes (*dlam)[ROWS], lanes (*df)[PORTS], double *dy) {
-  lanes z[GROUPS][N], g0[GROUPS][ROWS + 1];
-  double rhs[BORDER] = {0}, x[BORDER] = {0};
+INLINE void arrow_solve_of(long rows, long common, const Arrow *w, const Settings *s, lanes *const *r, lanes *const *g,
+                           const double *rp, lanes *const *dq, lanes *const *dlam, lanes *const *df, double *dy) {
+  SIZES_OF(s, rows, common);
+  lanes z[GROUPS][M + 1], g0[GROUPS][CLOSURES];
+  double rhs[w->size], x[w->size];
+  memset(rhs, 0, sizeof(double)*w->size); memset(x, 0, sizeof(double)*w->size);
   for (int i = 0; i < HUB; i++) rhs[i] = -rp[i];
   for (int group = 0; group < groups(s); group++) {
     const LegBlock *b = &w->leg[group];
-    lanes t[N], part[HUB] = {0};
-    memset(g0[group], 0, sizeof g0[group]); memset(z[group], 0, sizeof z[group]);
+    lanes t[N], part[HUB];
+    memset(part, 0, sizeof(lanes)*HUB); memset(g0[group], 0, sizeof(lanes)*ROWS); memset(z[group], 0, sizeof(lanes)*M);
     lanes_gemv(ROWS, ROWS, -1, b->J1inv, g[group], g0[group]);
     for (long j = 0; j < N; j++) t[j] = r[group][ORDER[j]];
     lanes_gemv(N, ROWS, 1, b->A, g0[group], t);                            /* r + A g0 */
@@ -232,7 +248,7 @@ static void arrow_solve(const Arrow *w, const Settings *s, lanes (*r)[N], lanes 
     lanes_gemv_t(ROWS, HUB, -1, b->Y1, t, part);
     lanes_gemv_t(ROWS, M, 1, b->N1, t, t + ROWS);
     for (long j = ROWS; j < N; j++) t[j] *= 1.0 - b->held[j];
-    times_inverse(b, t + ROWS, z[group]);
+    times_inverse(M, b, t + ROWS, z[group]);
     lanes_gemv_t(M, HUB, -1, b->Er, z[group], part);
     for (int i = 0; i < HUB; i++) rhs[i] += sum(s, group, part[i]);
     for (int p = 0; p < ROWS; p++) {
@@ -247,7 +263,7 @@ static void arrow_solve(const Arrow *w, const Settings *s, lanes (*r)[N], lanes 
   memcpy(dy, x, 6*sizeof(double));
   for (int group = 0; group < groups(s); group++) {
     const LegBlock *b = &w->leg[group];
-    lanes change[N], t[N], f[ROWS + 1], y[HUB], *dz = change + ROWS;
+    lanes change[N], f[CLOSURES], y[HUB], *dz = change + ROWS;
     for (int i = 0; i < HUB; i++) y[i] = (lanes){0} + x[i];
     memcpy(change + ROWS + M, y + 6, sizeof(lanes)*COMMON);
     memcpy(change, g0[group], sizeof(lanes)*ROWS); memcpy(dz, z[group], sizeof(lanes)*M);
@@ -263,18 +279,26 @@ static void arrow_solve(const Arrow *w, const Settings *s, lanes (*r)[N], lanes 
     for (int p = 0; p < ROWS; p++) change[p] *= 1.0 - b->held[p];
     for (long j = 0; j < N; j++) dq[group][ORDER[j]] = change[j];
     if (!dlam) continue;
-    for (long j = 0; j < N; j++) t[j] = r[group][ORDER[j]];
-    for (long j = 0; j < N; j++) for (int i = 0; i < ROWS; i++) t[i] += b->A[i + j*N] * change[j];
-    for (int p = 0; p < ROWS; p++) t[p] -= f[p];
+    lanes left[CLOSURES];
+    for (int p = 0; p < ROWS; p++) left[p] = r[group][ORDER[p]];
+    for (long j = 0; j < N; j++) for (int p = 0; p < ROWS; p++) left[p] += b->A[p + j*N] * change[j];
+    for (int p = 0; p < ROWS; p++) left[p] -= f[p];
     memset(dlam[group], 0, sizeof(lanes)*ROWS);
-    lanes_gemv_t(ROWS, ROWS, -1, b->J1inv, t, dlam[group]);                /* rows of the pivots give dlam */
+    lanes_gemv_t(ROWS, ROWS, -1, b->J1inv, left, dlam[group]);             /* rows of the pivots give dlam */
     for (long k = 0; k < s->ports; k++) {
       long at = PLACE[s->port[k]];
       if (at < ROWS) { df[group][k] = f[at]; continue; }
-      lanes own = t[at];
+      lanes own = r[group][s->port[k]];
       for (long j = 0; j < N; j++) own += b->A[at + j*N] * change[j];
       for (int i = 0; i < ROWS; i++) own += b->J[i + ROWS*at] * dlam[group][i];
       df[group][k] = b->held[at] * own;
     }
   }
+}
+
+static void arrow_solve(const Arrow *w, const Settings *s, lanes *const *r, lanes *const *g, const double *rp,
+                        lanes *const *dq, lanes *const *dlam, lanes *const *df, double *dy) {
+#define SOLVE(rows, common) arrow_solve_of(rows, common, w, s, r, g, rp, dq, dlam, df, dy)
+  BY_SIZES(s, SOLVE);
+#undef SOLVE
 }

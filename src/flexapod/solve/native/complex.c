@@ -2,19 +2,29 @@
    Runge-Kutta method. The closures are real: J1inv, N1, Y1, what is held and the border's unknowns are those of the real
    arrow. Mass and stiffness are positive, so that A has its numerical range in a half-plane and needs no pivoting. */
 typedef struct {
-  lanes A[2][N*N], Binv[2][M*M], Et[2][M*HUB], C[2][M*HUB], Bd[2][ROWS*M + 1];
-#ifdef LOOPING
-  lanes Er[2][M*HUB];
-#endif
+  lanes *A[2], *Binv[2], *Et[2], *C[2], *Bd[2], *Er[2];
 } ComplexBlock;
-typedef struct { ComplexBlock leg[GROUPS]; double border[4*BORDER*BORDER]; } ComplexArrow;
+typedef struct { ComplexBlock leg[GROUPS]; lanes *AN[2]; double *border, *sum; } ComplexArrow;
+
+static void complex_room(Room *m, const Settings *s, ComplexArrow *w) {
+  SIZES(s);
+  long border = 4*border_size(s)*border_size(s);
+  for (int group = 0; group < groups(s); group++) for (int part = 0; part < 2; part++) {
+    ComplexBlock *b = &w->leg[group];
+    b->A[part] = room_of_lanes(m, N*N); b->Binv[part] = room_of_lanes(m, M*M); b->Et[part] = room_of_lanes(m, M*HUB);
+    b->C[part] = room_of_lanes(m, M*HUB); b->Bd[part] = room_of_lanes(m, ROWS*M);
+    b->Er[part] = LOOPING ? room_of_lanes(m, M*HUB) : b->Et[part];
+  }
+  for (int part = 0; part < 2; part++) w->AN[part] = room_of_lanes(m, N*M);
+  w->border = room_of_numbers(m, border); w->sum = room_of_numbers(m, border);
+}
 
 /* y += s A x and y += s A^T x, both complex, and with a real A */
-static void complex_gemv(long rows, long cols, double s, lanes *const *A, lanes *const *x, lanes *const *y) {
+INLINE void complex_gemv(long rows, long cols, double s, lanes *const *A, lanes *const *x, lanes *const *y) {
   lanes_gemv(rows, cols, s, A[0], x[0], y[0]); lanes_gemv(rows, cols, -s, A[1], x[1], y[0]);
   lanes_gemv(rows, cols, s, A[0], x[1], y[1]); lanes_gemv(rows, cols, s, A[1], x[0], y[1]);
 }
-static void complex_gemv_t(long rows, long cols, double s, lanes *const *A, lanes *const *x, lanes *const *y) {
+INLINE void complex_gemv_t(long rows, long cols, double s, lanes *const *A, lanes *const *x, lanes *const *y) {
   lanes_gemv_t(rows, cols, s, A[0], x[0], y[0]); lanes_gemv_t(rows, cols, -s, A[1], x[1], y[0]);
   lanes_gemv_t(rows, cols, s, A[0], x[1], y[1]); lanes_gemv_t(rows, cols, s, A[1], x[0], y[1]);
 }
@@ -48,12 +58,16 @@ static void add_complex(double *border, long size, long i, long j, double re, do
   border[size + i + j*wide] += im; border[i + (size + j)*wide] -= im;
 }
 
-static void complex_leg(const Settings *s, int group, const LegBlock *b, ComplexBlock *c, double *border, long size) {
-  static _Thread_local lanes AN[2][N*M + 1], AY[2][N*HUB];
-  lanes zero = {0};
+static void complex_leg(const Settings *s, int group, const Arrow *w, const ComplexArrow *arrow) {
+  SIZES(s);
+  const LegBlock *b = &w->leg[group];
+  const ComplexBlock *c = &arrow->leg[group];
+  lanes *const *AN = arrow->AN, AY[2][N*HUB], zero = {0};
+  double *border = arrow->sum;
+  long size = w->size;
   for (int part = 0; part < 2; part++) {
     lanes *B = c->Binv[part], *Et = c->Et[part];
-    memcpy(AN[part], c->A[part] + ROWS*N, sizeof(lanes)*N*M); memset(AY[part], 0, sizeof AY[part]);
+    memcpy(AN[part], c->A[part] + ROWS*N, sizeof(lanes)*N*M); memset(AY[part], 0, sizeof(lanes)*N*HUB);
     memcpy(AY[part] + 6*N, c->A[part] + (ROWS + M)*N, sizeof(lanes)*COMMON*N);
     for (long j = 0; j < M; j++) lanes_gemv(N, ROWS, 1, c->A[part], b->N1 + ROWS*j, AN[part] + j*N);
     for (long j = 0; j < HUB; j++) lanes_gemv(N, ROWS, 1, c->A[part], b->Y1 + ROWS*j, AY[part] + j*N);
@@ -65,20 +79,19 @@ static void complex_leg(const Settings *s, int group, const LegBlock *b, Complex
       for (long j = 0; j < HUB; j++) Et[k + j*M] *= free;
       if (part == 0) B[k + k*M] += held;
     }
-#ifdef LOOPING
-    for (long j = 0; j < HUB; j++) for (long k = 0; k < M; k++) {
+    if (LOOPING) for (long j = 0; j < HUB; j++) for (long k = 0; k < M; k++) {
       lanes t = {0};
       for (int p = 0; p < ROWS; p++) t += b->Y1[p + ROWS*j]*AN[part][p + k*N];
       if (j >= 6) t += AN[part][ROWS + M + j - 6 + k*N];
       c->Er[part][k + j*M] = t*(1.0 - b->held[ROWS + k]);
     }
-#endif
   }
   complex_invert(M, c->Binv[0], c->Binv[1]);
-  memset(c->C, 0, sizeof c->C); memset(c->Bd, 0, sizeof c->Bd);
+  for (int part = 0; part < 2; part++) { memset(c->C[part], 0, sizeof(lanes)*M*HUB); memset(c->Bd[part], 0, sizeof(lanes)*ROWS*M); }
   for (long j = 0; j < HUB; j++) complex_gemv(M, M, 1, PARTS(c->Binv, 0), PARTS(c->Et, j*M), PARTS(c->C, j*M));
   for (long j = 0; j < HUB; j++) {
-    lanes payload[2][HUB] = {{{0}}};
+    lanes payload[2][HUB];
+    for (int part = 0; part < 2; part++) memset(payload[part], 0, sizeof(lanes)*HUB);
     for (int part = 0; part < 2; part++) for (int i = 6; i < HUB; i++) payload[part][i] = AY[part][ROWS + M + i - 6 + j*N];
     for (int part = 0; part < 2; part++) lanes_gemv_t(ROWS, HUB, 1, b->Y1, AY[part] + j*N, payload[part]);
     complex_gemv_t(M, HUB, -1, PARTS(c->Er, 0), PARTS(c->C, j*M), PARTS(payload, 0));
@@ -92,10 +105,10 @@ static void complex_leg(const Settings *s, int group, const LegBlock *b, Complex
       lanes force[2] = {b->Y1[p + ROWS*j], zero};
       for (int part = 0; part < 2; part++) for (long i = 0; i < M; i++) force[part] -= b->N1[p + ROWS*i] * c->C[part][i + j*M];
       lanes back[2][1] = {{-force[0]}, {-force[1]}};
-#ifdef LOOPING
-      back[0][0] = -b->Y1[p + ROWS*j]; back[1][0] = zero;
-      complex_gemv_t(M, 1, 1, PARTS(c->Er, j*M), PARTS(c->Bd, p*M), PARTS(back, 0));
-#endif
+      if (LOOPING) {
+        back[0][0] = -b->Y1[p + ROWS*j]; back[1][0] = zero;
+        complex_gemv_t(M, 1, 1, PARTS(c->Er, j*M), PARTS(c->Bd, p*M), PARTS(back, 0));
+      }
       for (int i = 0; i < LANES; i++) {
         long f = b->unknown[p][i];
         if (!f || i >= used(s, group)) continue;
@@ -113,12 +126,13 @@ static void complex_leg(const Settings *s, int group, const LegBlock *b, Complex
 }
 
 /* After `arrow_factor` of a real matrix at the same state; c->leg[].A is set. A_payload: real and imaginary part (HUB, HUB) */
-static int complex_factor(ComplexArrow *c, const Arrow *w, const Settings *s, const double (*A_payload)[HUB*HUB]) {
-  static _Thread_local double border[4*BORDER*BORDER];
+static int complex_factor(ComplexArrow *c, const Arrow *w, const Settings *s, const double *const *A_payload) {
+  SIZES(s);
+  double *border = c->sum;
   long size = w->size, wide = 2*size;
   memset(border, 0, sizeof(double)*wide*wide);
   for (int j = 0; j < HUB; j++) for (int i = 0; i < HUB; i++) add_complex(border, size, i, j, A_payload[0][i + HUB*j], A_payload[1][i + HUB*j]);
-  for (int group = 0; group < groups(s); group++) complex_leg(s, group, &w->leg[group], &c->leg[group], border, size);
+  for (int i = 0; i < groups(s); i++) complex_leg(s, i, w, c);
   for (int k = 0; k < 6; k++) {
     if (s->hub_held[k] == 0) continue;
     for (int part = 0; part < 2; part++) {
@@ -130,22 +144,31 @@ static int complex_factor(ComplexArrow *c, const Arrow *w, const Settings *s, co
   return invert(wide, border, c->border);
 }
 
-typedef struct { lanes leg[GROUPS][N]; double hub[HUB]; } Vector;       /* of all coordinates */
-typedef struct { lanes lam[GROUPS][ROWS + 1], drive[GROUPS][PORTS]; } Forces;
+typedef struct { lanes *leg[GROUPS]; double *hub; } Vector;     /* of all coordinates */
+typedef struct { lanes *lam[GROUPS], *drive[GROUPS]; } Forces;
+
+static void vector_room(Room *m, const Settings *s, long count, Vector *x) {
+  for (long k = 0; k < count; k++) { room_of_legs(m, s, s->of->n, x[k].leg); x[k].hub = room_of_numbers(m, 6 + s->of->common); }
+}
+static void forces_room(Room *m, const Settings *s, long count, Forces *f) {
+  for (long k = 0; k < count; k++) { room_of_legs(m, s, s->of->rows, f[k].lam); room_of_legs(m, s, PORTS, f[k].drive); }
+}
 
 /* As `arrow_solve`: r and g of every coordinate and closure, real and imaginary part, to changes of them */
-static void complex_solve(const ComplexArrow *c, const Arrow *w, const Settings *s, const Vector *r, lanes (*g)[GROUPS][ROWS + 1],
-                          Vector *dq, Forces *df) {
-  lanes z[GROUPS][2][N], g0[GROUPS][2][ROWS + 1];
-  double rhs[2*BORDER] = {0}, x[2*BORDER] = {0};
+INLINE void complex_solve_of(long rows, long common, const ComplexArrow *c, const Arrow *w, const Settings *s, const Vector *r,
+                             lanes *(*g)[GROUPS], Vector *dq, Forces *df) {
+  SIZES_OF(s, rows, common);
   long size = w->size;
+  lanes z[GROUPS][2][M + 1], g0[GROUPS][2][CLOSURES];
+  double rhs[2*size], x[2*size];
+  memset(rhs, 0, sizeof(double)*2*size); memset(x, 0, sizeof(double)*2*size);
   for (int part = 0; part < 2; part++) for (int i = 0; i < HUB; i++) rhs[part*size + i] = -r[part].hub[i];
   for (int group = 0; group < groups(s); group++) {
     const LegBlock *b = &w->leg[group];
     const ComplexBlock *a = &c->leg[group];
-    lanes t[2][N], part6[2][HUB] = {{{0}}};
-    memset(g0[group], 0, sizeof g0[group]); memset(z[group], 0, sizeof z[group]);
+    lanes t[2][N], part6[2][HUB];
     for (int part = 0; part < 2; part++) {
+      memset(part6[part], 0, sizeof(lanes)*HUB); memset(g0[group][part], 0, sizeof(lanes)*ROWS); memset(z[group][part], 0, sizeof(lanes)*M);
       lanes_gemv(ROWS, ROWS, -1, b->J1inv, g[part][group], g0[group][part]);
       for (long j = 0; j < N; j++) t[part][j] = r[part].leg[group][ORDER[j]];
     }
@@ -174,7 +197,7 @@ static void complex_solve(const ComplexArrow *c, const Arrow *w, const Settings 
   for (int group = 0; group < groups(s); group++) {
     const LegBlock *b = &w->leg[group];
     const ComplexBlock *a = &c->leg[group];
-    lanes change[2][N], t[2][ROWS + 1], f[2][ROWS + 1], y[2][HUB];
+    lanes change[2][N], t[2][CLOSURES], f[2][CLOSURES], y[2][HUB];
     for (int part = 0; part < 2; part++) {
       for (int i = 0; i < HUB; i++) y[part][i] = (lanes){0} + x[part*size + i];
       memcpy(change[part], g0[group][part], sizeof(lanes)*ROWS); memcpy(change[part] + ROWS, z[group][part], sizeof(lanes)*M);
@@ -196,9 +219,10 @@ static void complex_solve(const ComplexArrow *c, const Arrow *w, const Settings 
       lanes_gemv(ROWS, HUB, 1, b->Y1, y[part], change[part]);
       for (int p = 0; p < ROWS; p++) { change[part][p] *= 1.0 - b->held[p]; t[part][p] = r[part].leg[group][ORDER[p]] - f[part][p]; }
     }
-    for (long j = 0; j < N; j++) for (int i = 0; i < ROWS; i++) {
-      t[0][i] += a->A[0][i + j*N]*change[0][j] - a->A[1][i + j*N]*change[1][j];
-      t[1][i] += a->A[0][i + j*N]*change[1][j] + a->A[1][i + j*N]*change[0][j];
+    const lanes *re = a->A[0], *im = a->A[1];
+    for (long j = 0; j < N; j++, re += N, im += N) for (int i = 0; i < ROWS; i++) {
+      t[0][i] += re[i]*change[0][j] - im[i]*change[1][j];
+      t[1][i] += re[i]*change[1][j] + im[i]*change[0][j];
     }
     for (int part = 0; part < 2; part++) {
       lanes *dlam = df[part].lam[group];
@@ -218,4 +242,11 @@ static void complex_solve(const ComplexArrow *c, const Arrow *w, const Settings 
       }
     }
   }
+}
+
+static void complex_solve(const ComplexArrow *c, const Arrow *w, const Settings *s, const Vector *r, lanes *(*g)[GROUPS],
+                          Vector *dq, Forces *df) {
+#define SOLVE(rows, common) complex_solve_of(rows, common, c, w, s, r, g, dq, df)
+  BY_SIZES(s, SOLVE);
+#undef SOLVE
 }

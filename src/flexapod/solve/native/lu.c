@@ -1,6 +1,4 @@
 /* Small dense systems, column-major. */
-enum { HUB = 6 + COMMON };              /* coordinates of the payload, and those that all legs share */
-enum { LARGEST = N > HUB + LEGS*ROWS ? N : HUB + LEGS*ROWS };
 
 typedef struct { double *A; long *pivot; long n; } Lu;
 
@@ -39,7 +37,7 @@ static void lu_solve(const Lu *f, double *b) {
 /* Inverse of A (n, n), which is overwritten: the same matrix serves many right-hand sides, and a product has no
    recurrences to wait for. */
 SHARED int invert(long n, double *A, double *inverse) {
-  long pivot[2*LARGEST];                /* twice: complex systems as real ones */
+  long pivot[n];
   Lu f = {A, pivot, n};
   if (lu_factor(&f)) return SINGULAR;
   memset(inverse, 0, sizeof(double)*n*n);

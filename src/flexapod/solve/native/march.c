@@ -11,56 +11,56 @@ static void outside(const Settings *s, const Work *w, const double *wrench, lane
 
 /* Friction at the end of the step, and the bristles there */
 static void add_friction(const Settings *s, int i, Work *w, lanes *powers) {
-#ifdef FRICTION
+  SIZES(s);
+  if (!BRISTLES) return;
   LegState *leg = &w->leg[i];
   lanes force[N], rate[BRISTLES], energies[2], h = (lanes){0} + w->h;
   const lanes *in[] = {leg->q, leg->v, leg->lam, w->bristles[i], &h, w->p[i]};
   lanes *out[] = {force, w->bent[i], w->rubs[i], rate, energies};
-  leg_friction_lanes(in, out);
+  s->of->leg_friction(in, out);
   for (long j = 0; j < N; j++) w->r[i][j] += force[j];
   powers[0] += energies[0];
   w->stored += sum(s, i, energies[1]);
-#endif
 }
 
 /* How friction grows with the rates, for the iteration matrix */
-static void add_friction_matrix(int i, double c_v, Work *w) {
-#ifdef FRICTION
-  static _Thread_local lanes D[N*N];
+static void add_friction_matrix(const Settings *s, int i, double c_v, Work *w) {
+  SIZES(s);
+  if (!BRISTLES) return;
   LegState *leg = &w->leg[i];
-  lanes h = (lanes){0} + w->h;
+  lanes h = (lanes){0} + w->h, *D = w->at_rest[0];
   const lanes *in[] = {leg->q, leg->v, leg->lam, w->bristles[i], &h, w->p[i]};
   lanes *out[] = {D};
-  leg_friction_matrix_lanes(in, out);
+  s->of->leg_friction_matrix(in, out);
   for (long j = 0; j < N; j++) for (long k = 0; k < N; k++) w->arrow.leg[i].A[k + j*N] += c_v*D[ORDER[k] + N*ORDER[j]];
-#endif
 }
 
 /* What loops add to the matrices in the order of the arrow, times factors */
-static void add_loop(const Work *w, int i, double c_v, double c_q, lanes *of_D, lanes *of_K) {
-#ifdef LOOPING
-  static _Thread_local lanes D[N*N], K[N*N];
-  lanes place[1], slope[N];
+static void add_loop(const Settings *s, const Work *w, int i, double c_v, double c_q, lanes *of_D, lanes *of_K) {
+  SIZES(s);
+  if (!LOOPING) return;
+  lanes *D = w->at_rest[0], *K = w->at_rest[1], place[1], slope[N];
   const lanes *in[] = {w->leg[i].q, w->p[i]};
   lanes *out[] = {D, K, place, slope};
-  leg_loop_lanes(in, out);
+  s->of->leg_loop(in, out);
   for (long j = 0; j < N; j++) for (long k = 0; k < N; k++) {
     of_D[k + j*N] += c_v*D[ORDER[k] + N*ORDER[j]]; of_K[k + j*N] += c_q*K[ORDER[k] + N*ORDER[j]];
   }
-#endif
 }
 
 /* Residuals of a vector of legs, how far they are from closed, and the wrench that they put on the payload */
 static void residual_of_legs(const Settings *s, int i, const lanes *around, Work *w, lanes *wrench) {
+  SIZES(s);
+  const long LOOP = s->of->loop, FLOOR = s->of->floor;
   LegState *leg = &w->leg[i];
-  lanes powers[WORKS] = {{0}}, drive[SPRINGS], tip[6], point[6];
+  lanes powers[WORKS] = {{0}}, drive[SPRINGS + 1], tip[6], point[6];
   const lanes *in[] = {leg->q, leg->v, leg->v_dot, leg->lam, w->command[i], w->p[i], around};
   lanes *with_pose[] = {w->r[i], w->g[i], wrench, powers, drive}, *with_point[] = {w->r[i], tip, powers, drive};
-  leg_residual_lanes(in, POSED ? with_pose : with_point);
+  s->of->leg_residual(in, POSED ? with_pose : with_point);
   if (ROWS && !POSED) {
     const lanes *joint[] = {around, leg->lam, w->joint[i]};
     lanes *at[] = {point, wrench};
-    joint_residual_lanes(joint, at);
+    s->of->joint_residual(joint, at);
     for (int j = 0; j < ROWS; j++) w->g[i][j] = tip[j] - point[j];
   }
   for (long k = 0; k < s->ports; k++) {
@@ -73,13 +73,15 @@ static void residual_of_legs(const Settings *s, int i, const lanes *around, Work
 }
 
 /* Coordinates that all legs share, the payload's first: those of the first leg, their rates and accelerations */
-static void shared_state(const Work *w, double x[3][COMMON + 1]) {
+static void shared_state(const Settings *s, const Work *w, double *x) {
+  SIZES(s);
   const lanes *of_leg[] = {w->leg[0].q, w->leg[0].v, w->leg[0].v_dot};
-  for (int i = 0; i < 3; i++) for (int k = 0; k < COMMON; k++) x[i][k] = of_leg[i][ORDER[N - COMMON + k]][0];
+  for (int i = 0; i < 3; i++) for (int k = 0; k < COMMON; k++) x[k + i*COMMON] = of_leg[i][ORDER[N - COMMON + k]][0];
 }
 
 /* Residuals of shared coordinates from the legs to the border */
 static void fold_shared(const Settings *s, Work *w) {
+  SIZES(s);
   for (int k = 0; k < COMMON; k++) for (int i = 0; i < groups(s); i++) {
     lanes *r = &w->r[i][ORDER[N - COMMON + k]];
     w->rp[6 + k] += sum(s, i, *r);
@@ -89,6 +91,7 @@ static void fold_shared(const Settings *s, Work *w) {
 
 /* Residual of every equation at the present state; wrench in world axes at the tool. */
 static void residual(const Settings *s, const double *wrench, Work *w) {
+  SIZES(s);
   lanes around[OUTSIDE], part[6];
   double net[6] = {0};
   set_commands(s, w);
@@ -100,58 +103,59 @@ static void residual(const Settings *s, const double *wrench, Work *w) {
     if (s->hub) for (int j = 0; j < 6; j++) net[j] += sum(s, i, part[j]);
   }
   if (!s->hub) return;
-  double shared[3][COMMON + 1];
-  shared_state(w, shared);
+  double shared[3*COMMON + 1];
+  shared_state(s, w, shared);
   memset(w->rp + 6, 0, sizeof(double)*COMMON);
-  const double *in[] = {w->payload.pose, w->payload.u, w->payload.u_dot, net, wrench, s->payload_p, shared[0], shared[1], shared[2]};
+  const double *in[] = {w->payload.pose, w->payload.u, w->payload.u_dot, net, wrench, s->payload_p, shared, shared + COMMON, shared + 2*COMMON};
   double *out[] = {w->rp, w->powers + 2};
-  payload_residual_double(in, out);
+  s->of->payload_residual(in, out);
   fold_shared(s, w);
   for (int j = 0; j < 6; j++) if (s->hub_held[j] != 0) { w->reaction[j] = w->rp[j]; w->rp[j] = 0; }
 }
 
-/* Matrices of a vector of legs at rest, in the kernel's order: A of mass, damping, stiffness; H is what joints add to the
-   payload's stiffness; closures' Jacobians go to the arrow */
-static void legs_at_rest(const Settings *s, int i, const lanes *around, Work *w, lanes (*A)[N*N], lanes *H) {
-  static _Thread_local lanes J[ROWS*N + 1];
+/* Matrices of a vector of legs at rest, in the order of its functions, into scratch: mass, damping, stiffness; H is what joints
+   add to the payload's stiffness; closures' Jacobians go to the arrow */
+static void legs_at_rest(const Settings *s, int i, const lanes *around, Work *w, lanes *H) {
+  SIZES(s);
   LegBlock *b = &w->arrow.leg[i];
-  lanes X[N*6];                         /* by which the payload turns the legs' forces: left out of the iteration */
+  lanes *J = w->J, X[N*6];              /* by which the payload turns the legs' forces: left out of the iteration */
   const lanes *in[] = {w->leg[i].q, w->leg[i].lam, w->p[i], around};
-  lanes *out[] = {A[0], A[1], A[2], J, b->P, H, X};
-  leg_matrices_lanes(in, out);
+  lanes *out[] = {w->at_rest[0], w->at_rest[1], w->at_rest[2], J, b->P, H, X};
+  s->of->leg_matrices(in, out);
   if (ROWS && !POSED) {
     const lanes *joint[] = {around, w->leg[i].lam, w->joint[i]};
     lanes *at[] = {b->P, H};
-    joint_matrices_lanes(joint, at);
+    s->of->joint_matrices(joint, at);
   }
   for (long j = 0; j < N; j++) for (int k = 0; k < ROWS; k++) b->J[k + ROWS*j] = J[k + ROWS*ORDER[j]];
 }
 
 /* Their part of the matrix that is to be factored, and of the payload's */
 static void matrices_of_legs(const Settings *s, int i, const lanes *around, const double *c, Work *w, double *Ap) {
-  static _Thread_local lanes A[3][N*N];
-  lanes H[36];
-  legs_at_rest(s, i, around, w, A, H);
+  SIZES(s);
+  lanes H[36], *const *A = w->at_rest;
+  legs_at_rest(s, i, around, w, H);
   for (long j = 0; j < N; j++) for (long k = 0; k < N; k++) {
     long at = ORDER[k] + N*ORDER[j];
     w->arrow.leg[i].A[k + j*N] = c[0]*A[0][at] + c[1]*A[1][at] + c[2]*A[2][at];
   }
-  if (c[1] != 0) { add_friction_matrix(i, c[1], w); add_loop(w, i, c[1], c[2], w->arrow.leg[i].A, w->arrow.leg[i].A); }
+  if (c[1] != 0) { add_friction_matrix(s, i, c[1], w); add_loop(s, w, i, c[1], c[2], w->arrow.leg[i].A, w->arrow.leg[i].A); }
   if (s->hub) for (int j = 0; j < 36; j++) Ap[j%6 + j/6*HUB] += c[2]*sum(s, i, H[j]);
 }
 
 /* Factors of c_a M + c_v D + c_q K with the matrices at rest: the iteration matrix (T6.5), or the mass metric alone. */
 static int factor(const Settings *s, const double *wrench, double c_v, double c_a, double c_q, Work *w) {
-  enum { BODY = 6 + PLATE };
-  double mass[BODY*BODY], stiffness[BODY*BODY], Ap[HUB*HUB] = {0}, shared[3][COMMON + 1], c[3] = {c_a, c_v, c_q};
+  SIZES(s);
+  double mass[BODY*BODY], stiffness[BODY*BODY], Ap[HUB*HUB], shared[3*COMMON + 1], c[3] = {c_a, c_v, c_q};
   lanes around[OUTSIDE];
+  memset(Ap, 0, sizeof(double)*HUB*HUB);
   outside(s, w, wrench, around);
   for (int i = 0; i < groups(s); i++) matrices_of_legs(s, i, around, c, w, Ap);
   if (s->hub) {
-    shared_state(w, shared);
-    const double *in[] = {w->payload.pose, wrench, s->payload_p, shared[0]};
+    shared_state(s, w, shared);
+    const double *in[] = {w->payload.pose, wrench, s->payload_p, shared};
     double *out[] = {mass, stiffness};
-    payload_matrices_double(in, out);
+    s->of->payload_matrices(in, out);
     for (int j = 0; j < BODY; j++) for (int i = 0; i < BODY; i++) Ap[i + HUB*j] += c_a*mass[i + BODY*j] + c_q*stiffness[i + BODY*j];
   }
   return arrow_factor(&w->arrow, s, Ap);
@@ -185,6 +189,7 @@ static double blemished(lanes x) {
 
 /* Largest residual over what is tolerated (converged: at most 1), and whether every number is finite */
 static double excess(const Settings *s, Work *w, int *finite) {
+  SIZES(s);
   lanes force = {0}, r = {0}, g = {0}, faults = {0};
   double payload = 0, fault = 0;
   for (int i = 0; i < groups(s); i++) {
@@ -203,6 +208,7 @@ static double excess(const Settings *s, Work *w, int *finite) {
 
 /* First leg with an infinite residual, else the one with the largest; the number of legs for the payload */
 static long worst_leg(const Settings *s, const Work *w) {
+  SIZES(s);
   double most = 0;
   long leg = s->legs;
   for (int i = 0; i < HUB; i++) most = fmax(most, fabs(w->rp[i]));
@@ -215,24 +221,25 @@ static long worst_leg(const Settings *s, const Work *w) {
 }
 
 static void write_record(const Settings *s, State *x, const Work *w) {
+  SIZES(s);
   long k = s->legs*N, all = k + (s->hub ? 6 : 0), ports = s->ports;
   double *o = x->record, part[3], e[3] = {0, 0, 0};
   for (int i = 0; i < groups(s); i++) {
     const LegState *leg = &w->leg[i];
     const lanes *in[] = {leg->q, leg->v, w->command[i], w->p[i]};
     lanes energies[3], force[PORTS], *out[] = {energies, force};
-    leg_energies_lanes(in, out);                                           /* the springs' forces with them */
+    s->of->leg_energies(in, out);                                           /* the springs' forces with them */
     for (int j = 0; j < 3; j++) e[j] += sum(s, i, energies[j]);
     for (long j = 0; j < ports; j++) force[j] = port_force(w, i, j) + (j < SPRINGS ? force[j] : (lanes){0});
     scatter(s, i, leg->q, N, N, o); scatter(s, i, leg->v, N, N, o + k); scatter(s, i, leg->v_dot, N, N, o + k + all);
     scatter(s, i, leg->lam, ROWS, ROWS, o + k + 2*all); scatter(s, i, force, ports, ports, o + k + 2*all + ROWS*s->legs);
   }
   if (s->hub) {
-    double shared[3][COMMON + 1];
-    shared_state(w, shared);
-    const double *in[] = {w->payload.pose, w->payload.u, s->payload_p, shared[0], shared[1]};
+    double shared[3*COMMON + 1];
+    shared_state(s, w, shared);
+    const double *in[] = {w->payload.pose, w->payload.u, s->payload_p, shared, shared + COMMON};
     double *out[] = {part};
-    payload_energies_double(in, out);
+    s->of->payload_energies(in, out);
     for (int j = 0; j < 3; j++) e[j] += part[j];
     memcpy(o + 2*k, w->payload.u, 6*sizeof(double)); memcpy(o + 2*k + all, w->payload.u_dot, 6*sizeof(double));
   }
@@ -248,14 +255,18 @@ static void write_record(const Settings *s, State *x, const Work *w) {
   x->record = o;
 }
 
-static Work *work(void) {
-  static _Thread_local Work w;
-  return &w;
+/* Memory of a run with fixed steps [bytes], all zero before its first call; it begins where a cache line does */
+long march_memory(const Settings *s) {
+  Room m = {0, 0};
+  work(&m, s);
+  return m.used;
 }
 
 /* Record of the present state (used once, at the start); returns the largest closure through x->closure. */
-void record_state(const Settings *s, State *x, const double *row, const double *wrench) {
-  Work *w = work();
+void record_state(const Settings *s, State *x, const double *row, const double *wrench, char *memory) {
+  Room m = {memory, 0};
+  Work *w = work(&m, s);
+  SIZES(s);
   int finite;
   load(s, x, w);
   w->h = 0;
@@ -272,7 +283,7 @@ void record_state(const Settings *s, State *x, const double *row, const double *
 
 /* x one step on, along the straight line through it and its value before; for large legs along the cubic through the last
    four values, that of the step before last in before[gap], and so on */
-static void extrapolate(long count, double *x, double *before, long gap) {
+INLINE void extrapolate(long LARGE, long count, double *restrict x, double *restrict before, long gap) {
   for (long j = 0; j < count; j++) {
     double now = x[j], *old = before + j;
     x[j] += LARGE ? 3*now - 6*old[0] + 4*old[gap] - old[2*gap] : now - old[0];
@@ -282,9 +293,10 @@ static void extrapolate(long count, double *x, double *before, long gap) {
 }
 
 /* Predictor with extrapolated v_dot, Eqs. (T6.1)-(T6.3); `step` is the change of the coordinates */
-static void predict(const Settings *s, long count, double *v, double *v_dot, double *a, double *before, long gap, double *step) {
+INLINE void predict(const Settings *s, long LARGE, long count, double *restrict v, double *restrict v_dot,
+                    double *restrict a, double *restrict before, long gap, double *restrict step) {
   double h = s->h, am = s->alpha_m, af = s->alpha_f;
-  extrapolate(count, v_dot, before, gap);
+  extrapolate(LARGE, count, v_dot, before, gap);
   for (long j = 0; j < count; j++) {
     double a1 = ((1 - af)*v_dot[j] + af*before[j] - am*a[j])/(1 - am);
     step[j] = h*v[j] + h*h*((0.5 - s->beta)*a[j] + s->beta*a1);
@@ -294,33 +306,32 @@ static void predict(const Settings *s, long count, double *v, double *v_dot, dou
 }
 
 /* Newton update, Eq. (T6.4) */
-static void update(const Settings *s, long count, const double *dq, double *v, double *v_dot, double *a) {
+INLINE void update(const Settings *s, long count, const double *restrict dq, double *restrict v, double *restrict v_dot,
+                   double *restrict a) {
   double c_q = 1/(s->beta*s->h*s->h), c_v = s->gamma*s->h*c_q, c_a = (1 - s->alpha_m)/(1 - s->alpha_f)*c_q;
   for (long j = 0; j < count; j++) { v[j] += c_v*dq[j]; v_dot[j] += c_a*dq[j]; a[j] += c_q*dq[j]; }
 }
 
-typedef struct {                        /* of a step before, for the predictor */
-  lanes v_dot[GROUPS][N], lam[GROUPS][ROWS], drive[GROUPS][PORTS];
-  double u_dot[6];
-} Past;
-enum { GAP = sizeof(Past)/sizeof(double) };
-
-static void predict_body(const Settings *s, const double *row, Past *past, Work *w, double *pose_step) {
+static void predict_body(const Settings *s, const double *row, Work *w, double *pose_step) {
+  SIZES(s);
+  const Past *past = &w->past;
+  const long gap = w->gap;
   for (int i = 0; i < groups(s); i++) {
     LegState *leg = &w->leg[i];
     lanes step[N];
-    extrapolate(ROWS*LANES, (double *)leg->lam, (double *)past->lam[i], GAP);
-    extrapolate(s->ports*LANES, (double *)leg->drive, (double *)past->drive[i], GAP);
-    predict(s, N*LANES, (double *)leg->v, (double *)leg->v_dot, (double *)leg->a, (double *)past->v_dot[i], GAP, (double *)step);
-    for (long j = 0; j < N; j++) leg->q[j] += step[j];
+    extrapolate(LARGE, ROWS*LANES, (double *)leg->lam, (double *)past->lam[i], gap);
+    extrapolate(LARGE, s->ports*LANES, (double *)leg->drive, (double *)past->drive[i], gap);
+    predict(s, LARGE, N*LANES, (double *)leg->v, (double *)leg->v_dot, (double *)leg->a, (double *)past->v_dot[i], gap, (double *)step);
+    add(N, step, leg->q);
   }
   follow_table(s, row, w);
-  if (s->hub) predict(s, 6, w->payload.u, w->payload.u_dot, w->payload.a, past->u_dot, GAP, pose_step);
+  if (s->hub) predict(s, LARGE, 6, w->payload.u, w->payload.u_dot, w->payload.a, past->u_dot, gap, pose_step);
 }
 
 /* Solve the linear equations and correct the state */
 static void correct(const Settings *s, const double *pose0, double *pose_step, Work *w) {
-  lanes dq[GROUPS][N], dlam[GROUPS][ROWS], df[GROUPS][PORTS];
+  SIZES(s);
+  lanes *const *dq = w->dq, *const *dlam = w->dlam, *const *df = w->df;
   double dy[6];
   arrow_solve(&w->arrow, s, w->r, w->g, w->rp, dq, dlam, df, dy);
   if (s->hub) {
@@ -331,16 +342,15 @@ static void correct(const Settings *s, const double *pose0, double *pose_step, W
   for (int i = 0; i < groups(s); i++) {
     LegState *leg = &w->leg[i];
     update(s, N*LANES, (double *)dq[i], (double *)leg->v, (double *)leg->v_dot, (double *)leg->a);
-    for (long j = 0; j < N; j++) leg->q[j] += dq[i][j];
-    for (int j = 0; j < ROWS; j++) leg->lam[j] += dlam[i][j];
-    for (long j = 0; j < s->ports; j++) leg->drive[j] += df[i][j];
+    add(N, dq[i], leg->q); add(ROWS, dlam[i], leg->lam); add(s->ports, df[i], leg->drive);
   }
 }
 
-/* Newton's iteration of one step; `age` counts the steps since the matrix was made, and of large legs, whose matrix serves
+/* Newton's iteration of one step; the age counts the steps since the matrix was made, and of large legs, whose matrix serves
    longer, each iteration above two as four. After the residuals are tolerable one
    more correction is made: index 3 magnifies what is left. */
-static int iterate(const Settings *s, State *x, const double *wrench, double *pose_step, long *age, Work *w) {
+static int iterate(const Settings *s, State *x, const double *wrench, double *pose_step, Work *w) {
+  SIZES(s);
   double c_v = s->gamma/(s->beta*s->h), c_a = (1 - s->alpha_m)/((1 - s->alpha_f)*s->beta*s->h*s->h);
   double before = INFINITY, pose0[7];
   memcpy(pose0, w->payload.pose, sizeof pose0);
@@ -352,45 +362,46 @@ static int iterate(const Settings *s, State *x, const double *wrench, double *po
     int done = worst <= 1;
     if (!finite) return NOT_FINITE;
     if (!done && iteration >= s->max_iterations) return worst < 100 ? OK : NOT_CONVERGED; /* OK: rounding floor reached */
-    if (*age >= s->max_age || (iteration > 1 && worst > 0.1*before)) {
+    if (w->age >= s->max_age || (iteration > 1 && worst > 0.1*before)) {
       x->factorisations++;
       if (factor(s, wrench, c_v, c_a, 1, w)) return SINGULAR;
-      *age = 0;
+      w->age = 0;
     }
     before = worst;
     x->iterations++;
-    if (LARGE && iteration > 1) *age += 4;
+    if (LARGE && iteration > 1) w->age += 4;
     correct(s, pose0, pose_step, w);
     if (done) return OK;
   }
 }
 
-/* Advance `steps` steps; tables have steps + 1 rows (row 0 is the present time). `resumed`: the call before, in this
-   thread, ended there: all goes on from what it left, as if it were one. */
-int march(const Settings *s, State *x, const double *table, const double *wrench, long steps, long resumed) {
-  static _Thread_local Past past[1 + 2*LARGE];
-  static _Thread_local long age;
-  Work *w = work();
+/* Advance `steps` steps; tables have steps + 1 rows (row 0 is the present time). `resumed`: the call before with
+   this memory ended there: all goes on from what it left, as if it were one. */
+int march(const Settings *s, State *x, const double *table, const double *wrench, long steps, long resumed, char *memory) {
+  Room m = {memory, 0};
+  Work *w = work(&m, s);
+  const Past *past = &w->past;
+  SIZES(s);
   long width = s->legs*s->ports*COLUMNS;
   double pose_step[6];
   if (!resumed) {
-    age = s->max_age;
+    w->age = s->max_age;
     load(s, x, w);
     w->h = s->h;
     for (int i = 0; i < groups(s); i++) {
-      memcpy(past->v_dot[i], w->leg[i].v_dot, sizeof past->v_dot[i]);
-      memcpy(past->lam[i], w->leg[i].lam, sizeof past->lam[i]);
-      memcpy(past->drive[i], w->leg[i].drive, sizeof past->drive[i]);
+      memcpy(past->v_dot[i], w->leg[i].v_dot, sizeof(lanes)*N);
+      memcpy(past->lam[i], w->leg[i].lam, sizeof(lanes)*ROWS);
+      memcpy(past->drive[i], w->leg[i].drive, sizeof(lanes)*PORTS);
     }
     memcpy(past->u_dot, w->payload.u_dot, sizeof w->payload.u_dot);
-    for (int k = 1; k <= 2*LARGE; k++) past[k] = past[0];
+    for (int k = 1; k < PAST && LARGE; k++) memcpy(past->u_dot + k*w->gap, past->u_dot, sizeof(double)*w->gap);
   }
   for (long t = 1; t <= steps; t++) {
-    predict_body(s, table + t*width, past, w, pose_step);
-    int fault = iterate(s, x, wrench + load_size(s)*t, pose_step, &age, w);
+    predict_body(s, table + t*width, w, pose_step);
+    int fault = iterate(s, x, wrench + load_size(s)*t, pose_step, w);
     if (fault) { x->steps += t; x->bad_leg = worst_leg(s, w); return fault; }
-    age++;
-    memcpy(w->bristles, w->bent, sizeof w->bent);
+    w->age++;
+    memcpy(w->bristles[0], w->bent[0], sizeof(lanes)*groups(s)*2*BRISTLES);
     for (int j = 0; j < WORKS; j++) { x->sums[j] += 0.5*s->h*(x->powers[j] + w->powers[j]); x->powers[j] = w->powers[j]; }
     if (t % s->output_every == 0) { set_commands(s, w); write_record(s, x, w); }
   }
@@ -401,21 +412,24 @@ int march(const Settings *s, State *x, const double *table, const double *wrench
 
 /* Add `share` times the part of the velocities that is normal to the closures in the mass metric, Eq. (T6.14):
    M n + J^T pi = 0, J n - P n_p = J v - P u, held coordinates apart. */
-int scale_normal_velocity(const Settings *s, State *x, const double *wrench, double share) {
-  Work *w = work();
-  lanes dq[GROUPS][N], dlam[GROUPS][ROWS], df[GROUPS][PORTS], v[N];
-  double still[HUB] = {0}, dy[6];
+int scale_normal_velocity(const Settings *s, State *x, const double *wrench, double share, char *memory) {
+  Room m = {memory, 0};
+  Work *w = work(&m, s);
+  SIZES(s);
+  lanes v[N];
+  double still[HUB], dy[6];
+  memset(still, 0, sizeof(double)*HUB);
   load(s, x, w);
   if (factor(s, wrench, 0, 1, 0, w)) return SINGULAR;
   for (int i = 0; i < groups(s); i++) {
     const LegBlock *b = &w->arrow.leg[i];
-    memset(w->r[i], 0, sizeof w->r[i]); memset(w->g[i], 0, sizeof w->g[i]);
+    memset(w->r[i], 0, sizeof(lanes)*N); memset(w->g[i], 0, sizeof(lanes)*ROWS);
     for (long j = 0; j < N; j++) v[j] = w->leg[i].v[ORDER[j]];
     lanes_gemv(ROWS, N, -1, b->J, v, w->g[i]);
     for (int j = 0; j < 6; j++) for (int a = 0; a < ROWS; a++) w->g[i][a] += b->P[a + ROWS*j] * w->payload.u[j];
   }
-  arrow_solve(&w->arrow, s, w->r, w->g, still, dq, dlam, df, dy);
-  for (int i = 0; i < groups(s); i++) for (long j = 0; j < N; j++) w->leg[i].v[j] += share * dq[i][j];
+  arrow_solve(&w->arrow, s, w->r, w->g, still, w->dq, w->dlam, w->df, dy);
+  for (int i = 0; i < groups(s); i++) for (long j = 0; j < N; j++) w->leg[i].v[j] += share * w->dq[i][j];
   for (int j = 0; j < 6; j++) w->payload.u[j] += share * dy[j];
   store(s, w, x);
   return OK;

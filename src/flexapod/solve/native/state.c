@@ -1,33 +1,74 @@
 /* State of the body while it moves: legs in vectors, payload in numbers. */
-enum { SPRINGS = COMMAND/2 };           /* drives with a spring in the kernel: the first ports */
-
-typedef struct { lanes q[N], v[N], v_dot[N], a[N], lam[ROWS], drive[PORTS]; } LegState;
+typedef struct { lanes *q, *v, *v_dot, *a, *lam, *drive; } LegState;
 typedef struct { double pose[7], u[6], u_dot[6], a[6]; } PayloadState;
+
+typedef struct {                        /* of a step before, for the predictor */
+  lanes *v_dot[GROUPS], *lam[GROUPS], *drive[GROUPS];
+  double *u_dot;
+} Past;
+enum { PAST = 3 };                      /* steps that the predictor remembers of large legs; of others one */
 
 typedef struct {
   LegState leg[GROUPS]; PayloadState payload;
-  lanes p[GROUPS][LEG_P], joint[GROUPS][JOINT], table[GROUPS][PORTS*COLUMNS], hold[GROUPS][PORTS];
-  lanes command[GROUPS][COMMAND], r[GROUPS][N], g[GROUPS][ROWS];
-  lanes bristles[GROUPS][2*BRISTLES], bent[GROUPS][2*BRISTLES], rubs[GROUPS][BRISTLES];  /* at the step's begin, its end; forces */
+  lanes *p[GROUPS], *joint[GROUPS], *table[GROUPS], *hold[GROUPS], *command[GROUPS], *r[GROUPS], *g[GROUPS];
+  lanes *bristles[GROUPS], *bent[GROUPS], *rubs[GROUPS];        /* at the step's begin, its end; forces */
   double h, stored;                     /* length of the step, energy of the bristles */
-  double rp[HUB], reaction[6], powers[WORKS], closure;
+  double *rp, reaction[6], powers[WORKS], closure;
+  long age;                             /* steps since the matrix was made */
   Arrow arrow;
+  Past past; long gap;                  /* numbers from what a step left to what the one before it left */
+  lanes *at_rest[3], *J;                /* scratch: matrices (N, N), closures' (ROWS, N) */
+  lanes *dq[GROUPS], *dlam[GROUPS], *df[GROUPS];
 } Work;
 
+static double *past_room(Room *m, const Settings *s, Past *past) {
+  SIZES(s);
+  past->u_dot = room_of_numbers(m, 8);
+  room_of_legs(m, s, N, past->v_dot); room_of_legs(m, s, ROWS, past->lam); room_of_legs(m, s, PORTS, past->drive);
+  return past->u_dot;
+}
+
+/* The work space at the begin of the caller's memory; all of it zero before the first call */
+static Work *work(Room *m, const Settings *s) {
+  SIZES(s);
+  Work none, *w = (Work *)room(m, sizeof(Work));
+  if (!w) w = &none;                    /* it is counted only */
+  for (int i = 0; i < groups(s); i++) {
+    LegState *leg = &w->leg[i];
+    lanes **each[] = {&leg->q, &leg->v, &leg->v_dot, &leg->a};
+    for (int k = 0; k < 4; k++) *each[k] = room_of_lanes(m, N);
+    leg->lam = room_of_lanes(m, ROWS); leg->drive = room_of_lanes(m, PORTS);
+  }
+  room_of_legs(m, s, s->of->leg_p, w->p); room_of_legs(m, s, s->of->joint, w->joint);
+  room_of_legs(m, s, PORTS*COLUMNS, w->table); room_of_legs(m, s, PORTS, w->hold);
+  room_of_legs(m, s, s->of->command, w->command); room_of_legs(m, s, N, w->r); room_of_legs(m, s, ROWS, w->g);
+  room_of_legs(m, s, 2*BRISTLES, w->bristles); room_of_legs(m, s, 2*BRISTLES, w->bent); room_of_legs(m, s, BRISTLES, w->rubs);
+  w->rp = room_of_numbers(m, HUB);
+  arrow_room(m, s, &w->arrow);
+  for (int k = 0; k < 3; k++) w->at_rest[k] = room_of_lanes(m, N*N);
+  w->J = room_of_lanes(m, ROWS*N);
+  room_of_legs(m, s, N, w->dq); room_of_legs(m, s, ROWS, w->dlam); room_of_legs(m, s, PORTS, w->df);
+  Past older;
+  double *now = past_room(m, s, &w->past);
+  for (int k = 1; k < (LARGE ? PAST : 1); k++) { double *before = past_room(m, s, &older); if (k == 1) w->gap = before - now; }
+  return w == &none ? 0 : w;
+}
+
 static void load(const Settings *s, const State *x, Work *w) {
+  SIZES(s);
   long k = s->legs*N;
   for (int i = 0; i < groups(s); i++) {
     LegState *leg = &w->leg[i];
     gather(s, i, x->q, N, N, leg->q); gather(s, i, x->v, N, N, leg->v);
     gather(s, i, x->v_dot, N, N, leg->v_dot); gather(s, i, x->a, N, N, leg->a);
     gather(s, i, x->lam, ROWS, ROWS, leg->lam); gather(s, i, x->drive, s->ports, s->ports, leg->drive);
-    gather(s, i, s->leg_p, LEG_P, LEG_P, w->p[i]);
+    gather(s, i, s->leg_p, s->of->leg_p, s->of->leg_p, w->p[i]);
     gather(s, i, x->bristles, 2*BRISTLES, 2*BRISTLES, w->bristles[i]);
     gather(s, i, s->held, s->ports, s->ports, w->hold[i]);
-    if (s->hub) gather(s, i, s->joint_p, JOINT, JOINT, w->joint[i]);
+    if (s->hub) gather(s, i, s->joint_p, s->of->joint, s->of->joint, w->joint[i]);
   }
   arrow_hold(&w->arrow, s);
-  memset(w->rp, 0, sizeof w->rp); memset(w->reaction, 0, sizeof w->reaction);
+  memset(w->rp, 0, sizeof(double)*HUB); memset(w->reaction, 0, sizeof w->reaction);
   if (!s->hub) return;
   memcpy(w->payload.pose, x->pose, sizeof w->payload.pose);
   memcpy(w->payload.u, x->v + k, 6*sizeof(double));
@@ -36,6 +77,7 @@ static void load(const Settings *s, const State *x, Work *w) {
 }
 
 static void store(const Settings *s, const Work *w, State *x) {
+  SIZES(s);
   long k = s->legs*N;
   for (int i = 0; i < groups(s); i++) {
     const LegState *leg = &w->leg[i];
@@ -68,6 +110,7 @@ static void follow_table(const Settings *s, const double *row, Work *w) {
 }
 
 static void set_commands(const Settings *s, Work *w) {
+  SIZES(s);                             /* drives with a spring in the equations have the first ports */
   for (int i = 0; i < groups(s); i++)
     for (int k = 0; k < SPRINGS; k++) for (int j = 0; j < 2; j++) w->command[i][2*k + j] = w->table[i][k*COLUMNS + j];
 }

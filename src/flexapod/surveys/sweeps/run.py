@@ -22,6 +22,7 @@ from flexapod.results.arguments import read
 from flexapod.results.record import Report
 from flexapod.review.room import check_memory, check_room
 from flexapod.solve.actuator_march import prepare_actuator
+from flexapod.solve.native import loops
 from flexapod.solve.robot_system import robot_system
 from flexapod.surveys.sweeps.batch import BatchResult, PointResult
 from flexapod.surveys.sweeps.executors import check_place, executor, local_cores
@@ -232,7 +233,8 @@ class _Job:
         for point in islice(self.resolved.settings.values(), KERNELS):
             study = self.points.study(point)
             if isinstance(study, Study):
-                robot_system(study.robot, study.simulation, 0.0, within=study.simulation.tolerance is not None)
+                if robot_system(study.robot, study.simulation, 0.0).kernel.library is not None:
+                    loops()
             else:
                 prepare_actuator(study)
 
