@@ -51,7 +51,7 @@ def _counted(run: RobotMarch) -> np.ndarray:
     library = run.system.kernel.library
     if library is None:
         raise RuntimeError("the kernel is interpreted")
-    return reader(library) + reader(loops())
+    return reader(library) + reader(loops(run.system.kernel))
 
 
 def _count(numbers: np.ndarray) -> Count:

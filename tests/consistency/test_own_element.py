@@ -208,20 +208,25 @@ def test_two_classes_cannot_have_one_table():
         type("Other", (fx.Element,), {"at": "maxwell", "__module__": __name__})
 
 
-def test_its_kernel_is_made_anew_when_its_source_changes(tmp_path, monkeypatch):
+def test_its_kernel_is_made_anew_when_its_equations_change_and_not_for_a_comment(tmp_path, monkeypatch):
     source = Path(sys.modules[Maxwell.__module__].__file__).read_text().replace('"maxwell"', '"changing"')
     monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setenv("FLEXAPOD_CACHE", str(tmp_path / "cache"))
     file = tmp_path / "changing_element.py"
     table = TABLE.replace("maxwell", "changing")
-    forces = []
-    for factor in ("0.5", "1.0"):
-        file.write_text(source.replace("strain=0.5", f"strain={factor}"))
+    forces, libraries = [], []
+    for factor, comment in (("0.5", ""), ("0.5", "# more words"), ("1.0", "")):
+        file.write_text(f"{source}{comment}\n".replace("strain=0.5", f"strain={factor}"))
         importlib.invalidate_caches()
         module = importlib.import_module("changing_element")
         importlib.reload(module)
         assert module.Maxwell.at == "changing"
         forces.append(fx.simulate(study(table), fidelity="lumped", duration=0.05).drive_force.values)
-    assert np.abs(forces[1] - forces[0]).max() > 1e-3
+        libraries.append({path.name for path in (tmp_path / "cache").glob("*.so")})
+    np.testing.assert_array_equal(forces[1], forces[0])
+    assert libraries[1] == libraries[0]
+    assert np.abs(forces[2] - forces[0]).max() > 1e-3
+    assert len(libraries[2] - libraries[1]) == 1
 
 
 def test_an_entry_point_makes_it_known(tmp_path, monkeypatch):

@@ -37,7 +37,7 @@ class Kernel:
     ``leg_closing``, ``joint_closing``: for steps within a tolerance. ``leg_friction``,
     ``leg_friction_matrix``, ``leg_sliding``: of legs with friction. ``leg_loop``: of those with loops not symmetric.
     ``library``: functions as compiled, ``equations`` what time loops know of them; None where no C compiler was found
-    and casadi interprets them.
+    and casadi interprets them. ``compiler``: command of the one that made it, which time loops need as well.
     """
 
     shapes: Shapes
@@ -51,6 +51,7 @@ class Kernel:
     payload_energies: Function
     library: ctypes.CDLL | None
     equations: "Equations | None" = None
+    compiler: tuple[str, ...] = ()
     leg_closing: Function | None = None
     joint_closing: Function | None = None
     leg_friction: Function | None = None
@@ -59,14 +60,16 @@ class Kernel:
     leg_loop: Function | None = None
 
 
-NAMES = tuple(field.name for field in fields(Kernel) if field.name not in ("shapes", "library", "equations"))
+NAMES = tuple(
+    field.name for field in fields(Kernel) if field.name not in ("shapes", "library", "equations", "compiler")
+)
 
 
 @lru_cache(maxsize=32)  # solid pistons and tip bodies of many sizes have shapes of their own
 def kernel(shapes: Shapes) -> Kernel:
     """Kernel of legs with the given shapes and joints, see `shapes`."""
     if command := compiler():
-        return loaded_kernel(shapes, *compiled_library(_fingerprint(shapes), lambda: _functions(shapes), command))
+        return loaded_kernel(shapes, command, _fingerprint(shapes), lambda: _functions(shapes))
     _warn_interpreted()
     return interpreted_kernel(shapes)
 
@@ -99,9 +102,15 @@ class Equations(ctypes.Structure):
 
 
 def loaded_kernel(
-    shapes: Shapes, library: ctypes.CDLL, signatures: dict[str, dict], leg_p: int = 0, joint: int = 3
+    shapes: Shapes,
+    command: list[str],
+    key: Sequence[object],
+    functions: "Callable[[], list[NamedFunction]]",
+    leg_p: int = 0,
+    joint: int = 3,
 ) -> Kernel:
-    """Kernel of compiled functions; ``leg_p``, ``joint``: numbers that a leg's and its joint's read."""
+    """Kernel of functions as `compiled_library` makes them; ``leg_p``, ``joint``: how many numbers legs and joints read."""
+    library, signatures = compiled_library(key, functions, command)
     n, pivots, leg_p = shapes.size, shapes.pivots, leg_p or sum(size for _, size in leg_parameters(shapes))
     order = [*pivots, *(i for i in range(n) if i not in (*pivots, *shapes.shared)), *shapes.shared]  # as in system.h
     values = {"n": n, "rows": shapes.rows, "leg_p": leg_p, "joint": joint, "command": shapes.commands}
@@ -115,8 +124,8 @@ def loaded_kernel(
         **{name: (ctypes.c_long * n)(*x) for name, x in lists.items()},
         **{name: ctypes.cast(getattr(library, f"{name}_{kind}"), ctypes.c_void_p) for name, kind in kinds.items()},
     )
-    functions = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES if name in signatures}
-    return Kernel(shapes=shapes, library=library, equations=equations, **functions)
+    compiled = {name: CompiledFunction(library, name, signatures[name]) for name in NAMES if name in signatures}
+    return Kernel(shapes=shapes, library=library, equations=equations, compiler=tuple(command), **compiled)
 
 
 def generated_text(shapes: Shapes) -> dict[str, str]:

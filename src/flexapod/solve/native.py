@@ -11,10 +11,10 @@ import numpy as np
 from flexapod.arrays import Array
 from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
-from flexapod.solve.kernel import Equations
+from flexapod.solve.kernel import Equations, Kernel
 from flexapod.solve.recording import Counters, record_width
 from flexapod.solve.system import Flow, System
-from flexapod.symbolic.compiler import compiler, written_library
+from flexapod.symbolic.compiler import written_library
 
 NATIVE = Path(__file__).parent / "native"
 SOURCES = tuple(
@@ -92,10 +92,14 @@ def settings(system: System, method: GeneralizedAlpha, h: float, every: int) -> 
     )  # fmt: skip
 
 
+def loops(kernel: Kernel) -> ctypes.CDLL:
+    """The compiled time loops, the same for all kernels that one compiler makes."""
+    return _loops(kernel.compiler)
+
+
 @cache
-def loops() -> ctypes.CDLL:
-    """The compiled time loops, the same for all robots."""
-    library = written_library(SOURCES, compiler() or [])
+def _loops(command: tuple[str, ...]) -> ctypes.CDLL:
+    library = written_library(SOURCES, list(command))
     library.march_memory.restype = library.radau_memory.restype = c_long
     library.record_state.restype = None
     return library
@@ -108,8 +112,8 @@ def memory(size: int) -> Array:
     return found[first : first + size // 8]
 
 
-def _of_march(call: Call) -> Array:
-    return memory(loops().march_memory(byref(call.settings)))
+def _of_march(system: System, call: Call) -> Array:
+    return memory(loops(system.kernel).march_memory(byref(call.settings)))
 
 
 def advance(
@@ -131,8 +135,8 @@ def advance(
     new, rows = flow.copy(), np.empty((steps // every, record_width(system)))
     call = Call(system, new, rows, method, h, every)
     state, left = call.state, before.memory if before else None
-    kept, given = _of_march(call) if left is None else left, [address(x) for x in (table, wrench)]
-    status = loops().march(
+    kept, given = _of_march(system, call) if left is None else left, [address(x) for x in (table, wrench)]
+    status = loops(system.kernel).march(
         byref(call.settings), byref(state), *given, c_long(steps), c_long(left is not None), address(kept)
     )
     counters.steps += state.steps
@@ -147,8 +151,10 @@ def first_record(system: System, flow: Flow, table: Array, wrench: Array) -> tup
     new, rows = flow.copy(), np.zeros((1, record_width(system)))
     call = Call(system, new, rows, GeneralizedAlpha(1.0), 1.0, 1)
     table, wrench = (np.ascontiguousarray(x) for x in (table, wrench))
-    kept = _of_march(call)
-    loops().record_state(byref(call.settings), byref(call.state), address(table), address(wrench), address(kept))
+    kept = _of_march(system, call)
+    loops(system.kernel).record_state(
+        byref(call.settings), byref(call.state), address(table), address(wrench), address(kept)
+    )
     return new, rows
 
 
@@ -162,7 +168,7 @@ def scaled_defect(system: System, flow: Flow, ratio: float) -> Flow:
     """
     new = flow.copy()
     call, none = Call(system, new, np.zeros(1), GeneralizedAlpha(1.0), 1.0, 1), np.zeros(system.load_size)
-    scale, kept = loops().scale_normal_velocity, _of_march(call)
+    scale, kept = loops(system.kernel).scale_normal_velocity, _of_march(system, call)
     if scale(byref(call.settings), byref(call.state), address(none), c_double(ratio - 1), address(kept)):
         raise ComputationError(
             "the step cannot be changed here: the mass matrix is singular on the joints",

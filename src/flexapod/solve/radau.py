@@ -63,7 +63,7 @@ class Within:
     def __init__(self, system: System, series: Series, horizon: float, tolerance: float) -> None:
         self.system, self.series, self.horizon, self.tolerance = system, series, horizon, tolerance
         self._along = _along(system)
-        self._memory = memory(loops().radau_memory(byref(settings(system, GeneralizedAlpha(1.0), 1.0, 1))))
+        self._memory = memory(loops(system.kernel).radau_memory(byref(settings(system, GeneralizedAlpha(1.0), 1.0, 1))))
         self._memory[STEP] = FIRST
 
     @property
@@ -117,7 +117,9 @@ class Within:
             address(edges), address(series), address(stops), *self._along,
         )  # fmt: skip
         before = self._memory[REJECTED]
-        status = loops().radau(byref(call.settings), byref(call.state), byref(control), address(self._memory))
+        status = loops(self.system.kernel).radau(
+            byref(call.settings), byref(call.state), byref(control), address(self._memory)
+        )
         counters.steps += call.state.steps
         counters.iterations += call.state.iterations
         counters.factorisations += call.state.factorisations

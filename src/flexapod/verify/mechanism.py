@@ -28,7 +28,7 @@ from flexapod.solve.stops import Stops
 from flexapod.solve.system import COLUMNS, State, System
 from flexapod.solve.tables import Law
 from flexapod.symbolic import lagrange, vocabulary
-from flexapod.symbolic.compiler import compiled_library, compiler
+from flexapod.symbolic.compiler import compiler
 from flexapod.symbolic.functions import NamedFunction
 from flexapod.symbolic.lagrange import Lagrangian, inverse_dynamics, mass_matrix
 from flexapod.symbolic.vocabulary import (
@@ -178,12 +178,14 @@ def _kernel(mechanism: Mechanism, shapes: Shapes, general: int) -> Kernel:
     texts = [
         Path(str(file)).read_bytes() for file in (__file__, mechanism.file, lagrange.__file__, vocabulary.__file__)
     ]
-    made = compiled_library(
+    return loaded_kernel(
+        shapes,
+        command,
         [*texts, shapes.size, general],
         lambda: [*_branch_functions(mechanism, shapes, general), *_hub_functions(mechanism)],
-        command,
+        general + mechanism.parameters.shape[1],
+        joint=len(mechanism.parameters),
     )
-    return loaded_kernel(shapes, *made, general + mechanism.parameters.shape[1], joint=len(mechanism.parameters))
 
 
 def _branch_functions(mechanism: Mechanism, shapes: Shapes, general: int) -> list[NamedFunction]:

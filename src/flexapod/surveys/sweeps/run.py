@@ -233,8 +233,9 @@ class _Job:
         for point in islice(self.resolved.settings.values(), KERNELS):
             study = self.points.study(point)
             if isinstance(study, Study):
-                if robot_system(study.robot, study.simulation, 0.0).kernel.library is not None:
-                    loops()
+                kernel = robot_system(study.robot, study.simulation, 0.0).kernel
+                if kernel.library is not None:
+                    loops(kernel)
             else:
                 prepare_actuator(study)
 

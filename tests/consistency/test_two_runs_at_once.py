@@ -1,0 +1,81 @@
+"""Runs that take turns, some steps each, give the bits of runs one after the other: their state is their own."""
+
+from threading import Thread
+
+import numpy as np
+import pytest
+
+from flexapod import kinematics
+from flexapod.integration import GeneralizedAlpha
+from flexapod.model import override, preset
+from flexapod.solve import native
+from flexapod.solve.recording import Counters
+from flexapod.solve.robot_march import prepare
+from flexapod.solve.tables import robot_law
+from flexapod.symbolic.compiler import compiler
+
+pytestmark = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
+
+STEP, STEPS, TURN = 5e-4, 60, 4  # a matrix serves up to 16 steps: most turns begin with one of a turn before
+
+
+class Run:
+    """A robot's steps in turns, each from where the one before ended."""
+
+    def __init__(self, **settings) -> None:
+        study = override(preset("machine-hexapod"), step=STEP, **settings)
+        march = prepare(study)
+        self.system, self.flow, self.before, self.rows = march.system, march.start, None, []
+        law = robot_law(self.system, study.robot, study.load, lambda t: kinematics.poses(study.robot, study.motion, t))
+        self.tables = law(np.arange(STEPS + 1) * STEP)
+
+    def advance(self, first: int, last: int) -> None:
+        part = tuple(x[first : last + 1] for x in self.tables)
+        method, flow = GeneralizedAlpha(0.9), self.before.flow if self.before else self.flow
+        self.before = native.advance(self.system, method, flow, STEP, part, 1, Counters(), before=self.before)
+        assert self.before.status == 0
+        self.rows.append(self.before.rows)
+
+    def all(self) -> np.ndarray:
+        return np.concatenate(self.rows)
+
+
+def settings():
+    """Runs with more and fewer coordinates, and two that share a kernel."""
+    return {"fidelity": "lumped"}, {"fidelity": "assumed-modes"}, {"fidelity": "lumped"}
+
+
+@pytest.fixture(scope="module")
+def alone():
+    found = []
+    for given in settings():
+        run = Run(**given)
+        run.advance(0, STEPS)
+        found.append(run.all())
+    return found
+
+
+def test_turn_by_turn(alone):
+    runs = [Run(**given) for given in settings()]
+    for first in range(0, STEPS, TURN):
+        for run in runs:
+            run.advance(first, first + TURN)
+    for run, rows in zip(runs, alone, strict=True):
+        np.testing.assert_array_equal(run.all(), rows)
+
+
+def test_begun_in_one_thread_and_ended_in_another(alone):
+    run = Run(**settings()[0])
+    run.advance(0, TURN)
+    thread = Thread(target=run.advance, args=(TURN, STEPS))
+    thread.start()
+    thread.join()
+    np.testing.assert_array_equal(run.all(), alone[0])
+
+
+def test_memory_is_zero_and_begins_where_vectors_may():
+    system = Run().system
+    settings = native.settings(system, GeneralizedAlpha(0.9), STEP, 1)
+    found = native.memory(native.loops(system.kernel).march_memory(native.byref(settings)))
+    assert not found.any()
+    assert found.ctypes.data % native.LINE == 0
