@@ -109,7 +109,7 @@ def loaded_kernel(
     leg_p: int = 0,
     joint: int = 3,
 ) -> Kernel:
-    """Kernel of functions that `compiled_library` makes; ``leg_p``, ``joint``: how many numbers legs and joints read."""
+    """Kernel of functions that `compiled_library` makes; ``leg_p``, ``joint``: how many numbers legs, joints read."""
     library, signatures = compiled_library(key, functions, command)
     n, pivots, leg_p = shapes.size, shapes.pivots, leg_p or sum(size for _, size in leg_parameters(shapes))
     order = [*pivots, *(i for i in range(n) if i not in (*pivots, *shapes.shared)), *shapes.shared]  # as in system.h
