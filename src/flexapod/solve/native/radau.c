@@ -111,23 +111,27 @@ static void spin(const double *theta, const double *rate, double *omega) {
   for (int i = 0; i < 3; i++) omega[i] = rate[i] - a*c[i] + b*d[i];
 }
 
-INLINE void blend(long count, const double *c, const lanes *x0, const lanes *x1, const lanes *x2, lanes *y) {
+INLINE void blend(long count, const double *c, const lanes *x0, const lanes *x1, const lanes *x2, const lanes *shift,
+                  lanes *restrict y) {
   double c0 = c[0], c1 = c[1], c2 = c[2];
-  for (long j = 0; j < count; j++) y[j] = c0*x0[j] + c1*x1[j] + c2*x2[j];
+  if (shift) for (long j = 0; j < count; j++) y[j] = (c0*x0[j] + c1*x1[j] + c2*x2[j]) + shift[j];
+  else for (long j = 0; j < count; j++) y[j] = c0*x0[j] + c1*x1[j] + c2*x2[j];
 }
 
 /* y = sum over stages of c x */
 static void combine(const Settings *s, const double *c, const Vector *x, double scale, const Vector *shift, Vector *y) {
   SIZES(s);
   double k[STAGES] = {scale*c[0], scale*c[1], scale*c[2]};
-  for (int i = 0; i < groups(s); i++) {
-    blend(N, k, x[0].leg[i], x[1].leg[i], x[2].leg[i], y->leg[i]);
-    if (shift) add(N, shift->leg[i], y->leg[i]);
-  }
-  for (int j = 0; j < HUB; j++) {
-    double t = k[0]*x[0].hub[j] + k[1]*x[1].hub[j] + k[2]*x[2].hub[j];
+  for (int i = 0; i < groups(s); i++) blend(N, k, x[0].leg[i], x[1].leg[i], x[2].leg[i], shift ? shift->leg[i] : 0, y->leg[i]);
+  const double *x0 = x[0].hub, *x1 = x[1].hub, *x2 = x[2].hub;
+  double hub[6];                        /* a loop of known size, and what all legs share */
+  for (int j = 0; j < 6; j++) hub[j] = k[0]*x0[j] + k[1]*x1[j] + k[2]*x2[j];
+  if (shift) for (int j = 0; j < 6; j++) hub[j] += shift->hub[j];
+  for (long j = 6; j < HUB; j++) {
+    double t = k[0]*x0[j] + k[1]*x1[j] + k[2]*x2[j];
     y->hub[j] = shift ? t + shift->hub[j] : t;
   }
+  memcpy(y->hub, hub, sizeof hub);
 }
 
 /* The same of forces; c has a fourth entry for what is at the start, if there is one */
