@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from flexapod import kinematics
+from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.model import override, preset
 from flexapod.solve import native
@@ -79,3 +80,11 @@ def test_memory_is_zero_and_begins_where_vectors_may():
     found = native.memory(native.loops(system.kernel).march_memory(native.byref(settings)))
     assert not found.any()
     assert found.ctypes.data % native.LINE == 0
+
+
+def test_loops_for_other_vectors_are_refused(monkeypatch):
+    run = Run()
+    made = iter((2, 4))
+    monkeypatch.setattr(native, "lanes", lambda _: next(made))
+    with pytest.raises(ComputationError, match="not compiled for the same processor"):
+        run.advance(0, 1)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from functools import cache, lru_cache
 from math import prod
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -87,7 +87,8 @@ def interpreted_kernel(shapes: Shapes) -> Kernel:
     """Kernel evaluated by casadi, without a C compiler."""
     from flexapod.symbolic.functions import Interpreted
 
-    return Kernel(shapes=shapes, library=None, **{f.name: Interpreted(f) for f in _functions(shapes)})
+    functions: dict[str, Any] = {f.name: Interpreted(f) for f in _functions(shapes)}
+    return Kernel(shapes=shapes, library=None, **functions)
 
 
 class Equations(ctypes.Structure):

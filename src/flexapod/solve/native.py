@@ -14,7 +14,7 @@ from flexapod.integration import GeneralizedAlpha
 from flexapod.solve.kernel import Equations, Kernel
 from flexapod.solve.recording import Counters, record_width
 from flexapod.solve.system import Flow, System
-from flexapod.symbolic.compiler import written_library
+from flexapod.symbolic.compiler import lanes, written_library
 
 NATIVE = Path(__file__).parent / "native"
 SOURCES = tuple(
@@ -93,8 +93,20 @@ def settings(system: System, method: GeneralizedAlpha, h: float, every: int) -> 
 
 
 def loops(kernel: Kernel) -> ctypes.CDLL:
-    """The compiled time loops, the same for all kernels that one compiler makes."""
-    return _loops(kernel.compiler)
+    """The compiled time loops, the same for all kernels that one compiler makes.
+
+    Raises
+    ------
+    ComputationError
+        They were made for other vectors than the kernel.
+    """
+    library = _loops(kernel.compiler)
+    if kernel.library is not None and lanes(kernel.library) != lanes(library):
+        raise ComputationError(
+            "equations and time loops were not compiled for the same processor",
+            next_step="`flexapod cache --clear`, then once more: both are compiled anew.",
+        )
+    return library
 
 
 @cache

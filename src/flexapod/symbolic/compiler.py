@@ -36,7 +36,7 @@ from flexapod.symbolic.cache import (
 #: C text that every generated function needs before it.
 PRELUDE = Path(__file__).parent / "lanes.h"
 
-__all__ = ["CompiledFunction", "compiled_library", "compiler", "written_library"]
+__all__ = ["CompiledFunction", "compiled_library", "compiler", "lanes", "written_library"]
 
 #: Without contraction of products and sums numbers do not depend on the processor.
 COMMON = ("-fPIC", "-std=gnu11", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off")
@@ -54,6 +54,8 @@ SILENT = 2.0  # seconds after which it is told that there is a compiler at work
 _log = logging.getLogger("flexapod")
 #: Function of every library that returns sizes of inputs and shapes of outputs, as JSON.
 SIGNATURES = "flexapod_signatures"
+#: That of how many bodies stand side by side in its vectors.
+LANES = "flexapod_lanes"
 
 
 def compiler() -> list[str] | None:
@@ -171,6 +173,11 @@ def written_library(sources: Sequence[Path], command: list[str]) -> ctypes.CDLL:
         return _library(name, [unit], LOOPS, command, cache, folder)[0]
 
 
+def lanes(library: ctypes.CDLL) -> int:
+    """Bodies side by side in the vectors of a library: libraries that call each other have as many."""
+    return int(getattr(library, LANES)())
+
+
 def _generated(functions: list, callers: str) -> list[str]:
     """C text of functions in units that take a compiler about as long: as many as it pays to compile side by side."""
     from flexapod.symbolic.c_source import c_source
@@ -185,7 +192,8 @@ def _generated(functions: list, callers: str) -> list[str]:
 
 
 def _signatures(known: dict[str, dict[str, object]]) -> str:
-    return f"const char* {SIGNATURES}(void) {{ return {json.dumps(json.dumps(known))}; }}"
+    words = json.dumps(json.dumps(known))
+    return f"const char* {SIGNATURES}(void) {{ return {words}; }}\nlong {LANES}(void) {{ return LANES; }}"
 
 
 def _library(
@@ -285,6 +293,7 @@ def _build(units: list[str], flags: Sequence[str], command: list[str], folder: P
     line = [os.path.abspath(program), *command[1:], *COMMON]
     names = [f"unit{k}" for k in range(len(units))]
     target = [] if any(word.startswith(("-march=", "-mcpu=")) for word in command) else [NATIVE]
+    fault = ""
     try:
         for name, unit in zip(names, units, strict=True):
             (folder / f"{name}.c").write_text(unit)
