@@ -119,6 +119,7 @@ def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str
     from flexapod.report.figures import Drawn, drawing
     from flexapod.report.page import write_report
 
+    data.load()  # what nobody has asked for yet each copy of this process would make for itself
     figures: list[Drawn] = []
     with drawing(data, folder, formats, PROCESSES) if formats else nullcontext(list[Drawn]) as drawn:
         report("writing results", 0.90)

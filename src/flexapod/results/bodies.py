@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -14,6 +16,7 @@ from flexapod.model import Robot
 from flexapod.results.inside import bushing_words
 from flexapod.results.legs import base_points
 from flexapod.solve.frames import as_drawn, in_world
+from flexapod.study.asked import Made
 from flexapod.ties import EQUALS, first_least
 from flexapod.words import text
 
@@ -36,6 +39,7 @@ __all__ = [
     "turns",
 ]
 
+Pairs = list[tuple[int, int]]
 CYLINDER = 1.6  # radius of a cylinder over that of its piston, where it is not known
 
 
@@ -55,13 +59,16 @@ def clearance(robot: Robot, tips: Array, axes: Array, length: Array) -> kinemati
 
     None where there are no `pairs_of_legs`.
     """
-    pairs, mouth = pairs_of_legs(robot), np.array([leg.cylinder.mouth for leg in robot.legs])
-    if not pairs:
-        return None
+    pairs = pairs_of_legs(robot)
+    return _nearest(robot, pairs, tips, axes, length) if pairs else None
+
+
+def _nearest(robot: Robot, pairs: Pairs, tips: Array, axes: Array, length: Array) -> kinematics.Nearest:
+    mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
     return kinematics.nearest_legs(tips - length[..., None] * axes, tips, mouth, _radii(robot), np.array(pairs))
 
 
-def pairs_of_legs(robot: Robot) -> list[tuple[int, int]]:
+def pairs_of_legs(robot: Robot) -> Pairs:
     """Pairs of legs that do not meet at a joint, numbers from 0; none in a plane, where legs lie in layers.
 
     Legs meet where the centres of their joints are nearer to each other than the radius of the thinner one.
@@ -84,15 +91,32 @@ def _radii(robot: Robot) -> Array:
     return np.stack([cylinders, pistons], axis=1)
 
 
-def body_results(robot: Robot, payload: tuple[Array, Array], axes: Array, length: Array) -> dict[str, Array]:
-    """Turns of joints and least distance of legs over time; `payload`: its centre (T, 3) and attitude (T, 3, 3)."""
-    place, R = payload
-    tips = place[:, None] + (robot.platform_joints - robot.com) @ R.swapaxes(1, 2)
-    found, largest = {"joint_turn": turns(robot, axes, R)}, largest_turns(robot)
+def body_results(
+    robot: Robot, drawn: Callable[[], tuple[Array, Array, Array]], length: Callable[[], Array]
+) -> dict[str, Made]:
+    """Turns of joints and least distance of legs over time, when they are asked for.
+
+    ``drawn``: the payload's centre (T, 3) and attitude (T, 3, 3), the legs' axes (T, n, 3); ``length``: theirs (T, n).
+    """
+    drawn, largest, pairs = cache(drawn), largest_turns(robot), pairs_of_legs(robot)
+
+    @cache
+    def turned() -> Array:
+        _, R, axes = drawn()
+        return turns(robot, axes, R)
+
+    @cache
+    def nearest() -> kinematics.Nearest:
+        place, R, axes = drawn()
+        tips = place[:, None] + (robot.platform_joints - robot.com) @ R.swapaxes(1, 2)
+        return _nearest(robot, pairs, tips, axes, length())
+
+    found: dict[str, Made] = {"joint_turn": turned}
     if np.isfinite(largest).any():
-        found["joint_margin"] = largest - found["joint_turn"]
-    nearest = clearance(robot, tips, axes, length)
-    return found if nearest is None else found | {"leg_clearance": nearest.gap, "nearest_legs": nearest.legs + 1}
+        found["joint_margin"] = lambda: largest - turned()
+    if pairs:
+        found |= {"leg_clearance": lambda: nearest().gap, "nearest_legs": lambda: nearest().legs + 1}
+    return found
 
 
 def bodies_words(data: Dataset) -> list[str]:

@@ -13,9 +13,20 @@ from flexapod.solve.system import System
 from flexapod.ties import first_largest
 from flexapod.words import text
 
-__all__ = ["PARTS", "bushing_words", "guide_results", "is_guided", "off_axis", "part_names_inside", "tip_moves"]
+__all__ = [
+    "GUIDED",
+    "PARTS",
+    "bushing_words",
+    "guide_results",
+    "is_guided",
+    "off_axis",
+    "part_names_inside",
+    "tip_moves",
+]
 
 PARTS = ("cylinder", "guide")
+GUIDED = ("guide_force", "guide_overlap")
+"""Variables of guided legs."""
 
 
 def part_names_inside(robot: Robot) -> tuple[str, ...]:
@@ -130,10 +141,8 @@ def guide_results(robot: Robot, system: System, q: Array) -> dict[str, Array]:
     if inner.count:
         end = end + _pair(system, q, "h") @ inner.tip
     stiffness = system.leg_p[:, columns(leg_parameters(shapes), "guide_stiffness")]
-    return {
-        "guide_force": -stiffness[..., None] * np.stack([lean[..., 0], end], axis=-2),
-        "guide_overlap": np.where(guided, overlap, np.nan),
-    }
+    force = -stiffness[..., None] * np.stack([lean[..., 0], end], axis=-2)
+    return dict(zip(GUIDED, (force, np.where(guided, overlap, np.nan)), strict=True))
 
 
 def bushing_words(force: Array, time: Array | None = None) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +20,7 @@ from flexapod.results import legs as by_name
 from flexapod.results.bodies import axes_as_drawn, body_results, largest_turns, pairs_of_legs
 from flexapod.results.causes import cause_names
 from flexapod.results.elongations import elongations, in_gap
-from flexapod.results.inside import guide_results, is_guided, tip_moves
+from flexapod.results.inside import GUIDED, guide_results, is_guided, tip_moves
 from flexapod.results.names import DRIVES, Variable
 from flexapod.results.of_elements import element_results
 from flexapod.results.path import RigidPath
@@ -30,45 +31,61 @@ from flexapod.solve.friction import sliding
 from flexapod.solve.lost_motion import places_with_friction
 from flexapod.solve.released import RobotForces, released, rigid_system
 from flexapod.solve.system import System
+from flexapod.study.asked import Made
 
 STROKES = ("leg_length_command", "leg_length", "leg_stroke", "actuator_force")
 """Variables of robots whose legs have strokes."""
 _BASE_ANGLES = ("alpha", "beta", "spin")
 
 
-def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -> dict[str, Array]:
+def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -> dict[str, Made]:
     """Lengths, angles, deflections and forces of the legs."""
     shapes, q, found = system.kernel.shapes, record.q, robot_limbs(robot)
-    bent, forces = by_name.lateral(shapes, q), _port_forces(system, record)
+    forces, length = cache(lambda: _port_forces(system, record)), cache(lambda: flexible_lengths(robot, system, record))
     zero, turns = _zero(found), by_name.per_turn(robot)
-    results = {
-        "leg_angle": np.stack([q[..., shapes.index(name)] for name in by_name.angle_names(found).values()], axis=-1),
-        "drive_position": _drive_positions(robot, system, record) / turns + zero,
-        "drive_command": _commands(found, path) / turns + zero,
-        "drive_force": _motor_forces(robot, system, forces) * turns,
-        "tip_deflection": bent @ by_name.bending_basis(shapes).tip
-        + sum(place for place, _ in tip_moves(robot, system, q).values()),
+    results: dict[str, Made] = {
+        "leg_angle": lambda: np.stack([q[..., shapes.index(x)] for x in by_name.angle_names(found).values()], axis=-1),
+        "drive_position": lambda: _drive_positions(robot, system, record) / turns + zero,
+        "drive_command": lambda: _commands(found, path) / turns + zero,
+        "drive_force": lambda: _motor_forces(robot, system, forces()) * turns,
+        "tip_deflection": lambda: _tip_deflections(robot, system, q),
         "joint_force": record.lam[..., :3],
     }
-    length = flexible_lengths(robot, system, record)
-    payload = as_drawn(system, robot, q, record.pose)
-    results |= body_results(robot, payload, axes_as_drawn(robot, system, record), length)
+    results |= body_results(robot, lambda: _as_drawn(robot, system, record), length)
     if by_name.has_strokes(robot):
-        force = by_name.stroke_forces(found, drive_forces(robot, system, record))
-        results |= zip(STROKES, (path.legs.length, length, q[..., shapes.l_index], force), strict=True)
-    results |= guide_results(robot, system, q)
+        made = (
+            lambda: path.legs.length,
+            length,
+            q[..., shapes.l_index],
+            lambda: by_name.stroke_forces(found, drive_forces(robot, system, record)),
+        )
+        results |= zip(STROKES, made, strict=True)
+    if shapes.guide is not None:
+        inside = cache(lambda: guide_results(robot, system, q))
+        results |= {name: lambda name=name: inside()[name] for name in GUIDED}
     if held := by_name.held_names(found):
-        results["held_force"] = _held_forces(found, system, forces, held)
+        results["held_force"] = lambda: _held_forces(found, system, forces(), held)
     if _bears_moments(found):
-        results["joint_moment"] = _joint_moments(robot, found, system, record, forces)
+        results["joint_moment"] = lambda: _joint_moments(robot, found, system, record, forces())
     if shapes.bristles:
         results["friction"] = record.friction * _by_angle(robot, system)
-    if bent.shape[-1]:
-        results["lateral_amplitude"] = bent
+    if by_name.bending_basis(shapes).count:
+        results["lateral_amplitude"] = lambda: by_name.lateral(shapes, q)
     results |= element_results(robot, system, q)
     if shapes.beam.axial.count:
         results["axial_amplitude"] = q[..., shapes.index("c") :][..., : shapes.beam.axial.count]
     return results
+
+
+def _as_drawn(robot: Robot, system: System, record: Record) -> tuple[Array, Array, Array]:
+    """Centre of mass (T, 3) and attitude (T, 3, 3) of the payload, axes of the legs (T, legs, 3)."""
+    return *as_drawn(system, robot, record.q, record.pose), axes_as_drawn(robot, system, record)
+
+
+def _tip_deflections(robot: Robot, system: System, q: Array) -> Array:
+    shapes, moves = system.kernel.shapes, tip_moves(robot, system, q)
+    bent = by_name.lateral(shapes, q) @ by_name.bending_basis(shapes).tip
+    return bent + sum(place for place, _ in moves.values())
 
 
 def rigid_leg_results(path: RigidPath) -> dict[str, Array]:

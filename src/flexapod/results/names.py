@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike
 
 from flexapod.results.cause_words import CAUSES
 from flexapod.runtime.loading import loaded
+from flexapod.study.asked import Asked
 
 if TYPE_CHECKING:
-    from xarray import Coordinates, Dataset
-    from xarray import Variable as Labelled
+    from xarray import Dataset
 
 
 class Variable(NamedTuple):
@@ -312,6 +312,8 @@ ONE_POSE_FORMS = {
 }
 
 
+_WHOLE = {"nearest_legs"}  # variables of whole numbers
+
 #: Of a single pose: play.
 AT_A_POSE = {name: form._replace(dims=form.dims[1:]) for name, form in _PLAY.items() if form.dims[0] == "time"}
 
@@ -333,7 +335,7 @@ def dataset(
     Parameters
     ----------
     values : mapping
-        Arrays by name.
+        Arrays by name; of `Asked` what nobody has asked for yet is made when it is read.
     coords : mapping, optional
         Labels of `time`, `mode`, `station` where these dimensions occur.
     attrs : mapping, optional
@@ -344,43 +346,30 @@ def dataset(
     loaded("xarray")
     import xarray as xr
 
+    from flexapod.study.labelled import awaited, coordinates, variable
+
     table = {**VARIABLES, **(forms or {})}
+    known = {dim: len(given) for dim, (given, _) in COORDINATES.items()} | {"pair": 2}
+    known |= {dim: np.size(given) for dim, given in (coords or {}).items()}
     data, sizes = {}, {}
-    for name, array in values.items():
+    for name in values:
         dims, units, long_name = table[name]
-        data[name] = _variable(dims, array, {"units": units, "long_name": long_name})
+        array = values.there(name) if isinstance(values, Asked) else values[name]
+        described = {"units": units, "long_name": long_name}
+        if array is None:
+            own = {dim: known[dim] for dim in dims}
+            data[name] = awaited(values, name, own, int if name in _WHOLE else float, described)
+        else:
+            data[name] = variable(dims, array, described)
         sizes |= data[name].sizes
     labels = {dim: (given, {"long_name": words}) for dim, (given, words) in fixed_labels(sizes).items()}
     labels |= {dim: (given, _COORDINATE_ATTRS.get(dim, {})) for dim, given in (coords or {}).items()}
-    return xr.Dataset(data, coords=_coordinates(labels), attrs=dict(attrs or {}))
-
-
-def _variable(dims: tuple[str, ...], given: ArrayLike, attrs: dict[str, str]) -> Labelled:
-    """Variable of plain numbers or texts; xarray's own conversion would first import dask, a quarter of a second."""
-    import xarray as xr
-
-    array = np.asarray(given)
-    return xr.Variable(dims, array, attrs, fastpath=array.dtype.kind in "biufU")
-
-
-def _coordinates(labels: Mapping[str, tuple[object, dict[str, str]]]) -> Coordinates:
-    """Indexed coordinates from labels and attributes; made from arrays, xarray would first import pint and others."""
-    import pandas as pd
-    import xarray as xr
-    from xarray.indexes import PandasIndex
-
-    variables, indexes = {}, {}
-    for dim, (given, attrs) in labels.items():
-        array = np.asarray(given)
-        index = PandasIndex(pd.Index(array), dim, coord_dtype=array.dtype)
-        variables[dim] = index.create_variables()[dim]
-        variables[dim].attrs = dict(attrs)
-        indexes[dim] = index
-    return xr.Coordinates(variables, indexes)
+    return xr.Dataset(data, coords=coordinates(labels), attrs=dict(attrs or {}))
 
 
 _COORDINATE_ATTRS = {
     "time": {"units": "s", "long_name": "time"},
+    "leg": {"long_name": "leg"},
     "mode": {"long_name": "mode"},
     "shape": {"long_name": "lateral shape"},
     "axial_shape": {"long_name": "axial shape"},

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -17,9 +19,10 @@ from flexapod.results.path import RigidPath
 from flexapod.results.record import Record
 from flexapod.solve.frames import base_on_mount, floor, shared_by_legs
 from flexapod.solve.system import System
+from flexapod.study.asked import Made
 
 
-def robot_results(study: Study, system: System, record: Record, path: RigidPath) -> dict[str, Array]:
+def robot_results(study: Study, system: System, record: Record, path: RigidPath) -> dict[str, Made]:
     """All variables of a robot's simulation but the rigid forces, by name; `path` at the recorded instants."""
     robot = study.robot
     return {
@@ -35,7 +38,7 @@ def robot_results(study: Study, system: System, record: Record, path: RigidPath)
 def robot_coords(robot: Robot, system: System, record: Record) -> dict[str, ArrayLike]:
     """Labels of the dimensions whose size depends on the study."""
     shapes = system.kernel.shapes
-    labels: dict[str, ArrayLike] = {"time": record.time, **leg_labels(robot)}
+    labels: dict[str, ArrayLike] = {"time": record.time, "leg": np.arange(1, robot.count + 1), **leg_labels(robot)}
     if count := bending_basis(shapes).count:
         labels["shape"] = np.arange(1, count + 1)
     if shapes.bristles:
@@ -45,45 +48,51 @@ def robot_coords(robot: Robot, system: System, record: Record) -> dict[str, Arra
     return labels
 
 
-def payload_results(robot: Robot, path: RigidPath, record: Record) -> dict[str, Array]:
+def payload_results(robot: Robot, path: RigidPath, record: Record) -> dict[str, Made]:
     """Payload and tool against the rigid path."""
     com = record.pose[:, :3]
-    e, e_rigid = canonical(record.pose[:, 3:]), quaternion(path.rotation)
-    R = matrix(e)
-    com_rigid, tool_rigid = path.place(robot.com), path.place(robot.tool)
-    tool = com + R @ (robot.tool - robot.com)
+    e = cache(lambda: canonical(record.pose[:, 3:]))
+    e_rigid = cache(lambda: quaternion(path.rotation))
+    R = cache(lambda: matrix(e()))
+    com_rigid = cache(lambda: path.place(robot.com))
+    tool, tool_rigid = cache(lambda: com + R() @ (robot.tool - robot.com)), cache(lambda: path.place(robot.tool))
     return {
         "com_position_rigid": com_rigid,
         "com_position": com,
-        "com_deviation": com - com_rigid,
+        "com_deviation": lambda: com - com_rigid(),
         "tool_position_rigid": tool_rigid,
         "tool_position": tool,
-        "tool_deviation": tool - tool_rigid,
-        "rotation_deviation": difference(e, e_rigid),
+        "tool_deviation": lambda: tool() - tool_rigid(),
+        "rotation_deviation": lambda: difference(e(), e_rigid()),
         "platform_quaternion": e,
         "platform_quaternion_rigid": e_rigid,
-        "platform_angular_velocity": np.einsum("tij,tj->ti", R, record.turn),
+        "platform_angular_velocity": lambda: np.einsum("tij,tj->ti", R(), record.turn),
     }
 
 
-def cause_results(robot: Robot, system: System, path: RigidPath, record: Record) -> dict[str, Array]:
+def cause_results(robot: Robot, system: System, path: RigidPath, record: Record) -> dict[str, Made]:
     """Deviation of the centre of mass by cause."""
-    shares = deviation_by_cause(robot, path, errors_of(robot, system, path, record))
-    deviation = record.pose[:, :3] - path.place(robot.com)
-    if path.base is not None:
-        shares = np.einsum("txy,tcly->tclx", path.base.rotation, shares)
-    return {
-        "deviation_by_cause": shares,
-        "deviation_residual": deviation - shares.reshape(len(shares), -1, 3).sum(axis=1),
-    }
+
+    @cache
+    def shares() -> Array:
+        found = deviation_by_cause(robot, path, errors_of(robot, system, path, record))
+        return found if path.base is None else np.einsum("txy,tcly->tclx", path.base.rotation, found)
+
+    def residual() -> Array:
+        deviation = record.pose[:, :3] - path.place(robot.com)
+        return deviation - shares().reshape(len(deviation), -1, 3).sum(axis=1)
+
+    return {"deviation_by_cause": shares, "deviation_residual": residual}
 
 
-def rigid_force_results(path: RigidPath) -> dict[str, Array]:
+def rigid_force_results(path: RigidPath) -> dict[str, Made]:
     """Drive and joint forces of the rigid robot."""
-    drive_force = path.forces.drive_force * per_turn(path.robot)
-    found = {"drive_force_rigid": drive_force, "joint_force_rigid": path.forces.joint_force}
+    found: dict[str, Made] = {
+        "drive_force_rigid": lambda: path.forces.drive_force * per_turn(path.robot),
+        "joint_force_rigid": lambda: path.forces.joint_force,
+    }
     if has_strokes(path.robot):
-        found["actuator_force_rigid"] = stroke_forces(robot_limbs(path.robot), path.forces.drive_force)
+        found["actuator_force_rigid"] = lambda: stroke_forces(robot_limbs(path.robot), path.forces.drive_force)
     return found
 
 
@@ -104,9 +113,9 @@ def energy_results(record: Record, moved: bool = False) -> dict[str, Array]:
     }
 
 
-def frame_results(robot: Robot, system: System, path: RigidPath, record: Record) -> dict[str, Array]:
+def frame_results(robot: Robot, system: System, path: RigidPath, record: Record) -> dict[str, Made]:
     """Where base and plates on mounts are, forces on the floor, and the deviation as seen from the base plate."""
-    found: dict[str, Array] = {}
+    found: dict[str, Made] = {}
     for name, what in (("g", "base_motion"), ("f", "base_mount"), ("m", "platform_mount")):
         if system.kernel.shapes.has(name):
             moved = shared_by_legs(system, record.q, name)
@@ -117,21 +126,27 @@ def frame_results(robot: Robot, system: System, path: RigidPath, record: Record)
         moment = np.linalg.solve(axes.swapaxes(1, 2), held[:, 3:, None])[..., 0]
         found |= {"base_motion_force": held[:, :3], "base_motion_moment": moment}
     if system.kernel.shapes.has("f"):
-        floor_frame, plate = floor(system, robot, record.q), base_on_mount(system, robot, record.q)
-        tool = record.pose[:, :3] + matrix(record.pose[:, 3:]) @ (robot.tool - robot.com)
-        seen = plate.seen(*floor_frame.seen(tool, matrix(record.pose[:, 3:])))
-        found["tool_deviation_base"] = seen[0] - path.poses.place(robot.tool)
-        e, e_rigid = quaternion(seen[1]), quaternion(path.poses.rotation)
-        found["rotation_deviation_base"] = difference(e, e_rigid)
+        seen = cache(lambda: _from_the_base(robot, system, record))
+        found |= {
+            "tool_deviation_base": lambda: seen()[0] - path.poses.place(robot.tool),
+            "rotation_deviation_base": lambda: difference(quaternion(seen()[1]), quaternion(path.poses.rotation)),
+        }
     return found
 
 
-def command_results(study: Study, t: Array) -> dict[str, Array]:
+def _from_the_base(robot: Robot, system: System, record: Record) -> tuple[Array, Array]:
+    """Tool (T, 3) and attitude of the payload (T, 3, 3) as seen from the base plate."""
+    R = matrix(record.pose[:, 3:])
+    tool = record.pose[:, :3] + R @ (robot.tool - robot.com)
+    return base_on_mount(system, robot, record.q).seen(*floor(system, robot, record.q).seen(tool, R))
+
+
+def command_results(study: Study, t: Array) -> dict[str, Made]:
     """Commanded surge, sway, heave and roll, pitch, yaw with rates and accelerations at instants (T,)."""
-    law = coordinates(study.motion, t)
-    endings = {"": law.position, "_rate": law.rate, "_acceleration": law.acceleration}
+    law = cache(lambda: coordinates(study.motion, t))
+    endings = {"": "position", "_rate": "rate", "_acceleration": "acceleration"}
     return {
-        f"{kind}_command{ending}": part[:, columns]
+        f"{kind}_command{ending}": lambda part=part, columns=columns: getattr(law(), part)[:, columns]
         for kind, columns in (("translation", slice(0, 3)), ("rotation", slice(3, 6)))
         for ending, part in endings.items()
     }

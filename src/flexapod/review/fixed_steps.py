@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from flexapod import kinematics
@@ -21,11 +23,11 @@ EXCITED = 1e-3  # of the largest deviation: smaller vibrations are not looked at
 PER_PERIOD, MOST = 12, 4000  # instants of the motion, of a period of the highest mode that is asked; of all
 
 
-def step_warnings(study: Study, step: float, deviation: Array) -> list[str]:
+def step_warnings(study: Study, step: float, deviation: Callable[[], Array]) -> list[str]:
     """A remark where a mode that the motion leaves vibrating has too few of the fixed steps a period.
 
     How a mode vibrates is estimated as for `flexapod check`: it answers by itself to the inertia of the rigid path.
-    What starts, loads and floors excite is not asked for. ``deviation``, (T, 3): of the tool [m].
+    What starts, loads and floors excite is not asked for. ``deviation``: of the tool, (T, 3) [m].
     """
     end = study.motion.end_time - study.motion.hold
     ends = 0 < end <= study.duration * (1 + 1e-9)  # else nothing is left of the motion, or it is not over
@@ -41,7 +43,7 @@ def step_warnings(study: Study, step: float, deviation: Array) -> list[str]:
         return []
     frequency, amplitude, needed = _vibrations(study, modes, end)
     followed = frequency * step * needed < 1 + 1e-9
-    excited = amplitude > EXCITED * np.abs(deviation).max()
+    excited = amplitude > EXCITED * np.abs(deviation()).max()
     if not (excited & ~followed).any():
         return []
     worst = int(np.where(followed, 0, amplitude).argmax())

@@ -20,6 +20,7 @@ from flexapod.results.path import RigidPath, open_force_words
 from flexapod.results.robot import rigid_force_results
 from flexapod.review.checks import check_geometry
 from flexapod.runtime.threads import one_thread
+from flexapod.study.asked import Asked
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -140,7 +141,8 @@ def inverse_dynamics(
     """
     path, remarks = _path(_study(robot, motion, load, duration, output_step))
     refuse_tables(path.robot.legs, "the rigid robot")
-    values = _legs_and_payload(path) | rigid_force_results(path) | rigid_reactions(path.robot, path.forces)
+    forces = {**Asked(rigid_force_results(path)), **rigid_reactions(path.robot, path.forces)}
+    values = _legs_and_payload(path) | forces
     return _named(path, values, [*remarks, *open_force_words(path.forces)])
 
 

@@ -24,6 +24,7 @@ from flexapod.review.unstable_loops import loop_remarks
 from flexapod.runtime.threads import one_thread
 from flexapod.solve.robot_march import RobotMarch, prepare
 from flexapod.study.actuator import simulate_actuator
+from flexapod.study.asked import Asked
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -39,20 +40,23 @@ class Simulated:
     record: Record
     remarks: list[str]
 
-    def values(self) -> dict[str, Array]:
-        """The variables of the Dataset as plain arrays; single groups of them are functions of `results`."""
+    def values(self) -> Asked:
+        """The variables of the Dataset as plain arrays, each made when it is asked for."""
         path = self.path.at(self.record.time)
-        return robot_results(self.study, self.march.system, self.record, path) | rigid_force_results(path)
+        return Asked(robot_results(self.study, self.march.system, self.record, path) | rigid_force_results(path))
 
     def force_error(self) -> float | None:
         """Estimated error of the legs' forces over their peak, where steps follow a tolerance."""
         return force_error(self.study.robot, self.march.system, self.record)
 
+    def _tool_deviation(self) -> Array:
+        """Of the tool, (T, 3) [m]."""
+        return Asked(payload_results(self.study.robot, self.path.at(self.record.time), self.record))["tool_deviation"]
+
     def warnings(self) -> list[str]:
         """Remarks on the study, its path and its results."""
         found = force_warnings(self.study, self.force_error())
-        deviation = payload_results(self.study.robot, self.path.at(self.record.time), self.record)["tool_deviation"]
-        found += step_warnings(self.study, self.record.smallest_step, deviation)
+        found += step_warnings(self.study, self.record.smallest_step, self._tool_deviation)
         found += robot_warnings(self.study.robot, self.march.system, self.record)
         found += drive_warnings(self.study.robot, self.march.system, self.record)
         return [*self.study.warnings, *self.remarks, *found]

@@ -15,12 +15,13 @@ from flexapod.errors import ComputationError, FlexapodError
 from flexapod.model import ActuatorStudy, Study
 from flexapod.results.leg_results import damped_angles
 from flexapod.results.path import RigidPath
-from flexapod.results.record import Record, collect
+from flexapod.results.record import collect
 from flexapod.results.robot import rigid_force_results, robot_results
 from flexapod.review.checks import check_path
 from flexapod.review.plausibility import robot_warnings
 from flexapod.solve.robot_march import prepare
 from flexapod.study.actuator import simulate_actuator
+from flexapod.study.asked import Asked
 from flexapod.surveys.sweeps.kept import ACTUATOR_SCALARS, Kept
 from flexapod.surveys.sweeps.scalars import ROBOT_SCALARS, RobotRun
 from flexapod.version import this_version
@@ -111,18 +112,10 @@ def _robot(kept: Kept, study: Study) -> PointResult:
     run = RobotRun(study, march.system, record, march.counters, path.at(record.time))
     values: dict[str, Array] = {name: np.asarray(ROBOT_SCALARS[name].value(run)) for name in kept.scalars}
     if kept.records:
-        whole = _whole(kept, study, run, record)
+        whole = Asked(robot_results(study, run.system, record, run.path) | rigid_force_results(run.path))
         values |= {name: whole[name][:: kept.every] for name in kept.records}
     remarks += robot_warnings(study.robot, march.system, record)
     return PointResult(values=values, remarks="\n".join(dict.fromkeys(remarks)))
-
-
-def _whole(kept: Kept, study: Study, run: RobotRun, record: Record) -> dict[str, Array]:
-    """All variables over time; rigid forces only where they are kept."""
-    values = robot_results(study, run.system, record, run.path)
-    if {"actuator_force_rigid", "drive_force_rigid", "joint_force_rigid"} & set(kept.records):
-        values |= rigid_force_results(run.path)
-    return values
 
 
 def _actuator(kept: Kept, study: ActuatorStudy) -> PointResult:

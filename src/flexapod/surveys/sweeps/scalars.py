@@ -20,11 +20,12 @@ from flexapod.results.leg_results import drive_forces
 from flexapod.results.legs import bending, bending_basis, lateral
 from flexapod.results.path import RigidPath
 from flexapod.results.record import Record
-from flexapod.results.robot import robot_results
+from flexapod.results.robot import cause_results
 from flexapod.review.plausibility import leg_stress
 from flexapod.solve.at_poses import robot_modes
 from flexapod.solve.recording import Counters
 from flexapod.solve.system import System
+from flexapod.study.asked import Asked
 from flexapod.ties import first_largest
 
 
@@ -121,8 +122,8 @@ class RobotRun:
             return np.zeros(len(cause_names(self.study.robot)))
         one = _instant(self.record, at)
         path = RigidPath(self.study, one.time)
-        shares = robot_results(self.study, self.system, one, path)["deviation_by_cause"][0]
-        return shares.sum(axis=1) @ deviation[at] / size
+        shares = Asked(cause_results(self.study.robot, self.system, path, one))["deviation_by_cause"]
+        return shares[0].sum(axis=1) @ deviation[at] / size
 
     @property
     def first_frequency(self) -> float:
