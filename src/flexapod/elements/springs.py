@@ -29,6 +29,8 @@ __all__ = [
 ]
 
 Place = Literal["base", "nut", "platform"]
+KEPT = 64  # legs whose springs are remembered: a simulation asks for them a hundred times
+_known: dict[int, tuple[Leg, tuple[Spring, ...]]] = {}
 T = TypeVar("T", float, Array)
 
 
@@ -74,6 +76,15 @@ class Spring:
 
 def springs_along(leg: Leg) -> list[Spring]:
     """All springs along a leg but its piston, in the order in which causes name them: joints, screw, named ones."""
+    known = _known.get(id(leg))
+    if known is None or known[0] is not leg:
+        if len(_known) >= KEPT:
+            _known.clear()
+        known = _known[id(leg)] = leg, tuple(_springs(leg))
+    return list(known[1])
+
+
+def _springs(leg: Leg) -> list[Spring]:
     joints: tuple[tuple[str, Place, Joint], ...] = (
         ("base_joint", "base", leg.base_joint),
         ("platform_joint", "platform", leg.platform_joint),

@@ -241,18 +241,20 @@ def refuse_far(limbs: Limbs, law: Law, pivot: Array, t: Array) -> None:
 def first_looks(limbs: Limbs, law: Law, pivot: Array) -> Iterator[NDArray[np.intp]]:
     """Indices of few instants of a path that leads far, at which to see whether legs follow, ever farther from home.
 
-    None of paths near home, nor of legs UPS, which are known in closed form.
+    None of paths near home.
     """
     size, way = _ways_of(limbs, law, pivot)
     radius = NEAR * size
-    while not limbs.plain and radius < way.max(initial=0.0):
+    while radius < way.max(initial=0.0):
         yield np.unique(np.linspace(0, np.argmax(way > radius), LOOKS).astype(np.intp))
         radius *= 2
 
 
 def _ways_of(limbs: Limbs, law: Law, pivot: Array) -> tuple[float, Array]:
     """The size of a robot [m], and how far away from home a path leads (T,) [m]."""
-    place = places(Poses.at_rest(limbs.position, limbs.rotation), law, pivot)[0]
+    place = limbs.position + law.position[:, :3]
+    if pivot.any():
+        place = places(Poses.at_rest(limbs.position, limbs.rotation), law, pivot)[0]
     return max(float(limbs.home[:, L].mean()), limbs.L_c), np.linalg.norm(place - limbs.position, axis=1)
 
 

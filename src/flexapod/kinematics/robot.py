@@ -146,12 +146,17 @@ def poses(robot: Robot, motion: Motion, t: ArrayLike) -> Poses:
 def first_looks(robot: Robot, motion: Motion, t: Array) -> Iterator[NDArray[np.intp]]:
     """Indices of few instants `t` (T,) at which to see first whether legs follow; see `mechanism.first_looks`.
 
+    None for legs UPS, which are known in closed form.
+
     Raises
     ------
     InputError
         The motion leads beyond all robots.
     """
-    legs, law = rigid_limbs(robot), trajectory.coordinates(motion, t)
+    legs = rigid_limbs(robot)
+    if legs.plain:
+        return iter(())
+    law = trajectory.coordinates(motion, t)
     mechanism.refuse_far(legs, law, motion.pivot, t)
     return mechanism.first_looks(legs, law, motion.pivot)
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.arrays import Array
-from flexapod.kinematics.robot import rigid_limbs
+from flexapod.kinematics.robot import once, rigid_limbs
 from flexapod.model import Robot
 from flexapod.results.inside import bushing_words
 from flexapod.results.legs import base_points
@@ -68,6 +68,7 @@ def _nearest(robot: Robot, pairs: Pairs, tips: Array, axes: Array, length: Array
     return kinematics.nearest_legs(tips - length[..., None] * axes, tips, mouth, _radii(robot), np.array(pairs))
 
 
+@once
 def pairs_of_legs(robot: Robot) -> Pairs:
     """Pairs of legs that do not meet at a joint, numbers from 0; none in a plane, where legs lie in layers.
 

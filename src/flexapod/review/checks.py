@@ -23,6 +23,7 @@ SINGULAR = 1e-8  # smallest singular value of the scaled Jacobian below which a 
 UPRIGHT = 1e-6  # cosine of an elevation: the inertia about Z is its square
 NEAR_SINGULAR = 0.05  # and below which it is remarked on: leg forces and length errors are magnified about 20 times
 ROUNDING = 1e-9  # rad: of the angle between unit vectors
+FEW = 32  # instants of a path for one at which legs are looked at first
 MOVED = 1e-9  # m, of cranks rad: what legs that stand move by rounding
 
 _KEYS = {
@@ -276,11 +277,27 @@ def _refuse_turned(path: RigidPath) -> None:
 
 def _touching(path: RigidPath) -> list[str]:
     """Legs that run into each other."""
+    if _apart(path):
+        return []
     nearest = clearance(path.robot, path.poses.place(path.robot.platform_joints), path.axes, path.legs.length)
     if nearest is None or nearest.gap.min() >= 0:
         return []
     k = first_least(nearest.gap)
     return [gap_words(float(nearest.gap[k]), nearest.legs[k] + 1, float(path.time[k])).rstrip(".")]
+
+
+def _apart(path: RigidPath) -> bool:
+    """Whether no legs UPS touch, told at few instants: a gap changes by no more than the two legs' tips move."""
+    if not kinematics.rigid_limbs(path.robot).plain:
+        return False
+    count, tips = len(path.time), path.poses.place(path.robot.platform_joints)
+    near = np.minimum(np.arange(count) // FEW * FEW + FEW // 2, count - 1)
+    some = np.unique(near)
+    poses = path.poses.part(some)
+    axes, length = kinematics.leg_axes(path.robot, poses), kinematics.reach(path.robot, poses).length
+    found = clearance(path.robot, tips[some], axes, length)
+    moved = np.sqrt(((tips - tips[near]) ** 2).sum(axis=2).max(axis=1))
+    return found is None or bool((found.gap[np.searchsorted(some, near)] > 2 * moved + ROUNDING).all())
 
 
 def _refuse_singular(t: Array, found: kinematics.NearestSingularity) -> None:

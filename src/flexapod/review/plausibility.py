@@ -71,7 +71,7 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
         found += [
             (i, *remark)
             for remark in (
-                *_slope(leg_values(leg, basis, free, np.ones(1), 1)[:, :, 0] / free, bent, when),
+                *_leg_slope(leg, basis, free, bent, when),
                 *_stroke(leg, length, when),
                 *_axial(leg, free, compression[:, i], when, None if loads is None else loads[:, i]),
                 *_nut(leg, compression[:, i], when),
@@ -124,6 +124,17 @@ def leg_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compr
 _Remark = tuple[str, float, str]  # kind, severity (value over limit), words
 
 
+def _leg_slope(leg: Leg, basis: LateralBasis, free: Array, lateral: Array, when: _When) -> list[_Remark]:
+    if not leg.piston.sections and _most(basis.tip_slope, lateral) <= SLOPE * free.min():
+        return []
+    return _slope(leg_values(leg, basis, free, np.ones(1), 1)[:, :, 0] / free, lateral, when)
+
+
+def _most(values: Array, lateral: Array) -> float:
+    """A bound on the sum of shapes, each at most `values` (k,), with amplitudes (T, 2, k) in two directions."""
+    return float(np.sqrt(2) * np.abs(values) @ np.abs(lateral).max(axis=(0, 1), initial=0.0))
+
+
 def _slope(slopes: Array, lateral: Array, when: _When) -> list[_Remark]:
     """By the slopes of the shapes at the tip, (directions, k, T) [1/m]."""
     if not lateral.shape[-1]:
@@ -138,7 +149,7 @@ def _slope(slopes: Array, lateral: Array, when: _When) -> list[_Remark]:
 
 def _stroke(leg: Leg, length: Array, when: _When) -> list[_Remark]:
     """Strokes that are a result, not commands, may leave their limits; the stops there are not part of the model."""
-    if leg.stroke is None:
+    if leg.stroke is None or max(leg.stroke.min - length.min(), length.max() - leg.stroke.max) <= STROKE_ROUNDING:
         return []
     excess = np.maximum(leg.stroke.min - length, length - leg.stroke.max)
     k = first_largest(excess)
@@ -162,7 +173,7 @@ def _axial(leg: Leg, free: Array, compression: Array, when: _When, load: Array |
 
 
 def _nut(leg: Leg, thrust: Array, when: _When) -> list[_Remark]:
-    if leg.screw is None:
+    if leg.screw is None or np.abs(thrust).max() <= leg.screw.nut.linear_to:
         return []
     share, k = np.abs(thrust) / leg.screw.nut.linear_to, first_largest(np.abs(thrust))
     return [("nut", share[k], nut_words(leg, float(abs(thrust[k])), when[k]))] if share[k] > 1 else []
@@ -184,8 +195,11 @@ def buckling_words(share: float, force: float, when: str) -> str:
 
 
 def _slender(leg: Leg, basis: LateralBasis, free: Array, when: _When) -> list[_Remark]:
-    width, k = leg.piston.width, first_least(free)
-    if free[k] >= SLENDERNESS * width or leg.piston.shear:
+    width = leg.piston.width
+    if free.min() >= SLENDERNESS * width or leg.piston.shear:
+        return []
+    k = first_least(free)
+    if free[k] >= SLENDERNESS * width:
         return []
     return [_slender_remark(free[k], width, piston_section(leg.piston), basis, when[k])]
 
@@ -230,10 +244,15 @@ def _curvatures(basis: LateralBasis) -> Array:
 def _stress(
     leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compression: Array, when: _When
 ) -> list[_Remark]:
-    stress = leg_stress(leg, basis, lateral, free, compression)
-    if stress is None or leg.piston.yield_stress is None:
+    piston = leg.piston
+    if piston.yield_stress is None:
         return []
-    return _yield_words(stress, leg.piston.yield_stress, when)
+    if not piston.sections and piston.depth is not None and piston.E is not None:
+        bending = _most(np.abs(_curvatures(basis)).max(axis=1), lateral) / free.min() ** 2 * piston.E * piston.depth / 2
+        if np.abs(compression).max() * piston.E / piston.EA + bending <= piston.yield_stress:
+            return []
+    stress = leg_stress(leg, basis, lateral, free, compression)
+    return [] if stress is None else _yield_words(stress, piston.yield_stress, when)
 
 
 def _yield_words(stress: Array, limit: float, when: _When) -> list[_Remark]:

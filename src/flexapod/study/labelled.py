@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 
 import numpy as np
 import pandas as pd
@@ -54,12 +55,19 @@ class _Awaited(NumpyIndexingAdapter):
         return NumpyIndexingAdapter, (self.array,)
 
 
+def _index(dim: str, given: object) -> PandasIndex:
+    array = np.asarray(given)
+    return PandasIndex(pd.Index(array), dim, coord_dtype=array.dtype)
+
+
+_of_words = lru_cache(maxsize=64)(_index)
+
+
 def coordinates(labels: Mapping[str, tuple[object, dict[str, str]]]) -> Coordinates:
     """Indexed coordinates from labels and attributes; made from arrays, xarray would first import pint and others."""
     variables, indexes = {}, {}
     for dim, (given, attrs) in labels.items():
-        array = np.asarray(given)
-        index = PandasIndex(pd.Index(array), dim, coord_dtype=array.dtype)
+        index = _of_words(dim, tuple(given)) if isinstance(given, list) else _index(dim, given)
         variables[dim] = index.create_variables()[dim]
         variables[dim].attrs = dict(attrs)
         indexes[dim] = index

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from flexapod import model
@@ -45,6 +46,7 @@ class Simulated:
         path = self.path.at(self.record.time)
         return Asked(robot_results(self.study, self.march.system, self.record, path) | rigid_force_results(path))
 
+    @cached_property
     def force_error(self) -> float | None:
         """Estimated error of the legs' forces over their peak, where steps follow a tolerance."""
         return force_error(self.study.robot, self.march.system, self.record)
@@ -55,7 +57,7 @@ class Simulated:
 
     def warnings(self) -> list[str]:
         """Remarks on the study, its path and its results."""
-        found = force_warnings(self.study, self.force_error())
+        found = force_warnings(self.study, self.force_error)
         found += step_warnings(self.study, self.record.smallest_step, self._tool_deviation)
         found += robot_warnings(self.study.robot, self.march.system, self.record)
         found += drive_warnings(self.study.robot, self.march.system, self.record)
@@ -69,7 +71,7 @@ class Simulated:
             **march_attributes(self.study, march.counters, self.record, compiled=system.kernel.library is not None),
             "impact_energy": march.impact,
         }
-        if (error := self.force_error()) is not None:
+        if (error := self.force_error) is not None:
             attrs["estimated_force_error"] = error
         robot = self.study.robot
         return dataset(
