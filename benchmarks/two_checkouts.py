@@ -40,13 +40,13 @@ for _ in sys.stdin:
 
 
 class Checkout:
-    """A process that times steps with the sources of one checkout."""
+    """A process that runs a program with the sources of one checkout, and answers a line by seconds."""
 
-    def __init__(self, root: Path) -> None:
+    def __init__(self, root: Path, program: str = PROGRAM) -> None:
         paths = os.pathsep.join([str(root / "src"), str(root)])
         environment = os.environ | {"PYTHONPATH": paths, "OPENBLAS_NUM_THREADS": "1"}
         self._process = subprocess.Popen(
-            [sys.executable, "-c", PROGRAM], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment
+            [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment
         )
         self._answer()
 
@@ -56,9 +56,9 @@ class Checkout:
             raise RuntimeError("the process of a checkout ended; its message stands above")
         return line.strip()
 
-    def step(self) -> float:
-        """Seconds of the processor that a step takes now."""
-        self._process.stdin.write("\n")
+    def ask(self, line: str = "") -> float:
+        """Seconds of the processor that what the line names takes now; of `PROGRAM` a step."""
+        self._process.stdin.write(f"{line}\n")
         self._process.stdin.flush()
         return float(self._answer())
 
@@ -71,7 +71,7 @@ def compared(here: Path, other: Path, runs: int = RUNS) -> tuple[Spread, Spread,
     """Spreads of the seconds a step takes in both checkouts, and the median ratio, `here` over `other`."""
     checkouts = [Checkout(root) for root in (here, other)]
     try:
-        pairs = [[checkout.step() for checkout in checkouts] for _ in range(runs)]
+        pairs = [[checkout.ask() for checkout in checkouts] for _ in range(runs)]
     finally:
         for checkout in checkouts:
             checkout.close()

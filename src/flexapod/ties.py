@@ -22,6 +22,9 @@ EQUALS = 1e-9
 
 def alike(values: Array, axis: int | None = None, same: float = ROUNDING) -> Mask:
     """Which values are the largest along an axis, or of all; what is not a number is none of them."""
+    largest, least = (extreme(axis=axis, keepdims=True) for extreme in (values.max, values.min))
+    if np.isfinite(largest).all() and np.isfinite(least).all():
+        return values >= largest - same * np.maximum(largest, -least)
     known = np.where(np.isnan(values), -np.inf, values)
     return known >= known.max(axis=axis, keepdims=True) - same * _size(values, axis)
 

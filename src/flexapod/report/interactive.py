@@ -9,7 +9,6 @@ from __future__ import annotations
 import base64
 import re
 from collections.abc import Iterator
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -78,13 +77,13 @@ def thinned(x: Array, y: Array, most: int = MOST_POINTS) -> tuple[Array, Array]:
     if len(x) <= most:
         return x, y
     edges = np.linspace(0, len(x), most // 2 + 1).astype(int)
-    keep = {0, len(x) - 1}
-    for a, b in pairwise(edges):
-        part = y[a:b]
-        known = np.flatnonzero(np.isfinite(part))
-        at = (known[part[known].argmin()], known[part[known].argmax()]) if known.size else (0,)
-        keep |= {int(a + i) for i in at}
-    chosen = np.array(sorted(keep))
+    begins, interval = edges[:-1], np.repeat(np.arange(len(edges) - 1), np.diff(edges))
+    keep = [np.array([0, len(x) - 1])]
+    for extreme, none in ((np.minimum, np.inf), (np.maximum, -np.inf)):
+        known = np.where(np.isfinite(y), y, none)
+        hit = np.flatnonzero(known == extreme.reduceat(known, begins)[interval])
+        keep.append(hit[np.searchsorted(hit, begins)])  # the first of each interval
+    chosen = np.unique(np.concatenate(keep))
     return x[chosen], y[chosen]
 
 

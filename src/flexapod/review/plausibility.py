@@ -13,7 +13,7 @@ from flexapod.mechanics.layout import Shapes
 from flexapod.model import Actuator, Leg, Robot
 from flexapod.model.simulation import SOLID
 from flexapod.results.bodies import flexible_axes
-from flexapod.results.legs import bending, bending_basis
+from flexapod.results.legs import bending, bending_basis, lateral
 from flexapod.results.record import Record
 from flexapod.review.estimates import (
     BendingSection,
@@ -65,13 +65,16 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
     inside = gives_inside(robot)
     own = system if shapes.beam.a.count or shapes.beam.b.count else None
     loads = buckling_loads(robot, record.q[..., shapes.l_index], own) if inside.any() else None
+    low, high, most_thrust = record.q.min(axis=0), record.q.max(axis=0), np.abs(compression).max(axis=0)
     for i, leg in enumerate(robot.legs):
+        if not inside.any() and _within(leg, shapes, low[i], high[i], most_thrust[i]):
+            continue
         length = record.q[:, i, shapes.l_index]
         free, bent = length - leg.cylinder.mouth, bending(leg, shapes, record.q[:, i])
         found += [
             (i, *remark)
             for remark in (
-                *_leg_slope(leg, basis, free, bent, when),
+                *_slope(leg_values(leg, basis, free, np.ones(1), 1)[:, :, 0] / free, bent, when),
                 *_stroke(leg, length, when),
                 *_axial(leg, free, compression[:, i], when, None if loads is None else loads[:, i]),
                 *_nut(leg, compression[:, i], when),
@@ -80,6 +83,27 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
             )
         ]
     return worst_of_each(found)
+
+
+def _within(leg: Leg, shapes: Shapes, low: Array, high: Array, thrust: float) -> bool:
+    """Whether extremes of a leg's coordinates (n,) and its largest thrust [N] alone tell that there are no remarks."""
+    piston, basis, limit = leg.piston, bending_basis(shapes), leg.stroke
+    if piston.sections or shapes.beam.shear:
+        return False
+    shortest, longest = low[shapes.l_index] - leg.cylinder.mouth, high[shapes.l_index] - leg.cylinder.mouth
+    amplitude = np.sqrt(2) * lateral(shapes, np.maximum(high, -low)).max(axis=0)  # of both directions together
+    stress = 0.0
+    if piston.E is not None and piston.depth is not None:
+        curvature = (np.abs(_curvatures(basis)).max(axis=1, initial=0.0) @ amplitude) / shortest**2
+        stress = piston.E * (thrust / piston.EA + curvature * piston.depth / 2)
+    return bool(
+        np.abs(basis.tip_slope) @ amplitude <= SLOPE * shortest
+        and (limit is None or (low[shapes.l_index] >= limit.min and high[shapes.l_index] <= limit.max))
+        and thrust * longest**2 <= NEAR_BUCKLING * piston.least_EI * (np.pi / 2) ** 2
+        and (leg.screw is None or thrust <= leg.screw.nut.linear_to)
+        and (piston.shear or shortest >= SLENDERNESS * piston.width)
+        and (piston.yield_stress is None or stress <= piston.yield_stress)
+    )
 
 
 def actuator_warnings(actuator: Actuator, shapes: Shapes, record: Record) -> list[str]:
@@ -124,17 +148,6 @@ def leg_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compr
 _Remark = tuple[str, float, str]  # kind, severity (value over limit), words
 
 
-def _leg_slope(leg: Leg, basis: LateralBasis, free: Array, lateral: Array, when: _When) -> list[_Remark]:
-    if not leg.piston.sections and _most(basis.tip_slope, lateral) <= SLOPE * free.min():
-        return []
-    return _slope(leg_values(leg, basis, free, np.ones(1), 1)[:, :, 0] / free, lateral, when)
-
-
-def _most(values: Array, lateral: Array) -> float:
-    """A bound on the sum of shapes, each at most `values` (k,), with amplitudes (T, 2, k) in two directions."""
-    return float(np.sqrt(2) * np.abs(values) @ np.abs(lateral).max(axis=(0, 1), initial=0.0))
-
-
 def _slope(slopes: Array, lateral: Array, when: _When) -> list[_Remark]:
     """By the slopes of the shapes at the tip, (directions, k, T) [1/m]."""
     if not lateral.shape[-1]:
@@ -149,7 +162,7 @@ def _slope(slopes: Array, lateral: Array, when: _When) -> list[_Remark]:
 
 def _stroke(leg: Leg, length: Array, when: _When) -> list[_Remark]:
     """Strokes that are a result, not commands, may leave their limits; the stops there are not part of the model."""
-    if leg.stroke is None or max(leg.stroke.min - length.min(), length.max() - leg.stroke.max) <= STROKE_ROUNDING:
+    if leg.stroke is None:
         return []
     excess = np.maximum(leg.stroke.min - length, length - leg.stroke.max)
     k = first_largest(excess)
@@ -173,7 +186,7 @@ def _axial(leg: Leg, free: Array, compression: Array, when: _When, load: Array |
 
 
 def _nut(leg: Leg, thrust: Array, when: _When) -> list[_Remark]:
-    if leg.screw is None or np.abs(thrust).max() <= leg.screw.nut.linear_to:
+    if leg.screw is None:
         return []
     share, k = np.abs(thrust) / leg.screw.nut.linear_to, first_largest(np.abs(thrust))
     return [("nut", share[k], nut_words(leg, float(abs(thrust[k])), when[k]))] if share[k] > 1 else []
@@ -195,11 +208,8 @@ def buckling_words(share: float, force: float, when: str) -> str:
 
 
 def _slender(leg: Leg, basis: LateralBasis, free: Array, when: _When) -> list[_Remark]:
-    width = leg.piston.width
-    if free.min() >= SLENDERNESS * width or leg.piston.shear:
-        return []
-    k = first_least(free)
-    if free[k] >= SLENDERNESS * width:
+    width, k = leg.piston.width, first_least(free)
+    if free[k] >= SLENDERNESS * width or leg.piston.shear:
         return []
     return [_slender_remark(free[k], width, piston_section(leg.piston), basis, when[k])]
 
@@ -244,15 +254,10 @@ def _curvatures(basis: LateralBasis) -> Array:
 def _stress(
     leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compression: Array, when: _When
 ) -> list[_Remark]:
-    piston = leg.piston
-    if piston.yield_stress is None:
-        return []
-    if not piston.sections and piston.depth is not None and piston.E is not None:
-        bending = _most(np.abs(_curvatures(basis)).max(axis=1), lateral) / free.min() ** 2 * piston.E * piston.depth / 2
-        if np.abs(compression).max() * piston.E / piston.EA + bending <= piston.yield_stress:
-            return []
     stress = leg_stress(leg, basis, lateral, free, compression)
-    return [] if stress is None else _yield_words(stress, piston.yield_stress, when)
+    if stress is None or leg.piston.yield_stress is None:
+        return []
+    return _yield_words(stress, leg.piston.yield_stress, when)
 
 
 def _yield_words(stress: Array, limit: float, when: _When) -> list[_Remark]:
