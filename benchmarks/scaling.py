@@ -199,7 +199,8 @@ def _laws(laws: list[Law]) -> Section:
 
 def _figure(laws: Sequence[Law]) -> Figure:
     """A panel for each quantity, logarithmic; dashed: the straight lines."""
-    from flexapod.plot.style import FLEXIBLE, figure, styled
+    from flexapod.plot.style import figure, styled
+    from flexapod.scene.colours import FLEXIBLE
 
     against = dict.fromkeys(law.against for law in laws)
 

@@ -80,6 +80,15 @@ def test_a_simulation_needs_no_scipy():
     assert python(f"{roll}print([m for m in ('scipy', 'casadi', 'dask', 'matplotlib') if m in sys.modules])") == "[]"
 
 
+def test_a_report_without_figures_needs_no_matplotlib(tmp_path):
+    code = (
+        "import sys, flexapod as fx; from pathlib import Path; from flexapod.report.page import write_report; "
+        "data = fx.simulate(fx.preset('paper-robot'), duration=0.01, step=1e-3); "
+        f"write_report(data, Path({str(tmp_path)!r}), list); print('matplotlib' in sys.modules)"
+    )
+    assert python(code) == "False"
+
+
 def test_a_simulation_loads_no_budgets_and_builds_no_tables_that_its_study_lacks():
     code = (
         "import sys, flexapod as fx, flexapod.study as study; fx.preset('paper-robot'); "

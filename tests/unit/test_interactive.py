@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from flexapod.report.interactive import MOST_POINTS, interactive, packed, thinned
+from flexapod.report.curves import MOST_POINTS, packed, thinned
+from flexapod.report.interactive import interactive
 
 
 def unpacked(value):

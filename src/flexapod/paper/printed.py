@@ -13,22 +13,8 @@ from matplotlib.patches import Arc, Circle, Polygon
 from flexapod.paper.claim import force_gaps
 from flexapod.plot.legs import actuator_forces
 from flexapod.plot.robot3d import CYLINDER
-from flexapod.plot.style import (
-    COLUMN,
-    FLEXIBLE,
-    LINE_STYLES,
-    NOTE,
-    PAGE,
-    RIGID,
-    SMALL,
-    TEXT,
-    figure,
-    ink,
-    mark_end,
-    needs,
-    styled,
-)
-from flexapod.scene.colours import AXIS_COLORS, LEG_COLORS
+from flexapod.plot.style import COLUMN, LINE_STYLES, NOTE, PAGE, SMALL, TEXT, figure, ink, mark_end, needs, styled
+from flexapod.scene.colours import AXIS_COLORS, FLEXIBLE, LEG_COLORS, RIGID
 from flexapod.scene.robot import mode_scene, motion_end, robot_study
 from flexapod.words import number, rounded_up, scale, text
 

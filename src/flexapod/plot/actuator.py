@@ -9,19 +9,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import (
-    FLEXIBLE,
-    LINE_STYLES,
-    NOTE,
-    PAGE,
-    RIGID,
-    figure,
-    flat_on_the_scale_of_others,
-    ink,
-    needs,
-    styled,
-)
-from flexapod.scene.colours import LEG_COLORS
+from flexapod.plot.style import LINE_STYLES, NOTE, PAGE, figure, flat_on_the_scale_of_others, ink, needs, styled
+from flexapod.scene.colours import FLEXIBLE, LEG_COLORS, RIGID
 from flexapod.words import cleared_lines, number, scale
 
 _SWINGS, _SHOWN = 240, 12  # half swings: more of them are solid ink; and how many of those are shown beside

@@ -7,8 +7,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import FLEXIBLE, PAGE, SMALL, figure, ink, needs, styled
-from flexapod.scene.colours import LEG_COLORS
+from flexapod.plot.style import PAGE, SMALL, figure, ink, needs, styled
+from flexapod.scene.colours import FLEXIBLE, LEG_COLORS
 
 _WORDS = {"deviation": "centre of mass", "tip": "tip deflection"}
 # Colour, marker and name of each family; markers differ too, for print in grey.

@@ -9,8 +9,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.plot.style import FLEXIBLE, NOTE, PAGE, RIGID, figure, needs, styled
-from flexapod.scene.colours import LEG_COLORS
+from flexapod.plot.style import NOTE, PAGE, figure, needs, styled
+from flexapod.scene.colours import FLEXIBLE, LEG_COLORS, RIGID
 from flexapod.words import number, scale
 
 

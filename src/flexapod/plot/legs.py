@@ -10,19 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from flexapod.plot.style import (
-    FLEXIBLE,
-    LINE_STYLES,
-    PAGE,
-    RIGID,
-    columns,
-    figure,
-    flat_on_the_scale_of_others,
-    mark_end,
-    needs,
-    styled,
-)
-from flexapod.scene.colours import LEG_COLORS, colors_of_legs
+from flexapod.plot.style import LINE_STYLES, PAGE, columns, figure, flat_on_the_scale_of_others, mark_end, needs, styled
+from flexapod.scene.colours import FLEXIBLE, LEG_COLORS, RIGID, colors_of_legs
 from flexapod.scene.drives import drives
 from flexapod.scene.robot import motion_end
 from flexapod.words import NOTHING, Scale, scale, text

@@ -11,11 +11,9 @@ from matplotlib.figure import Figure
 
 from flexapod.plot.style import (
     COLUMN,
-    FLEXIBLE,
     LINE_STYLES,
     NOTE,
     PAGE,
-    RIGID,
     figure,
     flat_on_the_scale_of_others,
     mark_end,
@@ -24,7 +22,7 @@ from flexapod.plot.style import (
 )
 from flexapod.results.cause_words import cause_words
 from flexapod.results.summary import POINT_WORDS
-from flexapod.scene.colours import AXIS_COLORS, ENERGIES, LEG_COLORS
+from flexapod.scene.colours import AXIS_COLORS, ENERGIES, FLEXIBLE, LEG_COLORS, RIGID
 from flexapod.scene.robot import motion_coordinates, motion_end
 from flexapod.ties import first_largest, ranked
 from flexapod.words import NOTHING, Scale, cleared, scale

@@ -15,7 +15,8 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from flexapod.errors import InputError
-from flexapod.plot.style import COLORS, COLUMN, FLEXIBLE, NOTE, PAGE, RIGID, TEXT, edges_of, figure, styled
+from flexapod.plot.style import COLORS, COLUMN, NOTE, PAGE, TEXT, edges_of, figure, styled
+from flexapod.scene.colours import FLEXIBLE, RIGID
 from flexapod.words import scale
 
 FAILED = "#C44E52"

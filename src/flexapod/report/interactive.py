@@ -6,7 +6,6 @@ makes the whole figure stay a picture.
 
 from __future__ import annotations
 
-import base64
 import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
@@ -18,14 +17,13 @@ from matplotlib.patches import Rectangle
 from matplotlib.text import Annotation
 from matplotlib.ticker import FixedLocator
 
-from flexapod.arrays import Array
+from flexapod.report.curves import packed, thinned
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-MOST_POINTS = 1500  # of a curve: more than a page is wide
 PIXELS = 96 / 72  # of a point
 _Ends = tuple[float, float]
 _MARKS = {
@@ -63,28 +61,6 @@ def interactive(figure: Figure) -> dict[str, Any] | None:
 def _above(figure: Figure, panels: list[Axes]) -> int:
     """Height above a figure for buttons and legend [pixels], where its own legend does not leave room for them."""
     return 6 if figure.legends else 48 if _legends(figure, panels) else 28
-
-
-def packed(values: Array) -> dict[str, str]:
-    """Numbers as plotly reads them: base64 of 32 bit floats, seven digits."""
-    flat = np.ascontiguousarray(values, dtype="<f4")
-    made = {"dtype": "f4", "bdata": base64.b64encode(flat.tobytes()).decode("ascii")}
-    return made | ({"shape": ", ".join(map(str, flat.shape))} if flat.ndim > 1 else {})
-
-
-def thinned(x: Array, y: Array, most: int = MOST_POINTS) -> tuple[Array, Array]:
-    """A curve (n,), (n,) of at most about `most` points: both ends, least and largest of each interval between."""
-    if len(x) <= most:
-        return x, y
-    edges = np.linspace(0, len(x), most // 2 + 1).astype(int)
-    begins, interval = edges[:-1], np.repeat(np.arange(len(edges) - 1), np.diff(edges))
-    keep = [np.array([0, len(x) - 1])]
-    for extreme, none in ((np.minimum, np.inf), (np.maximum, -np.inf)):
-        known = np.where(np.isfinite(y), y, none)
-        hit = np.flatnonzero(known == extreme.reduceat(known, begins)[interval])
-        keep.append(hit[np.searchsorted(hit, begins)])  # the first of each interval
-    chosen = np.unique(np.concatenate(keep))
-    return x[chosen], y[chosen]
 
 
 def _maps(axes: Axes) -> bool:

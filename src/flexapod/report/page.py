@@ -12,8 +12,8 @@ from flexapod.document import html
 from flexapod.document.html import Html
 from flexapod.document.parts import Chapter, Item, Lines, Remarks, Text, TextTable, warnings_of
 from flexapod.errors import FlexapodError
+from flexapod.report.curves import MOST_POINTS
 from flexapod.report.figures import Drawn
-from flexapod.report.interactive import MOST_POINTS
 from flexapod.runtime.files import scratch, write_text
 from flexapod.scene.robot import carried_study
 

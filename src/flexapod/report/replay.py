@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 from flexapod import model
 from flexapod.arrays import Array
 from flexapod.errors import FlexapodError
-from flexapod.plot.style import FLEXIBLE, RIGID
-from flexapod.report.interactive import packed
+from flexapod.report.curves import packed
 from flexapod.results.summary import POINT_WORDS, tool_apart
 from flexapod.runtime.threads import one_thread
-from flexapod.scene.colours import colors_of_legs
+from flexapod.scene.colours import FLEXIBLE, RIGID, colors_of_legs
 from flexapod.scene.geometry import DrawnMotion, RobotMotion
 from flexapod.scene.robot import mode_scene
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton, around

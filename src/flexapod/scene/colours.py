@@ -4,6 +4,8 @@ from __future__ import annotations
 
 #: Okabe & Ito's palette, in an order whose neighbours also differ in lightness.
 LEG_COLORS = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#56B4E9", "#A23B72")
+RIGID = "#B8B8B8"
+FLEXIBLE = "#0B3C5D"
 AXIS_COLORS = {"x": "#7A5195", "y": "#0072B2", "z": "#D55E00"}
 #: Words and colour of each energy and work by its variable.
 ENERGIES = {
