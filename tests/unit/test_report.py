@@ -18,7 +18,7 @@ from flexapod.document.study import modes_section, study_items
 from flexapod.document.terminal import show
 from flexapod.kinematics.rotations import exponential, matrix
 from flexapod.model import loads, preset, preset_text
-from flexapod.report.interactive import MOST_POINTS
+from flexapod.report.curves import MOST_POINTS
 from flexapod.report.page import robot_report, write_report
 from flexapod.report.replay import FRAMES, locked_modes, replay
 from flexapod.results.summary import summary
