@@ -6,28 +6,34 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from flexapod.pose_errors import accuracy, play
-from flexapod.results.record import Interrupted
 from flexapod.review.checks import check_path
-from flexapod.study.actuator import simulate_actuator
 from flexapod.study.parts import parts
-from flexapod.study.simulation import run, simulate
-from flexapod.study.store import open_results, save
 
 if TYPE_CHECKING:
     from flexapod.error_budget import budget
     from flexapod.pose_errors.disturbances import vibration
+    from flexapod.results.record import Interrupted
     from flexapod.results.summary import summary
+    from flexapod.study.actuator import simulate_actuator
     from flexapod.study.kinematics import forward_kinematics, inverse_dynamics, inverse_kinematics, mobility
+    from flexapod.study.simulation import run, simulate
     from flexapod.study.solid import simulate_solid
     from flexapod.study.static import modes, stiffness
+    from flexapod.study.store import open_results, save
 
-_LATER = {  # what simulations do without loads on first use
+_LATER = {  # what not all ask for loads on first use
+    "Interrupted": "results.record",
     "budget": "error_budget",
     "forward_kinematics": "study.kinematics",
     "inverse_dynamics": "study.kinematics",
     "inverse_kinematics": "study.kinematics",
     "mobility": "study.kinematics",
     "modes": "study.static",
+    "open_results": "study.store",
+    "run": "study.simulation",
+    "save": "study.store",
+    "simulate": "study.simulation",
+    "simulate_actuator": "study.actuator",
     "simulate_solid": "study.solid",
     "stiffness": "study.static",
     "summary": "results.summary",
