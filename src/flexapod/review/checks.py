@@ -291,13 +291,13 @@ def _apart(path: RigidPath) -> bool:
     if not kinematics.rigid_limbs(path.robot).plain:
         return False
     count, tips = len(path.time), path.poses.place(path.robot.platform_joints)
-    near = np.minimum(np.arange(count) // FEW * FEW + FEW // 2, count - 1)
-    some = np.unique(near)
+    of = np.arange(count) // FEW
+    some = np.minimum(np.arange(of[-1] + 1) * FEW + FEW // 2, count - 1)
     poses = path.poses.part(some)
     axes, length = kinematics.leg_axes(path.robot, poses), kinematics.reach(path.robot, poses).length
     found = clearance(path.robot, tips[some], axes, length)
-    moved = np.sqrt(((tips - tips[near]) ** 2).sum(axis=2).max(axis=1))
-    return found is None or bool((found.gap[np.searchsorted(some, near)] > 2 * moved + ROUNDING).all())
+    moved = np.sqrt(((tips - tips[some[of]]) ** 2).sum(axis=2).max(axis=1))
+    return found is None or bool((found.gap[of] > 2 * moved + ROUNDING).all())
 
 
 def _refuse_singular(t: Array, found: kinematics.NearestSingularity) -> None:

@@ -169,10 +169,12 @@ class System:
     @cached_property
     def kinds(self) -> list[tuple[Index, Mask, Index]]:
         """Legs that hold the same coordinates: which, what they hold, and what is neither held nor from closures."""
-        kinds, of = np.unique(self.held, axis=0, return_inverse=True)
-        gone = [*self.kernel.shapes.pivots, *self.shared]
-        rest = (np.setdiff1d(np.flatnonzero(~held), gone) for held in kinds)
-        return [(np.flatnonzero(of.ravel() == k), *kind) for k, kind in enumerate(zip(kinds, rest, strict=True))]
+        stays = np.ones(self.n, dtype=bool)
+        stays[[*self.kernel.shapes.pivots, *self.shared]] = False
+        kinds = [np.array(held, dtype=bool) for held in sorted(set(map(tuple, self.held.tolist())))]
+        return [
+            (np.flatnonzero((self.held == held).all(axis=1)), held, np.flatnonzero(stays & ~held)) for held in kinds
+        ]
 
     @cached_property
     def open(self) -> bool:
