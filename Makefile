@@ -46,8 +46,9 @@ format: $(DEV)  ## rewrite the code in the project's style
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-bench: $(RUN)  ## measured speed, printed
+bench: $(RUN)  ## measured speed, printed; OTHER=folder of a checkout: whole calls beside its own
 	$(BIN)/python -m benchmarks
+	$(if $(OTHER),$(BIN)/python -m benchmarks.whole_calls $(OTHER))
 
 clean:  ## remove what the targets made
 	rm -rf build .venv .hypothesis .import_linter_cache .pytest_cache .ruff_cache

@@ -168,7 +168,7 @@ class Run:
         from flexapod import study
 
         try:
-            return study.run(self.study, progress=self._progress)
+            return study.run(self.study, progress=self._progress).load()  # the page shows all of it
         except BaseException as error:
             return error
 

@@ -2,6 +2,7 @@
 
 import ctypes
 import logging
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from functools import cache, lru_cache
