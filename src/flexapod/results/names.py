@@ -29,7 +29,7 @@ ANGLES = ("carriage", "alpha", "beta", "spin", "gamma1", "gamma2", "gamma3")
 
 _TWIST = ["x", "y", "z", "rx", "ry", "rz"]
 #: Labels of dimensions that have fixed ones, with what they stand for.
-COORDINATES: dict[str, tuple[object, str]] = {
+COORDINATES: dict[str, tuple[list[str], str]] = {
     "axis": (list("xyz"), "world axis"),
     "direction": (list("ab"), "lateral direction of the leg"),
     "quaternion": (list("wxyz"), "component of the quaternion"),
@@ -320,7 +320,7 @@ AT_A_POSE = {name: form._replace(dims=form.dims[1:]) for name, form in _PLAY.ite
 
 def fixed_labels(sizes: Mapping[str, int]) -> dict[str, tuple[object, str]]:
     """Labels of those of some dimensions that need no others from a study, and what they stand for; legs by number."""
-    found = {dim: COORDINATES[dim] for dim in COORDINATES if dim in sizes}
+    found: dict[str, tuple[object, str]] = {dim: COORDINATES[dim] for dim in COORDINATES if dim in sizes}
     return {"leg": (np.arange(1, sizes["leg"] + 1), "leg"), **found} if "leg" in sizes else found
 
 
@@ -354,13 +354,12 @@ def dataset(
     data, sizes = {}, {}
     for name in values:
         dims, units, long_name = table[name]
-        array = values.there(name) if isinstance(values, Asked) else values[name]
         described = {"units": units, "long_name": long_name}
-        if array is None:
+        if isinstance(values, Asked) and values.there(name) is None:
             own = {dim: known[dim] for dim in dims}
             data[name] = awaited(values, name, own, int if name in _WHOLE else float, described)
         else:
-            data[name] = variable(dims, array, described)
+            data[name] = variable(dims, values[name], described)
         sizes |= data[name].sizes
     labels = {dim: (given, {"long_name": words}) for dim, (given, words) in fixed_labels(sizes).items()}
     labels |= {dim: (given, _COORDINATE_ATTRS.get(dim, {})) for dim, given in (coords or {}).items()}

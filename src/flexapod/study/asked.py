@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from threading import RLock
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexapod.arrays import Array
 from flexapod.runtime.threads import one_thread
@@ -13,7 +15,7 @@ from flexapod.runtime.threads import one_thread
 __all__ = ["Asked", "Made"]
 
 #: An array, or what makes it.
-Made = Array | Callable[[], Array]
+Made = Array | Callable[[], NDArray[Any]]
 
 
 class Asked(Mapping[str, Array]):
