@@ -7,8 +7,8 @@ from flexapod.elements.slot import Slot
 from flexapod.elements.tip_body import PlanarTipBody, TipBody
 from flexapod.elements.torsion import Torsion
 from flexapod.mechanics.layout import Shapes
+from flexapod.mechanics.leg_beam import LegBeam
 from flexapod.mechanics.leg_chain import LegChain
-from flexapod.mechanics.section_layout import LegBeam
 
 CHAIN = {field.name for field in fields(LegChain)}
 

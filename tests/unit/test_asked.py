@@ -7,7 +7,7 @@ import pytest
 from tests.runs import paper_robot
 
 import flexapod as fx
-from flexapod.study.asked import Asked
+from flexapod.results.asked import Asked
 
 SHORT = {"fidelity": "lumped", "duration": 0.02}
 

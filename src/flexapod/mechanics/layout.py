@@ -5,8 +5,8 @@ from functools import cached_property
 
 from flexapod.elements.element import Physics
 from flexapod.elements.slot import Slot
+from flexapod.mechanics.leg_beam import LegBeam
 from flexapod.mechanics.leg_chain import POSE_PARAMETERS, LegChain
-from flexapod.mechanics.section_layout import LegBeam
 
 #: Physical parameters of one leg, in the order in which kernels read them (name, size). SI; vectors in the world frame.
 LEG_PARAMETERS: tuple[tuple[str, int], ...] = (

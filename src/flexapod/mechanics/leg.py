@@ -32,7 +32,7 @@ from flexapod.elements.slot import Slot
 from flexapod.elements.stepped_piston import Part, SteppedShapes, of_planes, stepped_piston, stepped_shapes, straight
 from flexapod.elements.universal import universal
 from flexapod.mechanics.layout import Shapes
-from flexapod.mechanics.section_layout import LegBeam
+from flexapod.mechanics.leg_beam import LegBeam
 from flexapod.symbolic.lagrange import Lagrangian
 from flexapod.symbolic.vocabulary import SX, expanded, symbol, vertcat, zeros
 

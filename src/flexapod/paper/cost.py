@@ -18,8 +18,8 @@ from flexapod.kinematics.inverse import JointTurn
 from flexapod.kinematics.vectors import turned
 from flexapod.mechanics.layout import LEG_PARAMETERS, Shapes
 from flexapod.mechanics.leg import leg
+from flexapod.mechanics.leg_beam import LegBeam
 from flexapod.mechanics.leg_chain import LegChain
-from flexapod.mechanics.section_layout import LegBeam
 from flexapod.results.attributes import attributes
 from flexapod.symbolic.functions import NamedFunction, operations
 from flexapod.symbolic.lagrange import inverse_dynamics

@@ -13,10 +13,10 @@ from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.kinematics.robot import once, rigid_limbs
 from flexapod.model import Robot
+from flexapod.results.asked import Made
 from flexapod.results.inside import bushing_words
 from flexapod.results.legs import base_points
 from flexapod.solve.frames import as_drawn, in_world
-from flexapod.study.asked import Made
 from flexapod.ties import EQUALS, first_least
 from flexapod.words import text
 

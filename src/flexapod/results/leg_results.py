@@ -17,6 +17,7 @@ from flexapod.kinematics.rotations import exponential, matrix
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Robot
 from flexapod.results import legs as by_name
+from flexapod.results.asked import Made
 from flexapod.results.bodies import axes_as_drawn, body_results, largest_turns, pairs_of_legs
 from flexapod.results.causes import cause_names
 from flexapod.results.elongations import elongations, in_gap
@@ -31,7 +32,6 @@ from flexapod.solve.friction import sliding
 from flexapod.solve.lost_motion import places_with_friction
 from flexapod.solve.released import RobotForces, released, rigid_system
 from flexapod.solve.system import System
-from flexapod.study.asked import Made
 
 STROKES = ("leg_length_command", "leg_length", "leg_stroke", "actuator_force")
 """Variables of robots whose legs have strokes."""
@@ -60,7 +60,7 @@ def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -
             lambda: by_name.stroke_forces(found, drive_forces(robot, system, record)),
         )
         results |= zip(STROKES, made, strict=True)
-    if shapes.guide is not None:
+    if shapes.beam.guide is not None:
         inside = cache(lambda: guide_results(robot, system, q))
         results |= {name: lambda name=name: inside()[name] for name in GUIDED}
     if held := by_name.held_names(found):

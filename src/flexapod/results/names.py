@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod.results.asked import Asked
 from flexapod.results.cause_words import CAUSES
 from flexapod.runtime.loading import loaded
-from flexapod.study.asked import Asked
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -346,7 +346,7 @@ def dataset(
     loaded("xarray")
     import xarray as xr
 
-    from flexapod.study.labelled import awaited, coordinates, variable
+    from flexapod.results.labelled import awaited, coordinates, variable
 
     table = {**VARIABLES, **(forms or {})}
     known = {dim: len(given) for dim, (given, _) in COORDINATES.items()} | {"pair": 2}

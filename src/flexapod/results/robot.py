@@ -12,6 +12,7 @@ from flexapod.kinematics.robot import robot_limbs
 from flexapod.kinematics.rotations import canonical, difference, matrix, quaternion
 from flexapod.kinematics.trajectory import coordinates, turning_axes
 from flexapod.model import Robot, Study
+from flexapod.results.asked import Made
 from flexapod.results.causes import deviation_by_cause, errors_of
 from flexapod.results.leg_results import leg_labels, leg_results, slides
 from flexapod.results.legs import bending_basis, has_strokes, per_turn, stroke_forces
@@ -19,7 +20,6 @@ from flexapod.results.path import RigidPath
 from flexapod.results.record import Record
 from flexapod.solve.frames import base_on_mount, floor, shared_by_legs
 from flexapod.solve.system import System
-from flexapod.study.asked import Made
 
 
 def robot_results(study: Study, system: System, record: Record, path: RigidPath) -> dict[str, Made]:

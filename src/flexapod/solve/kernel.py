@@ -2,7 +2,6 @@
 
 import ctypes
 import logging
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from functools import cache, lru_cache

@@ -15,7 +15,7 @@ from flexapod.bases.lateral import proportional_damping
 from flexapod.elements.chains import chain, is_chain
 from flexapod.elements.steps import Piece, StepNodes, Uniform, held, law, nodes, on_pieces, pieces, sheared
 from flexapod.mechanics.layout import Shapes
-from flexapod.mechanics.section_layout import POWERS, LegBeam
+from flexapod.mechanics.leg_beam import POWERS, LegBeam
 from flexapod.model import Leg, damping_parts
 from flexapod.model.sections import SHARES, PistonStep
 

@@ -16,8 +16,8 @@ from flexapod.elements.tip_body import PlanarTipBody, TipBody
 from flexapod.elements.torsion import Torsion
 from flexapod.kinematics.limbs import ABSENT, COORDINATES, FREE, HELD, Limbs
 from flexapod.mechanics.layout import Shapes
+from flexapod.mechanics.leg_beam import LegBeam
 from flexapod.mechanics.leg_chain import LegChain
-from flexapod.mechanics.section_layout import LegBeam
 from flexapod.model import Actuator, Rectangle, Robot, Simulation, Tube
 
 __all__ = [

@@ -13,6 +13,7 @@ from flexapod.elements.known import refuse_tables
 from flexapod.errors import InputError
 from flexapod.kinematics.rotations import quaternion
 from flexapod.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, as_study, at_pose
+from flexapod.results.asked import Asked
 from flexapod.results.attributes import attributes
 from flexapod.results.leg_results import drive_forms, leg_labels, rigid_leg_results, rigid_reactions
 from flexapod.results.names import dataset
@@ -20,7 +21,6 @@ from flexapod.results.path import RigidPath, open_force_words
 from flexapod.results.robot import rigid_force_results
 from flexapod.review.checks import check_geometry
 from flexapod.runtime.threads import one_thread
-from flexapod.study.asked import Asked
 
 if TYPE_CHECKING:
     from xarray import Dataset

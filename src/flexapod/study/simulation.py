@@ -10,6 +10,7 @@ from flexapod import model
 from flexapod.arrays import Array
 from flexapod.description.limits import drive_warnings
 from flexapod.results.arguments import LoadLike, RobotLike, StartLike, as_study, read
+from flexapod.results.asked import Asked
 from flexapod.results.attributes import attributes, march_attributes
 from flexapod.results.forces import force_error, force_warnings
 from flexapod.results.leg_results import damped_angles, drive_forms
@@ -25,7 +26,6 @@ from flexapod.review.unstable_loops import loop_remarks
 from flexapod.runtime.threads import one_thread
 from flexapod.solve.robot_march import RobotMarch, prepare
 from flexapod.study.actuator import simulate_actuator
-from flexapod.study.asked import Asked
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -17,8 +17,8 @@ from flexapod.bases import axial_basis, lateral_basis
 from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.mechanics.layout import COMMAND_SIZE, LEG_PARAMETERS, Shapes, columns
+from flexapod.mechanics.leg_beam import LegBeam
 from flexapod.mechanics.leg_chain import LegChain
-from flexapod.mechanics.section_layout import LegBeam
 from flexapod.solve.kernel import Kernel, loaded_kernel
 from flexapod.solve.march import march
 from flexapod.solve.problem import Problem

@@ -13,6 +13,7 @@ import numpy as np
 from flexapod.arrays import Array
 from flexapod.errors import ComputationError, FlexapodError
 from flexapod.model import ActuatorStudy, Study
+from flexapod.results.asked import Asked
 from flexapod.results.leg_results import damped_angles
 from flexapod.results.path import RigidPath
 from flexapod.results.record import collect
@@ -21,7 +22,6 @@ from flexapod.review.checks import check_path
 from flexapod.review.plausibility import robot_warnings
 from flexapod.solve.robot_march import prepare
 from flexapod.study.actuator import simulate_actuator
-from flexapod.study.asked import Asked
 from flexapod.surveys.sweeps.kept import ACTUATOR_SCALARS, Kept
 from flexapod.surveys.sweeps.scalars import ROBOT_SCALARS, RobotRun
 from flexapod.version import this_version

@@ -14,6 +14,7 @@ from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.kinematics.rotations import difference, matrix, quaternion
 from flexapod.model import Study
+from flexapod.results.asked import Asked
 from flexapod.results.bodies import flexible_axes
 from flexapod.results.causes import cause_names
 from flexapod.results.leg_results import drive_forces
@@ -25,7 +26,6 @@ from flexapod.review.plausibility import leg_stress
 from flexapod.solve.at_poses import robot_modes
 from flexapod.solve.recording import Counters
 from flexapod.solve.system import System
-from flexapod.study.asked import Asked
 from flexapod.ties import first_largest
 
 
