@@ -14,7 +14,7 @@ from flexapod.results.bodies import clearance, largest_turns, turns
 from flexapod.results.path import RigidPath
 from flexapod.ties import first_largest, first_least
 
-__all__ = ["Clearance", "StrokeEnd", "TurnedJoint", "joint_turns", "leg_clearance", "stroke_ends"]
+__all__ = ["LegClearance", "StrokeEnd", "TurnedJoint", "joint_turns", "leg_clearance", "stroke_ends"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,7 +31,7 @@ class TurnedJoint:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Clearance:
+class LegClearance:
     """Least distance of two `legs` as cylinders and pistons [m], on the path and at `home`."""
 
     legs: tuple[int, int]
@@ -96,7 +96,7 @@ def joint_turns(path: RigidPath) -> tuple[TurnedJoint, ...]:
     return tuple(lines)
 
 
-def leg_clearance(path: RigidPath) -> Clearance | None:
+def leg_clearance(path: RigidPath) -> LegClearance | None:
     """The two legs that come nearest to each other on a path."""
     robot = path.robot
     home = RigidPath(path.study, np.zeros(1), kinematics.home_pose(robot))
@@ -108,4 +108,4 @@ def leg_clearance(path: RigidPath) -> Clearance | None:
     k = first_least(nearest.gap)
     one, other = (int(leg) + 1 for leg in nearest.legs[k])
     least = Extreme(value=float(nearest.gap[k]), time=float(path.time[k]))
-    return Clearance(legs=(one, other), least=least, home=float(there.gap[0]))
+    return LegClearance(legs=(one, other), least=least, home=float(there.gap[0]))

@@ -11,7 +11,7 @@ from flexapod import kinematics, model
 from flexapod.arrays import Array
 from flexapod.description.actuator import ActuatorDescription, describe_actuator
 from flexapod.description.bodies import (
-    Clearance,
+    LegClearance,
     StrokeEnd,
     TurnedJoint,
     joint_turns,
@@ -260,7 +260,7 @@ class RobotDescription:
     angles: tuple[JointAngle, ...]
     turns: tuple[TurnedJoint, ...]
     stroke_ends: tuple[StrokeEnd, ...]
-    clearance: Clearance | None  # None where no two legs could meet but at a joint
+    clearance: LegClearance | None  # None where no two legs could meet but at a joint
     singularity: Singularity | None  # None of a platform that is fixed
     poses: tuple[PoseDescription, ...]
     vibration: VibrationToExpect | None

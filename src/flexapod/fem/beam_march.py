@@ -21,7 +21,7 @@ METHOD = GeneralizedAlpha(rho=0.8)
 
 
 @dataclass(frozen=True, kw_only=True)
-class SlidingBeam:
+class BeamRun:
     """Motion of a meshed beam: `time` (T,) [s], `unknowns` (T, 2 n + 2) [m, 1], and the number of steps."""
 
     mesh: BeamMesh
@@ -55,7 +55,7 @@ def march_sliding_beam(
     duration: float | None = None,
     output_step: float | None = None,
     progress: Callable[[float, float], None] | None = None,
-) -> SlidingBeam:
+) -> BeamRun:
     """Motion of the study's beam, meshed along its whole length, through ``guide``.
 
     Rotation and extension are prescribed, without damping; fidelity and number of shapes of the study are not used.
@@ -132,7 +132,7 @@ class _Steps:
     def __init__(self, mesh: BeamMesh, guide: GuideContact, path: _Path, step: float) -> None:
         self.mesh, self.guide, self.path, self.step = mesh, guide, path, step
 
-    def run(self, study: ActuatorStudy, every: int, progress: Callable[[float, float], None] | None) -> SlidingBeam:
+    def run(self, study: ActuatorStudy, every: int, progress: Callable[[float, float], None] | None) -> BeamRun:
         """All steps; states stored each ``every`` of them."""
         alpha_m, alpha_f, beta, gamma = METHOD.alpha_m, METHOD.alpha_f, METHOD.beta, METHOD.gamma
         h, count = self.step, len(self.path.length) - 1
@@ -152,7 +152,7 @@ class _Steps:
                 kept.append(u)
                 if progress is not None:
                     progress(i * h, count * h)
-        return SlidingBeam(
+        return BeamRun(
             mesh=self.mesh, time=np.linspace(0.0, count * h, len(kept)), unknowns=np.array(kept), steps=count
         )
 
