@@ -8,7 +8,17 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from flexapod import model
+from flexapod.document.budget import peak_budget
+from flexapod.results.attributes import robot_of
+from flexapod.results.of_elements import of_elements
+from flexapod.results.summary import tool_apart
+from flexapod.runtime.files import scratch
+from flexapod.runtime.processes import started
+from flexapod.scene.drives import drives
+from flexapod.scene.geometry import DrawnMotion
 from flexapod.scene.robot import carried_study
+from flexapod.words import capital
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -47,8 +57,6 @@ def drawing(
     data: Dataset, folder: str | Path, formats: Sequence[str], processes: int
 ) -> AbstractContextManager[Callable[[], list[Drawn]]]:
     """The same begun in copies of this process; what the block is given takes part, and waits for them."""
-    from flexapod.runtime.processes import started
-
     plans = list(_robot(data) if "com_deviation" in data else _actuator(data))
 
     def drawn(plan: _Plan) -> Drawn:
@@ -62,7 +70,6 @@ def store(figure: Figure, title: str, stem: Path, formats: Sequence[str] = ("png
     """Write a figure as ``stem.png``, ``stem.svg``, ``stem.pdf``, as asked for."""
     from flexapod import plot
     from flexapod.report.interactive import interactive
-    from flexapod.runtime.files import scratch
 
     files = plot.save(figure, stem, formats=formats)
     png = next((path for path in files if path.suffix == ".png"), None)
@@ -90,12 +97,6 @@ def _robot(data: Dataset) -> Iterator[_Plan]:
     import numpy as np
 
     from flexapod import plot
-    from flexapod.document.budget import peak_budget
-    from flexapod.results.attributes import robot_of
-    from flexapod.results.of_elements import of_elements
-    from flexapod.results.summary import tool_apart
-    from flexapod.scene.drives import drives
-    from flexapod.words import capital
 
     found = drives(data)
     elastic = bool(np.abs(data.com_deviation).max() > 0)
@@ -140,9 +141,6 @@ def _actuator(data: Dataset) -> Iterator[_Plan]:
 
 def _seen(data: Dataset) -> tuple[float, float] | None:
     """Radius of the hub [m] and the factor of the replay; None where the study cannot be read any more."""
-    from flexapod import model
-    from flexapod.scene.geometry import DrawnMotion
-
     study = carried_study(data)
     if not isinstance(study, model.ActuatorStudy):
         return None

@@ -8,14 +8,21 @@ from pathlib import Path
 from platform import python_version
 from typing import TYPE_CHECKING
 
+from flexapod.description.robot import describe
 from flexapod.document import html
+from flexapod.document.budget import peak_budget, peak_items
 from flexapod.document.html import Html
 from flexapod.document.parts import Chapter, Item, Lines, Remarks, Text, TextTable, warnings_of
+from flexapod.document.run import distances_table, told_of
+from flexapod.document.study import modes_section, study_items
 from flexapod.errors import FlexapodError
 from flexapod.report.curves import MOST_POINTS
 from flexapod.report.figures import Drawn
+from flexapod.results.bodies import bodies_words
+from flexapod.results.summary import POINT_WORDS, RobotSummary, summaries
 from flexapod.runtime.files import scratch, write_text
 from flexapod.scene.robot import carried_study
+from flexapod.words import text
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -72,12 +79,6 @@ def write_report(data: Dataset, folder: str | Path, figures: Callable[[], Sequen
 
 
 def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[[], Sequence[Drawn]]) -> str:
-    from flexapod.document.budget import peak_budget, peak_items
-    from flexapod.document.run import told_of
-    from flexapod.document.study import modes_section, study_items
-    from flexapod.results.bodies import bodies_words
-    from flexapod.results.summary import RobotSummary, summaries
-
     first, *further = summaries(data)
     described = _described(study)
     name = Path(str(data.attrs.get("study_file") or "study")).name
@@ -116,8 +117,6 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[
 
 def _described(study: Study | ActuatorStudy | None) -> RobotDescription | ActuatorDescription | None:
     """The study as `flexapod check` describes it; None where it cannot be."""
-    from flexapod.description.robot import describe
-
     try:
         return None if study is None else describe(study)
     except FlexapodError:
@@ -149,9 +148,6 @@ def replay_section(data: Dataset, told: Mapping[str, object], still: Drawn | Non
 
 def by_axis(data: Dataset) -> Html:
     """Largest and rms deviation along each axis, of the centre of mass and of a tool elsewhere."""
-    from flexapod.document.run import distances_table
-    from flexapod.results.summary import POINT_WORDS, RobotSummary, summaries
-
     tables = {x.point: distances_table(x) for x in summaries(data) if isinstance(x, RobotSummary)}
     several = [Chapter(POINT_WORDS[point].capitalize(), [table]) for point, table in tables.items()]
     note = "Flexible minus rigid at the same instant, world axes; it contains the sag at rest. Per cent of the travel: "
@@ -161,8 +157,6 @@ def by_axis(data: Dataset) -> Html:
 
 
 def _actuator_numbers(found: ActuatorSummary) -> Html:
-    from flexapod.words import text
-
     start, end = (text(length, "m", 4) for length in found.lengths)
     rows = [
         ("Largest deflection of the tip", f"{text(found.peak, 'm')} at {found.time:.3f} s"),
