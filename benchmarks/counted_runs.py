@@ -7,8 +7,8 @@ import numpy as np
 from benchmarks.deviation import roll
 from benchmarks.operations import KINDS, Count, reader
 from flexapod.model import override
-from flexapod.solve.native import loops
-from flexapod.solve.robot_march import RobotMarch, prepare
+from flexapod.solve.time.native import loops
+from flexapod.solve.time.robot_march import RobotMarch, prepare
 
 __all__ = ["residual_of_a_leg", "roll_step", "step_within"]
 

@@ -10,10 +10,10 @@ import numpy as np
 from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.model import ActuatorStudy, Study, override, preset
-from flexapod.solve.actuator_march import prepare_actuator
-from flexapod.solve.recording import Counters
-from flexapod.solve.robot_march import prepare
 from flexapod.solve.shapes import actuator_shapes
+from flexapod.solve.time.actuator_march import prepare_actuator
+from flexapod.solve.time.recording import Counters
+from flexapod.solve.time.robot_march import prepare
 
 __all__ = ["GRID", "Curve", "Marched", "error", "marched", "reference", "rigid_centre", "roll", "undamped"]
 

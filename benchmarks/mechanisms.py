@@ -13,9 +13,9 @@ import flexapod as fx
 from benchmarks.report import Section, goal
 from benchmarks.timing import interleaved
 from flexapod.model import Study
-from flexapod.solve import native
 from flexapod.solve.kernel import Kernel
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.time import native
+from flexapod.solve.time.robot_march import prepare
 from flexapod.symbolic.functions import operations
 
 __all__ = ["count", "first_run", "least_step", "mechanisms", "with_step"]

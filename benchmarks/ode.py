@@ -23,10 +23,10 @@ from flexapod.mechanics.assembly import payload_functions
 from flexapod.mechanics.layout import Shapes, leg_parameters
 from flexapod.mechanics.leg import leg
 from flexapod.model import ActuatorStudy, Study
-from flexapod.solve.actuator_march import prepare_actuator
-from flexapod.solve.robot_march import prepare
 from flexapod.solve.shapes import home
-from flexapod.solve.tables import robot_law
+from flexapod.solve.time.actuator_march import prepare_actuator
+from flexapod.solve.time.robot_march import prepare
+from flexapod.solve.time.tables import robot_law
 from flexapod.symbolic.compiler import compiled_library, compiler
 from flexapod.symbolic.functions import NamedFunction
 from flexapod.symbolic.lagrange import inverse_dynamics, mass_matrix

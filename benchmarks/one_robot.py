@@ -10,7 +10,7 @@ from benchmarks.operations import Count, casadi_count, counted
 from benchmarks.report import Section, goal
 from benchmarks.timing import Spread, interleaved
 from flexapod.model import DEFAULT_TOLERANCE, Study
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.time.robot_march import prepare
 from flexapod.study import simulate
 
 __all__ = ["one_robot"]

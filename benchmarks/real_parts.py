@@ -9,7 +9,7 @@ from benchmarks.mechanisms import count, first_run, least_step, with_step
 from benchmarks.report import Section, goal
 from benchmarks.timing import interleaved
 from flexapod.model import loads, preset, preset_text
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.time.robot_march import prepare
 
 __all__ = ["EVERYTHING", "real_parts", "tapered"]
 

@@ -26,7 +26,7 @@ ROLL = (
 NO_COMPILER = (
     "import time\n"
     "from flexapod.model import override, preset\n"
-    "from flexapod.solve.robot_march import prepare\n"
+    "from flexapod.solve.time.robot_march import prepare\n"
     "def seconds(duration):\n"
     "    run = prepare(override(preset('paper-robot'), step=5e-4, duration=duration))\n"
     "    begin = time.perf_counter()\n"

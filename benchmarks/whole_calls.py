@@ -28,7 +28,7 @@ PROGRAM = """
 import sys, time
 import flexapod as fx
 from flexapod.model import override
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.time.robot_march import prepare
 from flexapod.surveys.sweeps.batch import compute_point
 from flexapod.surveys.sweeps.kept import kept
 from flexapod.surveys.sweeps.plan import read_plan

@@ -8,9 +8,9 @@ from tests.layouts import layout
 from flexapod.bases import axial_basis, lateral_basis
 from flexapod.mechanics.layout import LEG_PARAMETERS
 from flexapod.model import override, preset
-from flexapod.solve.actuator_march import prepare_actuator
 from flexapod.solve.kernel import interpreted_kernel
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.time.actuator_march import prepare_actuator
+from flexapod.solve.time.robot_march import prepare
 
 FIELDS = ("time", "q", "v", "v_dot", "lam", "drive", "pose", "reaction", "energy", "sums", "closure", "friction")
 

@@ -6,7 +6,7 @@ from tests.oracles import beams
 
 from flexapod.errors import ComputationError, InputError
 from flexapod.model import Actuator, Simulation, preset
-from flexapod.solve.actuator_modes import actuator_modes
+from flexapod.solve.modal.actuator_modes import actuator_modes
 
 UNIT = {"length": 1.0, "rhoA": 1.0, "EI": 1.0, "free_length": 1.0}
 MASSES = (0.1, 0.5, 1.0, 2.0, 5.0, 10.0)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from flexapod.model import Simulation, preset
-from flexapod.solve.actuator_march import actuator_system, static_shape
-from flexapod.solve.actuator_modes import turning_matrices
+from flexapod.solve.modal.actuator_modes import turning_matrices
+from flexapod.solve.time.actuator_march import actuator_system, static_shape
 
 BEAM = preset("paper-actuator").actuator
 

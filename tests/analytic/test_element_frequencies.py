@@ -7,7 +7,7 @@ from tests.oracles import beams
 
 from flexapod.errors import InputError
 from flexapod.model import Actuator, Simulation
-from flexapod.solve.actuator_modes import actuator_modes
+from flexapod.solve.modal.actuator_modes import actuator_modes
 
 CANTILEVER = beams.beam_roots("clamped", "free", 3)
 

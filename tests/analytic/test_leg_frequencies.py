@@ -7,7 +7,7 @@ from tests.oracles import beams
 from tests.runs import leg_vector, paper_robot, uncompiled, with_legs
 
 from flexapod import kinematics
-from flexapod.solve.at_poses import robot_modes
+from flexapod.solve.modal.at_poses import robot_modes
 
 PISTON = beams.round_section(0.027, 200e9, 7800.0)
 EULER = np.pi**2 * PISTON["EI"] / 0.6**2

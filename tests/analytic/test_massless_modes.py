@@ -7,8 +7,8 @@ from tests.machines import SCREW, TUBE, machine, study
 import flexapod as fx
 from flexapod.model import Feedback, Motor, preset_text
 from flexapod.model.mount import Mount
-from flexapod.solve.damped import damping_ratios, poles
-from flexapod.solve.frequencies import natural
+from flexapod.solve.modal.damped import damping_ratios, poles
+from flexapod.solve.modal.frequencies import natural
 
 
 def modal(mass, stiffness, damping):

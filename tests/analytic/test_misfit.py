@@ -14,7 +14,7 @@ from tests.consistency.test_mechanism_statics import EIGHT
 from tests.systems import ring, robot, tangents
 
 from flexapod.kinematics.rotations import quaternion
-from flexapod.solve.equilibrium import equilibria
+from flexapod.solve.statics.equilibrium import equilibria
 
 TOO_LONG, AT, LEG = 1e-4, np.array([0.06, -0.04, 0.97, 0.35, -0.2, 0.5]), 2  # leg 3; displaced and turned far
 LIGHT = {name: 0.0 for name in ("rhoA", "piston_axial_inertia", "cylinder_mass", "cylinder_inertia")}

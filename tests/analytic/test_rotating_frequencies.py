@@ -10,7 +10,7 @@ import pytest
 from tests.oracles import rotating
 
 from flexapod.model import Actuator, Simulation
-from flexapod.solve.actuator_modes import actuator_modes
+from flexapod.solve.modal.actuator_modes import actuator_modes
 
 SLOW = (1, 2, 3, 4, 5, 6, 8, 10)
 # delta, mu, g: every row of the published tables

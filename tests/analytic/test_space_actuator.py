@@ -22,9 +22,9 @@ from flexapod.model import (
     Simulation,
     SpinUpLaw,
 )
-from flexapod.solve.actuator_march import actuator_system, prepare_actuator
-from flexapod.solve.actuator_modes import actuator_modes, stretching_lag
+from flexapod.solve.modal.actuator_modes import actuator_modes, stretching_lag
 from flexapod.solve.shapes import places
+from flexapod.solve.time.actuator_march import actuator_system, prepare_actuator
 
 BEAM = {"length": 3.66, "rhoA": 4.02, "EI": 756.65, "free_length": 1.83}
 BODY = {"tip_mass": 1.0, "tip_inertia": 0.02, "hub_inertia": 2.0, "hub_radius": 0.1}

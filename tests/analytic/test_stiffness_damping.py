@@ -12,8 +12,8 @@ from flexapod.model import Actuator, ActuatorMotion, ActuatorStudy, Damping, Sim
 from flexapod.model.fields import read_fields
 from flexapod.model.key_paths import put, value_at
 from flexapod.schema.key_paths import parse_key
-from flexapod.solve.actuator_modes import actuator_modes
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.modal.actuator_modes import actuator_modes
+from flexapod.solve.time.robot_march import prepare
 
 BEAM = {"length": 1.0, "rhoA": 1.0, "EI": 1.0, "free_length": 1.0}
 BETA = np.array([1.875104068711961, 4.694091132974174, 7.854757438237613])  # roots of cos b cosh b = -1

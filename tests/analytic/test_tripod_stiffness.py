@@ -9,7 +9,7 @@ from flexapod.model.cylinder import Cylinder
 from flexapod.model.material import Tube
 from flexapod.model.payload import Payload
 from flexapod.model.piston import Piston
-from flexapod.solve.at_poses import robot_modes, robot_stiffness
+from flexapod.solve.modal.at_poses import robot_modes, robot_stiffness
 from flexapod.surveys.sweeps.batch import compute_point
 from flexapod.surveys.sweeps.kept import kept
 from flexapod.surveys.sweeps.plan import read_plan

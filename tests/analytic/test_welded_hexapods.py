@@ -8,7 +8,7 @@ from flexapod.kinematics.limbs import limbs
 from flexapod.model import Simulation
 from flexapod.model.joint import Joint
 from flexapod.model.payload import Payload
-from flexapod.solve.at_poses import robot_stiffness
+from flexapod.solve.modal.at_poses import robot_stiffness
 
 NOTHING = Payload(mass=1.0, inertia=[1.0, 1.0, 1.0], com=[0.0, 0.05, 0.1], tool=[0.1, 0.0, 0.2])
 

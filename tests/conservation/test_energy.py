@@ -8,8 +8,8 @@ from tests.runs import balance, paper_robot, run_actuator, run_robot, with_legs
 
 from flexapod import kinematics
 from flexapod.model import ServoDrive, override, preset
-from flexapod.solve.actuator_march import actuator_system
-from flexapod.solve.at_poses import robot_modes
+from flexapod.solve.modal.at_poses import robot_modes
+from flexapod.solve.time.actuator_march import actuator_system
 
 RHO, STEPS, PERIODS = 0.9, 200, 10
 CHI, OM = (1 - RHO) / (1 + RHO), 2 * np.pi / STEPS

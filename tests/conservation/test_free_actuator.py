@@ -5,7 +5,7 @@ import pytest
 
 import flexapod as fx
 from flexapod import model
-from flexapod.solve.actuator_march import prepare_actuator
+from flexapod.solve.time.actuator_march import prepare_actuator
 
 STUDY = fx.preset("paper-actuator")
 NONE = {"law": "constant", "value": 0.0}

@@ -5,7 +5,7 @@ from tests.runs import balance, collect, paper_robot, run_actuator
 
 from flexapod import kinematics
 from flexapod.model import override, preset
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.time.robot_march import prepare
 
 
 def first_instant(fidelity):

@@ -15,8 +15,8 @@ from flexapod.model import AxisMotion, Joint, Payload, Simulation, loads, overri
 from flexapod.model.cylinder import Cylinder
 from flexapod.model.piston import Piston
 from flexapod.solve import parameters
-from flexapod.solve.loss_factor import loss_frequency, loss_words
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.modal.loss_factor import loss_frequency, loss_words
+from flexapod.solve.time.robot_march import prepare
 
 LENGTH, STIFF = 0.5, 300.0
 LOSSY = "loss = 0.01, stiffness = { axial = 9e7, radial = 1e7, loss = 0.02 }"

@@ -7,7 +7,7 @@ from tests.runs import balance, run_robot, with_legs
 
 from flexapod.model import override
 from flexapod.model.joint import Joint
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.time.robot_march import prepare
 
 #: Stiffness of a flexure in the axes of its leg [N/m, N, N m/rad].
 SIX = np.diag([1.3e7, 1.3e7, 9.4e7, 150.0, 150.0, 200.0])

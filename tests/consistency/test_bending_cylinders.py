@@ -13,8 +13,8 @@ from flexapod import kinematics
 from flexapod.bases import axial_basis
 from flexapod.model import MATERIALS, Cylinder, Guide, Mounted, Piston, PistonSection, Simulation
 from flexapod.model.material import Tube
-from flexapod.solve.buckling import leg_loads
 from flexapod.solve.shapes import robot_shapes
+from flexapod.solve.statics.buckling import leg_loads
 
 STEEL = MATERIALS["steel"]
 WIDE, THIN = Tube(diameter=0.09, inner_diameter=0.07), Tube(diameter=0.06, inner_diameter=0.055)

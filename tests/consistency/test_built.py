@@ -10,7 +10,7 @@ from flexapod import kinematics
 from flexapod.errors import ComputationError, InputError
 from flexapod.kinematics.built import built_parts
 from flexapod.model import MATERIALS, Expansion, Geometry, Heat
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.time.robot_march import prepare
 
 RNG = np.random.default_rng(7)
 POSE = np.array([[0.02, -0.03, 0.04, 0.1, -0.05, 0.15]])

@@ -14,8 +14,8 @@ import flexapod as fx
 from flexapod.elements.carriage import carriage
 from flexapod.elements.frame import Frame
 from flexapod.model.joint import Carriage
-from flexapod.solve.released import rigid_forces
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.statics.released import rigid_forces
+from flexapod.solve.time.robot_march import prepare
 
 MASS, COM = 4.0, 0.05
 

@@ -16,7 +16,7 @@ from flexapod.model import (
     Simulation,
     SineLaw,
 )
-from flexapod.solve.actuator_march import actuator_system
+from flexapod.solve.time.actuator_march import actuator_system
 
 RHO, EI, LT, HUB, START = 4.02, 756.65, 3.66, 3.0, 1.83
 TORQUE, FORCE = {"amplitude": 14.0, "frequency": 0.4, "phase": 0.4}, {"amplitude": 9.0, "frequency": 0.7, "phase": -0.5}

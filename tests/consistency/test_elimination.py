@@ -10,11 +10,11 @@ from tests.runs import paper_robot, with_legs
 from flexapod import kinematics
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import ForceDrive, PrescribedDrive, ServoDrive, override, preset
-from flexapod.solve import interpreted, native
-from flexapod.solve.actuator_march import prepare_actuator
-from flexapod.solve.recording import Counters
-from flexapod.solve.robot_march import prepare
-from flexapod.solve.tables import robot_law
+from flexapod.solve.time import interpreted, native
+from flexapod.solve.time.actuator_march import prepare_actuator
+from flexapod.solve.time.recording import Counters
+from flexapod.solve.time.robot_march import prepare
+from flexapod.solve.time.tables import robot_law
 
 DRIVES = {
     "prescribed": PrescribedDrive(),
@@ -106,7 +106,7 @@ def test_single_actuator_equals_its_twin(driven):
         )
     prepared = prepare_actuator(study)
     system = prepared.system
-    from flexapod.solve.actuator_march import _tables as actuator_tables
+    from flexapod.solve.time.actuator_march import _tables as actuator_tables
 
     tables = actuator_tables(study)(np.arange(51) * 1e-3)
     fast = native.advance(system, replace_method(study), prepared.start, 1e-3, tables, 1, Counters())

@@ -15,10 +15,10 @@ from flexapod.kinematics.closures import Closed, Task, close, gaps
 from flexapod.kinematics.limbs import COORDINATES, limbs
 from flexapod.kinematics.screws import screws
 from flexapod.solve.batch import RestStates
-from flexapod.solve.branch import fallen, refuse_fallen
 from flexapod.solve.rigid_motion import rigid_state
-from flexapod.solve.robot_march import _Range, prepare
 from flexapod.solve.robot_system import robot_system
+from flexapod.solve.statics.branch import fallen, refuse_fallen
+from flexapod.solve.time.robot_march import _Range, prepare
 
 SPIN, GAMMA3 = COORDINATES.index("spin"), COORDINATES.index("gamma3")
 

@@ -25,11 +25,11 @@ from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.mechanics.sliding import friction_functions
 from flexapod.model import Feedback, Joint, JointFriction, ScrewFriction, ServoDrive, StrokeFriction, override
 from flexapod.review.sliding import steady_friction
-from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.friction import numbers, sliding
 from flexapod.solve.kernel import kernel
-from flexapod.solve.lost_motion import lost_motion, reversal
-from flexapod.solve.stiffness import displacement, tool_motion
+from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.statics.lost_motion import lost_motion, reversal
+from flexapod.solve.statics.stiffness import displacement, tool_motion
 from flexapod.symbolic.functions import Interpreted
 from flexapod.symbolic.vocabulary import constant, symbol, zeros
 

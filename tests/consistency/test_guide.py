@@ -33,7 +33,7 @@ from flexapod.report.replay import replay
 from flexapod.results.bodies import bodies_words
 from flexapod.review.estimates import buckling_load
 from flexapod.scene.geometry import RobotMotion
-from flexapod.solve.buckling import leg_loads
+from flexapod.solve.statics.buckling import leg_loads
 from flexapod.verify.engines import calculix
 from flexapod.verify.engines.engine import CALCULIX
 from flexapod.verify.engines.exudyn_robot import RobotProblem

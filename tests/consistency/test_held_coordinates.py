@@ -17,17 +17,18 @@ from flexapod.kinematics.limbs import limbs
 from flexapod.mechanics.layout import PAYLOAD_PARAMETERS, columns, leg_parameters
 from flexapod.mechanics.leg_chain import LegChain
 from flexapod.model import AxisMotion, Cylinder, Load, Piston, Study, override, preset
-from flexapod.solve import interpreted, native, parameters, robot_system
+from flexapod.solve import parameters, robot_system
 from flexapod.solve.batch import RestStates
-from flexapod.solve.equilibrium import equilibria
 from flexapod.solve.kernel import kernel
-from flexapod.solve.recording import Counters
 from flexapod.solve.rigid_motion import rigid_state
-from flexapod.solve.robot_march import prepare
 from flexapod.solve.shapes import space_shapes
-from flexapod.solve.start import consistent_start
+from flexapod.solve.statics.equilibrium import equilibria
 from flexapod.solve.system import State, System
-from flexapod.solve.tables import robot_law
+from flexapod.solve.time import interpreted, native
+from flexapod.solve.time.recording import Counters
+from flexapod.solve.time.robot_march import prepare
+from flexapod.solve.time.start import consistent_start
+from flexapod.solve.time.tables import robot_law
 
 METHOD, H = GeneralizedAlpha(0.9), 5e-4
 PUSH = [50.0, -30, 20, 4, 5, -6]

@@ -21,7 +21,7 @@ from flexapod.elements.springs import springs_along
 from flexapod.errors import InputError
 from flexapod.model import AxialSpring, HydraulicDrive, HydraulicLimits
 from flexapod.results.path import RigidPath
-from flexapod.solve.loss_factor import loss_frequency
+from flexapod.solve.modal.loss_factor import loss_frequency
 
 OIL = HydraulicDrive(
     bore=0.08, rod=0.056, stroke=0.5, bottom=0.05, dead_volume=[1e-4, 3e-4], bulk_modulus=1.2e9, leakage=1e-12

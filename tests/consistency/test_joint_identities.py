@@ -15,8 +15,8 @@ from flexapod import kinematics
 from flexapod.model import Simulation
 from flexapod.model.joint import Carriage, Joint
 from flexapod.results.poses import from_home
-from flexapod.solve.at_poses import robot_stiffness
-from flexapod.solve.released import rigid_forces
+from flexapod.solve.modal.at_poses import robot_stiffness
+from flexapod.solve.statics.released import rigid_forces
 
 FLEXIBLE = Simulation(fidelity="assumed-modes", modes=2)
 

@@ -9,9 +9,9 @@ from tests.oracles import virtual_power
 
 from flexapod import kinematics
 from flexapod.model import CombinedMotion, Simulation
-from flexapod.solve.rigid_forces import joint_forces
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.robot_system import robot_system
+from flexapod.solve.statics.rigid_forces import joint_forces
 
 WRENCH = np.array([50.0, -30, 80, 5, -4, 6])
 IDEAL = [name for name in MOVING if name != "6-FPF"]  # its springs are no part of the rigid robot

@@ -18,13 +18,13 @@ from flexapod.errors import InputError
 from flexapod.exchange.export import abaqus_deck
 from flexapod.integration import GeneralizedAlpha
 from flexapod.model import Encoder, Loop, Motor, Ripple, Rotor
-from flexapod.solve import interpreted, native
-from flexapod.solve.at_poses import locked_poses
-from flexapod.solve.linear import linear_robot
-from flexapod.solve.loss_factor import loss_frequency
-from flexapod.solve.recording import Counters
-from flexapod.solve.robot_march import prepare
-from flexapod.solve.tables import robot_law
+from flexapod.solve.linear.robot import linear_robot
+from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.modal.loss_factor import loss_frequency
+from flexapod.solve.time import interpreted, native
+from flexapod.solve.time.recording import Counters
+from flexapod.solve.time.robot_march import prepare
+from flexapod.solve.time.tables import robot_law
 from flexapod.verify.engines.exudyn_robot import RobotProblem
 
 LOOP = Loop(stiffness=50.0, damping=0.5)

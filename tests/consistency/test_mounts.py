@@ -25,7 +25,7 @@ from flexapod.model.mount import BaseMotion, Mount
 from flexapod.report.replay import replay
 from flexapod.results.attributes import study_of
 from flexapod.scene.geometry import RobotMotion
-from flexapod.solve.buckling import leg_loads
+from flexapod.solve.statics.buckling import leg_loads
 from flexapod.symbolic.functions import Interpreted
 
 NONE = lateral_basis("clamped-free", 0)
@@ -177,7 +177,7 @@ def test_a_plate_without_mass_is_the_limit_of_a_light_one(shaken):
 
 
 def test_the_readable_time_loop_does_the_same(shaken, monkeypatch):
-    from flexapod.solve import march
+    from flexapod.solve.time import march
 
     monkeypatch.setattr(march, "_loop", lambda _: march.interpreted)
     start = study(machine().replace(base_mount=BASE, platform_mount=TOP), fidelity="lumped", step=1e-3, duration=0.01)

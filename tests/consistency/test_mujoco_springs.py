@@ -11,7 +11,7 @@ import flexapod as fx
 from flexapod.kinematics.rotations import matrix
 from flexapod.model import AxialSpring
 from flexapod.results.arguments import as_pose
-from flexapod.solve.at_poses import locked_poses
+from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.verify.engines.mujoco_model import LEAST, mjcf
 
 mujoco = pytest.importorskip("mujoco")

@@ -19,7 +19,7 @@ from flexapod.exchange.export import abaqus_deck
 from flexapod.model import ServoDrive, StrokeFriction, preset_text, to_toml
 from flexapod.page.charts import charts
 from flexapod.report import figures
-from flexapod.solve.at_poses import robot_modes
+from flexapod.solve.modal.at_poses import robot_modes
 from flexapod.verify.engines import exudyn_robot
 from flexapod.verify.engines.exudyn_integration import Integration
 from flexapod.verify.engines.mujoco_model import mjcf

@@ -8,8 +8,8 @@ from tests.runs import uncompiled_kernel
 
 from flexapod.kinematics import Poses
 from flexapod.model import Simulation
-from flexapod.solve.at_poses import locked_poses
-from flexapod.solve.equilibrium import equilibria
+from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.statics.equilibrium import equilibria
 
 MISFIT = 1e-4
 

@@ -11,10 +11,10 @@ from flexapod import kinematics
 from flexapod.kinematics.limbs import DRIVEN
 from flexapod.model import Feedback, ForceDrive, Simulation
 from flexapod.model.drive import ServoDrive
-from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.batch import port_forces
-from flexapod.solve.released import rigid_forces
-from flexapod.solve.static_loads import at_drives
+from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.statics.released import rigid_forces
+from flexapod.solve.statics.static_loads import at_drives
 
 ROBOTS = {"stroke": hexapod, "carriage": lambda: sliders("PUS"), "hinges": three_rps}
 SPRING = Feedback(stiffness=3e6, damping=1e3)

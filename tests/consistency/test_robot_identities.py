@@ -12,8 +12,8 @@ from tests.systems import CYLINDER, PISTON, packed, robot
 from flexapod.bases import axial_basis, lateral_basis
 from flexapod.mechanics.layout import leg_parameters
 from flexapod.solve.batch import RestStates, matrices_at_rest
-from flexapod.solve.equilibrium import equilibria
 from flexapod.solve.kernel import interpreted_kernel
+from flexapod.solve.statics.equilibrium import equilibria
 from flexapod.solve.system import System
 
 NOTHING = 1e-14  # share of a leg's mass and stiffness

@@ -12,12 +12,12 @@ from flexapod import kinematics
 from flexapod.errors import ComputationError
 from flexapod.model import Simulation
 from flexapod.model.payload import Payload
-from flexapod.solve.at_poses import locked_poses
-from flexapod.solve.equilibrium import TOO_FAR, equilibria
-from flexapod.solve.locked import the_equilibrium
-from flexapod.solve.modes import modes_of
+from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.modal.modes import modes_of
 from flexapod.solve.rigid_motion import rigid_rest
-from flexapod.solve.substitutes import with_substitutes
+from flexapod.solve.statics.equilibrium import TOO_FAR, equilibria
+from flexapod.solve.statics.locked import the_equilibrium
+from flexapod.solve.statics.substitutes import with_substitutes
 
 MOVES = {"3-PUU": slice(0, 3), "3-RPS": slice(2, 5), "6-FPF": slice(0, 6), "3-UPS+UP": slice(2, 5)}
 SHAPES = Simulation(fidelity="assumed-modes", modes=2)

@@ -9,10 +9,10 @@ from flexapod import kinematics
 from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.model import override, preset
-from flexapod.solve import native
-from flexapod.solve.recording import Counters
-from flexapod.solve.robot_march import prepare
-from flexapod.solve.tables import robot_law
+from flexapod.solve.time import native
+from flexapod.solve.time.recording import Counters
+from flexapod.solve.time.robot_march import prepare
+from flexapod.solve.time.tables import robot_law
 from flexapod.symbolic.compiler import compiler
 
 pytestmark = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")

@@ -15,11 +15,11 @@ from flexapod.model.mount import BaseMotion, Mount
 from flexapod.pose_errors.disturbances import vibration_rows, vibration_words
 from flexapod.pose_errors.sensitivity import sensitivity
 from flexapod.results.arguments import as_pose
-from flexapod.solve.at_poses import locked_poses
-from flexapod.solve.damped import poles
-from flexapod.solve.linear import FAR, LinearRobot, linear_robot
-from flexapod.solve.locked import LockedPoses
-from flexapod.solve.random_vibration import Source, panels, random_vibration
+from flexapod.solve.linear.random_vibration import Source, panels, random_vibration
+from flexapod.solve.linear.robot import FAR, LinearRobot, linear_robot
+from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.modal.damped import poles
+from flexapod.solve.statics.locked import LockedPoses
 
 WHITE = np.array([1e-3, 1e5])
 TILTED = {"surge": 0.03, "heave": -0.02, "roll": 0.1, "yaw": 0.05}

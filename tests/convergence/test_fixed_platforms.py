@@ -11,7 +11,7 @@ from tests.runs import collect
 
 from flexapod import simulate
 from flexapod.model import ServoDrive, load, override
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.time.robot_march import prepare
 
 STRUT = Path(__file__).parents[2] / "examples/mechanisms/strut.toml"
 TOLERANCES = tuple(10.0**-k for k in range(2, 9))

@@ -8,7 +8,7 @@ from tests.runs import collect, paper_robot, run_robot
 
 from flexapod import kinematics
 from flexapod.model import override
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.time.robot_march import prepare
 
 STEPS = (2e-3, 1e-3, 5e-4, 2.5e-4)
 

@@ -6,7 +6,7 @@ from tests.runs import balance, paper_robot, run_actuator, run_robot, with_legs
 
 import flexapod as fx
 from flexapod.model import CsvLaw, CsvWrench, ForceDrive, Load, ServoDrive, StepWrench, override
-from flexapod.solve import march
+from flexapod.solve.time import march
 
 STEPS = (4e-4, 2e-4, 1e-4)
 FINE = 2.5e-5  # error of the reference: 1/16 of the finest run's, which moves its order by 0.09 at most

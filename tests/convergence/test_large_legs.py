@@ -8,8 +8,8 @@ from tests.machines import SCREW, SOFT, machine, study
 from tests.runs import balance, collect
 
 from flexapod.model import Feedback, JointFriction, ScrewFriction
-from flexapod.solve.native import LARGE
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.time.native import LARGE
+from flexapod.solve.time.robot_march import prepare
 
 RUBS = SOFT.replace(friction=JointFriction(mu=0.1, diameter=0.04))
 DRIVE = SCREW.replace(command="servo", loop=Feedback(stiffness=5e3, damping=20.0), friction=ScrewFriction(torque=0.5))

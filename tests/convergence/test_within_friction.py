@@ -10,7 +10,7 @@ from tests.runs import paper_robot, run_robot, with_legs
 
 from flexapod import simulate
 from flexapod.model import ServoDrive, StrokeFriction, load, override
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.time.robot_march import prepare
 
 STRUT = Path(__file__).parents[2] / "examples/mechanisms/strut.toml"
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)

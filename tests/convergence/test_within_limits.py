@@ -9,8 +9,8 @@ from tests.runs import paper_robot, run_actuator, run_robot, with_legs
 
 from flexapod import simulate
 from flexapod.model import CsvWrench, Load, StepWrench, override, preset
-from flexapod.solve import radau
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.time import radau
+from flexapod.solve.time.robot_march import prepare
 
 
 def stretching(study, factor, damping=0.01):

@@ -13,8 +13,8 @@ from flexapod import kinematics
 from flexapod.kinematics.rotations import matrix
 from flexapod.model import Feedback, Joint, JointFriction, ScrewFriction, override, preset
 from flexapod.model.mount import BaseMotion, Mount
-from flexapod.solve import radau
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.time import radau
+from flexapod.solve.time.robot_march import prepare
 
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 

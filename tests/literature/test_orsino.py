@@ -12,9 +12,9 @@ from flexapod.model.joint import Carriage
 from flexapod.model.leg import Leg
 from flexapod.model.payload import Payload
 from flexapod.model.piston import Piston, Strut
-from flexapod.solve.rigid_forces import joint_forces
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.robot_system import robot_system
+from flexapod.solve.statics.rigid_forces import joint_forces
 
 STIFF = {"EA": 1e8, "EI": 1e4}
 

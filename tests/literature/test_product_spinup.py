@@ -7,7 +7,7 @@ from tests.runs import run_actuator
 
 from flexapod.bases import lateral_basis
 from flexapod.model import Actuator, ActuatorMotion, ActuatorStudy, RateLaw, Simulation, SpinUpLaw
-from flexapod.solve.actuator_modes import turning_matrices
+from flexapod.solve.modal.actuator_modes import turning_matrices
 from flexapod.verify.cases.turning import TABLE
 
 TS = 15.0

@@ -85,8 +85,8 @@ def test_every_source_package_is_in_the_folder_map():
 
 
 def test_the_pattern_finds_files():
-    assert CODE.findall("see `solve/march.py`, `model/` and `names.py`, not `v_dot`") == [
-        "solve/march.py",
+    assert CODE.findall("see `solve/time/march.py`, `model/` and `names.py`, not `v_dot`") == [
+        "solve/time/march.py",
         "model/",
         "names.py",
     ]

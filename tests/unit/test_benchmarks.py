@@ -21,7 +21,7 @@ from benchmarks.tolerances import at_error
 
 from flexapod.model import load, loads, preset
 from flexapod.results.causes import cause_names
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.time.robot_march import prepare
 
 needs_cpp = pytest.mark.skipif(shutil.which("c++") is None, reason="there is no C++ compiler")
 
@@ -145,7 +145,7 @@ def test_compiled_code_counts_itself(tmp_path, monkeypatch):
 @needs_cpp
 def test_counted_residual_is_what_casadi_lists():
     from flexapod.mechanics.assembly import leg_functions
-    from flexapod.solve.robot_march import prepare
+    from flexapod.solve.time.robot_march import prepare
 
     listed = leg_functions(prepare(fixed(5e-4, 0.9)).system.kernel.shapes)[0]
     ours, theirs = counted("benchmarks.counted_runs:residual_of_a_leg"), casadi_count(listed.build())

@@ -23,7 +23,7 @@ from flexapod.model import (
 )
 from flexapod.schema.csv_tables import WRENCH as COLUMNS
 from flexapod.schema.csv_tables import read_table
-from flexapod.solve.stops import Stop, Stops
+from flexapod.solve.time.stops import Stop, Stops
 
 WRENCH = np.array([60.0, -40.0, 30.0, 5.0, 4.0, -3.0])
 

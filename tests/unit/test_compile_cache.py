@@ -16,7 +16,7 @@ import pytest
 from flexapod.errors import ComputationError, InputError
 from flexapod.kinematics.robot import home_pose
 from flexapod.model import preset
-from flexapod.solve.at_poses import locked_poses
+from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.robot_system import robot_system
 from flexapod.symbolic import cache, compiler
 from flexapod.symbolic.compiler import CompiledFunction, compiled_library, written_library

@@ -9,9 +9,9 @@ from tests.mechanisms import three_rps
 from flexapod import kinematics
 from flexapod.kinematics.laws import PROFILES
 from flexapod.model import CombinedMotion, CsvMotion, Load, Simulation, Waypoint, WaypointMotion
-from flexapod.solve.pieces import ENOUGH, NODES, Pieces
 from flexapod.solve.robot_system import robot_system
-from flexapod.solve.tables import robot_law
+from flexapod.solve.time.pieces import ENOUGH, NODES, Pieces
+from flexapod.solve.time.tables import robot_law
 
 
 class Counted:

@@ -31,7 +31,7 @@ from flexapod.model.heat import HEAT_PARTS
 from flexapod.model.material import Tube
 from flexapod.model.mount import Mount
 from flexapod.results.causes import cause_names
-from flexapod.solve.parts import part_stiffness
+from flexapod.solve.statics.parts import part_stiffness
 
 UM = 1e6  # N/m
 STUDY = """

@@ -15,7 +15,7 @@ from flexapod.error_budget.counted import budget_counts, run_counts
 from flexapod.model import ActuatorStudy, override
 from flexapod.report.page import warnings_section
 from flexapod.results.ideal import MACHINES, ideal_words
-from flexapod.solve.parts import part_stiffness
+from flexapod.solve.statics.parts import part_stiffness
 from flexapod.words import along_axes, brief
 
 RUN = CliRunner()

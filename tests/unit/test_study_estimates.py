@@ -23,8 +23,8 @@ from flexapod.review.estimates import (
     buckling_load,
     residual_vibration,
 )
-from flexapod.solve.at_poses import robot_modes
 from flexapod.solve.kernel import kernel
+from flexapod.solve.modal.at_poses import robot_modes
 from flexapod.solve.robot_system import robot_system
 from flexapod.solve.shapes import space_shapes
 

@@ -10,7 +10,7 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod.model import ActuatorLoad, ForceDrive, override
-from flexapod.solve import robot_march
+from flexapod.solve.time import robot_march
 from flexapod.study import Interrupted
 
 

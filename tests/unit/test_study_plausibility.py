@@ -17,7 +17,7 @@ from flexapod.model.material import MATERIALS
 from flexapod.results.bodies import flexible_axes
 from flexapod.review.estimates import STATIONS, buckling_load
 from flexapod.review.plausibility import leg_stress
-from flexapod.solve.at_poses import locked_poses
+from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.sections import leg_values
 
 STILL = AxisMotion(type="heave", amplitude=0.0, duration=1.0)

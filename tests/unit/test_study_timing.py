@@ -6,7 +6,7 @@ from tests.runs import paper_robot
 
 import flexapod as fx
 from flexapod.model import AxisMotion
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.time.robot_march import prepare
 from flexapod.study import check_path
 
 QUICK = {"fidelity": "lumped", "step": 1e-3}

@@ -8,9 +8,9 @@ from tests.runs import paper_robot
 
 import flexapod as fx
 from flexapod.mechanics.layout import LEG_PARAMETERS, columns
-from flexapod.solve import native
-from flexapod.solve.robot_march import prepare
 from flexapod.solve.saddle import saddle_solve
+from flexapod.solve.time import native
+from flexapod.solve.time.robot_march import prepare
 
 
 def test_a_step_that_cannot_be_changed_is_told():

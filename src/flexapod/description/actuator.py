@@ -10,7 +10,7 @@ from flexapod import kinematics, model
 from flexapod.errors import FlexapodError
 from flexapod.results.path import path_instants
 from flexapod.review.checks import check_actuator_path
-from flexapod.solve.actuator_modes import actuator_modes
+from flexapod.solve.modal.actuator_modes import actuator_modes
 
 SHOWN = 4
 

@@ -45,14 +45,14 @@ from flexapod.review.checks import check_path
 from flexapod.review.estimates import bending_moments, buckling_loads, residual_vibration
 from flexapod.review.unstable_loops import loop_remarks
 from flexapod.runtime.threads import one_thread
-from flexapod.solve.at_poses import locked_poses, robot_modes
-from flexapod.solve.loss_factor import loss_words
-from flexapod.solve.lost_motion import lost_motion, places_with_friction
-from flexapod.solve.modal_loops import unstable_words
-from flexapod.solve.modes import the_modes
-from flexapod.solve.parts import part_stiffness
-from flexapod.solve.robot_march import refuse_massless
-from flexapod.solve.stiffness import compliance, stiffness_of
+from flexapod.solve.modal.at_poses import locked_poses, robot_modes
+from flexapod.solve.modal.loss_factor import loss_words
+from flexapod.solve.modal.modal_loops import unstable_words
+from flexapod.solve.modal.modes import the_modes
+from flexapod.solve.statics.lost_motion import lost_motion, places_with_friction
+from flexapod.solve.statics.parts import part_stiffness
+from flexapod.solve.statics.stiffness import compliance, stiffness_of
+from flexapod.solve.time.robot_march import refuse_massless
 from flexapod.ties import EQUALS, first_largest
 
 SHOWN = 6

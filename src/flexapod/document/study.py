@@ -15,7 +15,7 @@ from flexapod.document.parts import Bullets, Chapter, Item, Text, TextTable
 from flexapod.results.cause_words import CAUSES, cause_in_words
 from flexapod.results.causes import cause_names
 from flexapod.results.ideal import held
-from flexapod.solve.lost_motion import places_with_friction
+from flexapod.solve.statics.lost_motion import places_with_friction
 from flexapod.words import number, text
 
 if TYPE_CHECKING:

@@ -20,13 +20,13 @@ from flexapod.results.causes import cause_names, errors_of
 from flexapod.results.path import RigidPath
 from flexapod.results.poses import batches
 from flexapod.results.record import Record
-from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.batch import RestStates
-from flexapod.solve.equilibrium import FOUND
 from flexapod.solve.frames import floor
-from flexapod.solve.locked import LockedPoses, the_equilibrium
-from flexapod.solve.lost_motion import places_with_friction, reversal
-from flexapod.solve.random_vibration import SOURCES
+from flexapod.solve.linear.random_vibration import SOURCES
+from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.statics.equilibrium import FOUND
+from flexapod.solve.statics.locked import LockedPoses, the_equilibrium
+from flexapod.solve.statics.lost_motion import places_with_friction, reversal
 from flexapod.solve.system import System
 from flexapod.study.many_modes import poses_of
 from flexapod.words import NOTHING

@@ -12,9 +12,9 @@ from flexapod.exchange.decks import Deck, number
 from flexapod.exchange.decks_legs import LegAtPose, PayloadAtPose, axial_inertia, legs_at_pose
 from flexapod.exchange.decks_robot import Carriers, drive_shift, write_leg, write_payload
 from flexapod.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
-from flexapod.solve.at_poses import locked_poses
-from flexapod.solve.locked import the_equilibrium
-from flexapod.solve.static_loads import at_drives
+from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.statics.locked import the_equilibrium
+from flexapod.solve.statics.static_loads import at_drives
 
 FORMATS = ("abaqus",)
 """What a robot can be written as; CalculiX reads the same deck."""

@@ -17,11 +17,11 @@ from flexapod.results.path import path_instants
 from flexapod.results.record import Share
 from flexapod.review.estimates import buckling_load
 from flexapod.scene.robot import robot_study
-from flexapod.solve.equilibrium import Equilibrium, equilibrium
-from flexapod.solve.loss_factor import per_loss
+from flexapod.solve.modal.loss_factor import per_loss
 from flexapod.solve.rigid_motion import rigid_rest, rigid_state
 from flexapod.solve.robot_system import robot_system
-from flexapod.solve.static_loads import rest_commands, rest_load
+from flexapod.solve.statics.equilibrium import Equilibrium, equilibrium
+from flexapod.solve.statics.static_loads import rest_commands, rest_load
 from flexapod.solve.system import State, System
 from flexapod.study.simulation import simulate
 

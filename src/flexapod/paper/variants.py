@@ -18,7 +18,7 @@ from flexapod.results.arguments import as_pose
 from flexapod.results.attributes import attributes
 from flexapod.results.path import path_instants
 from flexapod.results.record import Share
-from flexapod.solve.equilibrium import Equilibrium
+from flexapod.solve.statics.equilibrium import Equilibrium
 from flexapod.solve.system import State, System
 from flexapod.study.simulation import simulate
 from flexapod.study.static import modes

@@ -17,12 +17,12 @@ from flexapod.results.mode_shapes import mode_values
 from flexapod.results.names import dataset
 from flexapod.review.checks import path_remarks
 from flexapod.runtime.threads import one_thread
-from flexapod.solve.at_poses import locked_poses
-from flexapod.solve.frequencies import count_real
-from flexapod.solve.linear import LinearRobot, linear_robot
-from flexapod.solve.locked import LockedPoses
-from flexapod.solve.modes import the_modes
-from flexapod.solve.random_vibration import Source, random_vibration, sources_of
+from flexapod.solve.linear.random_vibration import Source, random_vibration, sources_of
+from flexapod.solve.linear.robot import LinearRobot, linear_robot
+from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.modal.frequencies import count_real
+from flexapod.solve.modal.modes import the_modes
+from flexapod.solve.statics.locked import LockedPoses
 from flexapod.ties import EQUALS, first_largest
 from flexapod.words import along_axes, cleared
 

@@ -14,7 +14,7 @@ from flexapod.kinematics.mechanism import coordinates_of
 from flexapod.kinematics.screws import screws
 from flexapod.model import Robot
 from flexapod.results.causes import closing
-from flexapod.solve.released import is_hexapod, rigid_errors
+from flexapod.solve.statics.released import is_hexapod, rigid_errors
 
 __all__ = ["Sensitivity", "sensitivity", "systematic"]
 

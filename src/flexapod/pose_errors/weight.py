@@ -10,10 +10,10 @@ from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Study
-from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.batch import residual
-from flexapod.solve.locked import LockedPoses, the_equilibrium
-from flexapod.solve.stiffness import displacement, tool_motion
+from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.statics.locked import LockedPoses, the_equilibrium
+from flexapod.solve.statics.stiffness import displacement, tool_motion
 from flexapod.solve.system import System
 
 __all__ = ["by_density"]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from flexapod import model, version
 from flexapod.results.record import Record
-from flexapod.solve.recording import Counters
+from flexapod.solve.time.recording import Counters
 
 if TYPE_CHECKING:
     from xarray import Dataset

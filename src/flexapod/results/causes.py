@@ -26,8 +26,8 @@ from flexapod.results.path import RigidPath
 from flexapod.results.record import Record
 from flexapod.solve.batch import RestStates
 from flexapod.solve.frames import on_plates
-from flexapod.solve.lost_motion import before_friction, places_with_friction
-from flexapod.solve.released import is_hexapod, rigid_errors
+from flexapod.solve.statics.lost_motion import before_friction, places_with_friction
+from flexapod.solve.statics.released import is_hexapod, rigid_errors
 from flexapod.solve.system import System
 
 CHI, L = COORDINATES.index("chi"), COORDINATES.index("l")

@@ -29,8 +29,8 @@ from flexapod.results.record import Record
 from flexapod.solve.batch import RestStates
 from flexapod.solve.frames import as_drawn, in_world
 from flexapod.solve.friction import sliding
-from flexapod.solve.lost_motion import places_with_friction
-from flexapod.solve.released import RobotForces, released, rigid_system
+from flexapod.solve.statics.lost_motion import places_with_friction
+from flexapod.solve.statics.released import RobotForces, released, rigid_system
 from flexapod.solve.system import System
 
 STROKES = ("leg_length_command", "leg_length", "leg_stroke", "actuator_force")

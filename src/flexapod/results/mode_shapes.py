@@ -10,7 +10,7 @@ from flexapod.kinematics.rotations import matrix, quaternion
 from flexapod.mechanics.layout import Shapes, columns, leg_parameters
 from flexapod.results.inside import off_axis
 from flexapod.results.legs import base_points, bending_basis, lateral
-from flexapod.solve.modes import RobotModes
+from flexapod.solve.modal.modes import RobotModes
 from flexapod.solve.sections import leg_values
 from flexapod.ties import EQUALS, alike
 

@@ -10,7 +10,7 @@ import numpy as np
 from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.model import ActuatorStudy, Study
-from flexapod.solve.released import RobotForces, rigid_forces
+from flexapod.solve.statics.released import RobotForces, rigid_forces
 
 FEWEST, MOST = 2000, 50_000  # intervals at which a path is looked at
 SAME = 1e-9  # instants nearer to each other than this part of the step between them are the same

@@ -11,7 +11,7 @@ import numpy as np
 
 from flexapod.arrays import Array
 from flexapod.errors import ComputationError
-from flexapod.solve.problem import Chunk
+from flexapod.solve.time.problem import Chunk
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -38,7 +38,7 @@ class Record:
 
     ``q`` (T, legs, n) leg coordinates; ``rate`` (T, legs, n') rates of those that were asked for; ``turn`` (T, 3)
     angular velocity in platform axes; ``lam``, ``drive``, ``pose``, ``reaction``, ``energy``, ``sums``, ``closure``,
-    ``friction`` as in `solve.recording.Recording`.
+    ``friction`` as in `solve.time.recording.Recording`.
     ``force_error``: estimate of the error of the legs' forces [N], where steps follow a tolerance.
     ``failure``: why the integration stopped early, in words, or None; ``interrupted``: by the user.
     """

@@ -16,7 +16,7 @@ from flexapod.results.bodies import clearance, gap_words, largest_turns, turns
 from flexapod.results.path import RigidPath, open_force_words, path_instants
 from flexapod.review.room import check_outputs
 from flexapod.runtime.threads import one_thread
-from flexapod.solve.locked import refuse_pure_force, refuse_taut
+from flexapod.solve.statics.locked import refuse_pure_force, refuse_taut
 from flexapod.ties import first_largest, first_least, most
 
 SINGULAR = 1e-8  # smallest singular value of the scaled Jacobian below which a pose is refused

@@ -14,10 +14,10 @@ from flexapod.model import Actuator, Leg, Piston, Robot, Tube
 from flexapod.results.legs import base_motion, of_drives
 from flexapod.results.path import RigidPath
 from flexapod.review.columns import stepped_buckling
-from flexapod.solve.buckling import leg_loads
-from flexapod.solve.drive_forces import feed_forward
-from flexapod.solve.modes import RobotModes
+from flexapod.solve.modal.modes import RobotModes
 from flexapod.solve.rigid_motion import rigid_motion
+from flexapod.solve.statics.buckling import leg_loads
+from flexapod.solve.statics.drive_forces import feed_forward
 from flexapod.solve.system import System
 
 POISSON = 0.3  # of metals; materials give none
@@ -96,7 +96,7 @@ def buckling_load(leg: Leg, free: Array) -> Array:
 def buckling_loads(robot: Robot, length: Array, system: System | None = None) -> Array:
     """Euler loads of all legs at lengths (T, n), with bushings and cylinders that bend where they have them, [N].
 
-    ``system``: see `solve.buckling`.
+    ``system``: see `solve.statics.buckling`.
     """
     found = np.stack([buckling_load(leg, x - leg.cylinder.mouth) for leg, x in zip(robot.legs, length.T, strict=True)])
     inside = gives_inside(robot)

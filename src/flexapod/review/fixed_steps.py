@@ -11,8 +11,8 @@ from flexapod.arrays import Array
 from flexapod.errors import FlexapodError
 from flexapod.model import Study
 from flexapod.review.estimates import residual_vibration
-from flexapod.solve.at_poses import robot_modes
-from flexapod.solve.modes import RobotModes
+from flexapod.solve.modal.at_poses import robot_modes
+from flexapod.solve.modal.modes import RobotModes
 from flexapod.words import number
 
 __all__ = ["step_warnings", "steps_needed"]

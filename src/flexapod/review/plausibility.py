@@ -24,10 +24,10 @@ from flexapod.review.estimates import (
     gives_inside,
     piston_section,
 )
-from flexapod.solve.actuator_march import amplitudes, lateral_signs
 from flexapod.solve.batch import RestStates
 from flexapod.solve.sections import leg_values, stepped_stress
 from flexapod.solve.system import System
+from flexapod.solve.time.actuator_march import amplitudes, lateral_signs
 from flexapod.ties import first_largest, first_least, most
 from flexapod.words import brief
 

@@ -13,7 +13,7 @@ from flexapod.kinematics.inverse import BETA_LIMIT
 from flexapod.model import Robot
 from flexapod.results.bodies import largest_turns, turns
 from flexapod.review.checks import SINGULAR
-from flexapod.solve import branch, equilibrium
+from flexapod.solve.statics import branch, equilibrium
 
 Codes = NDArray[np.int8]
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Study
-from flexapod.solve.lost_motion import places_with_friction
+from flexapod.solve.statics.lost_motion import places_with_friction
 
 
 def check_outputs(study: Study | ActuatorStudy) -> list[str]:

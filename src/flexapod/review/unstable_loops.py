@@ -8,9 +8,9 @@ from flexapod import kinematics, model
 from flexapod.arrays import Array
 from flexapod.errors import FlexapodError
 from flexapod.results.poses import coordinate_words, coordinates_of
-from flexapod.solve.at_poses import locked_poses
-from flexapod.solve.modal_loops import unstable_words
-from flexapod.solve.modes import modes_of
+from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.modal.modal_loops import unstable_words
+from flexapod.solve.modal.modes import modes_of
 from flexapod.ties import first_largest
 from flexapod.words import text
 

@@ -143,7 +143,7 @@ def beam_modes(study: model.ActuatorStudy, points: int) -> BeamModes:
 
     InputError: a rigid beam; ComputationError: the straight beam has buckled under its own load.
     """
-    from flexapod.solve.actuator_modes import actuator_modes, amplitude_groups
+    from flexapod.solve.modal.actuator_modes import actuator_modes, amplitude_groups
     from flexapod.solve.shapes import actuator_shapes
 
     actuator, simulation = study.actuator, study.simulation

@@ -18,9 +18,9 @@ from flexapod.results.robot import energy_results
 from flexapod.review.checks import check_actuator_path
 from flexapod.review.plausibility import actuator_warnings
 from flexapod.runtime.threads import one_thread
-from flexapod.solve.actuator_march import ActuatorMarch, amplitudes, lateral_signs, prepare_actuator
 from flexapod.solve.batch import tips
 from flexapod.solve.shapes import places
+from flexapod.solve.time.actuator_march import ActuatorMarch, amplitudes, lateral_signs, prepare_actuator
 
 if TYPE_CHECKING:
     from xarray import Dataset

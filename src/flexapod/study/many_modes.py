@@ -24,11 +24,11 @@ from flexapod.review.reach import (
     rigid_codes,
 )
 from flexapod.review.unstable_loops import unstable_at
-from flexapod.solve.at_poses import locked_poses
-from flexapod.solve.branch import fallen, platform_poses
-from flexapod.solve.frequencies import count_real
-from flexapod.solve.locked import LockedPoses
-from flexapod.solve.modes import ManyModes, modes_of
+from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.modal.frequencies import count_real
+from flexapod.solve.modal.modes import ManyModes, modes_of
+from flexapod.solve.statics.branch import fallen, platform_poses
+from flexapod.solve.statics.locked import LockedPoses
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -13,8 +13,8 @@ from flexapod.results.inside import is_guided
 from flexapod.results.names import dataset
 from flexapod.review.checks import path_remarks
 from flexapod.runtime.threads import one_thread
-from flexapod.solve.lost_motion import lost_motion, places_with_friction
-from flexapod.solve.parts import guide_turning, mount_stiffness, part_stiffness
+from flexapod.solve.statics.lost_motion import lost_motion, places_with_friction
+from flexapod.solve.statics.parts import guide_turning, mount_stiffness, part_stiffness
 
 if TYPE_CHECKING:
     from xarray import Dataset

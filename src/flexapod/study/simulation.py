@@ -24,7 +24,7 @@ from flexapod.review.fixed_steps import step_warnings
 from flexapod.review.plausibility import robot_warnings
 from flexapod.review.unstable_loops import loop_remarks
 from flexapod.runtime.threads import one_thread
-from flexapod.solve.robot_march import RobotMarch, prepare
+from flexapod.solve.time.robot_march import RobotMarch, prepare
 from flexapod.study.actuator import simulate_actuator
 
 if TYPE_CHECKING:

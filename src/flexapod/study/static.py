@@ -17,10 +17,10 @@ from flexapod.results.poses import as_many, is_many
 from flexapod.review.checks import path_remarks
 from flexapod.review.plausibility import rest_warnings
 from flexapod.runtime.threads import one_thread
-from flexapod.solve.actuator_modes import actuator_modes
-from flexapod.solve.at_poses import robot_modes, robot_stiffness
 from flexapod.solve.batch import RestStates
-from flexapod.solve.modal_loops import unstable_words
+from flexapod.solve.modal.actuator_modes import actuator_modes
+from flexapod.solve.modal.at_poses import robot_modes, robot_stiffness
+from flexapod.solve.modal.modal_loops import unstable_words
 from flexapod.solve.system import State, System
 from flexapod.study.many_modes import modes_at_poses
 

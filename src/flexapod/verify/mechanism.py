@@ -20,13 +20,13 @@ from flexapod.mechanics.layout import COMMAND_SIZE, LEG_PARAMETERS, Shapes, colu
 from flexapod.mechanics.leg_beam import LegBeam
 from flexapod.mechanics.leg_chain import LegChain
 from flexapod.solve.kernel import Kernel, loaded_kernel
-from flexapod.solve.march import march
-from flexapod.solve.problem import Problem
-from flexapod.solve.recording import Counters, Recording
-from flexapod.solve.start import consistent_start
-from flexapod.solve.stops import Stops
 from flexapod.solve.system import COLUMNS, State, System
-from flexapod.solve.tables import Law
+from flexapod.solve.time.march import march
+from flexapod.solve.time.problem import Problem
+from flexapod.solve.time.recording import Counters, Recording
+from flexapod.solve.time.start import consistent_start
+from flexapod.solve.time.stops import Stops
+from flexapod.solve.time.tables import Law
 from flexapod.symbolic import lagrange, vocabulary
 from flexapod.symbolic.compiler import compiler
 from flexapod.symbolic.functions import NamedFunction

@@ -20,7 +20,7 @@ from flexapod.results.record import collect
 from flexapod.results.robot import rigid_force_results, robot_results
 from flexapod.review.checks import check_path
 from flexapod.review.plausibility import robot_warnings
-from flexapod.solve.robot_march import prepare
+from flexapod.solve.time.robot_march import prepare
 from flexapod.study.actuator import simulate_actuator
 from flexapod.surveys.sweeps.kept import ACTUATOR_SCALARS, Kept
 from flexapod.surveys.sweeps.scalars import ROBOT_SCALARS, RobotRun

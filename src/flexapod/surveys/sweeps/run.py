@@ -21,9 +21,9 @@ from flexapod.model import ActuatorStudy, Study
 from flexapod.results.arguments import read
 from flexapod.results.record import Report
 from flexapod.review.room import check_memory, check_room
-from flexapod.solve.actuator_march import prepare_actuator
-from flexapod.solve.native import loops
 from flexapod.solve.robot_system import robot_system
+from flexapod.solve.time.actuator_march import prepare_actuator
+from flexapod.solve.time.native import loops
 from flexapod.surveys.sweeps.batch import BatchResult, PointResult
 from flexapod.surveys.sweeps.executors import check_place, executor, local_cores
 from flexapod.surveys.sweeps.kept import Kept, kept, known

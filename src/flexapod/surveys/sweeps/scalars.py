@@ -23,9 +23,9 @@ from flexapod.results.path import RigidPath
 from flexapod.results.record import Record
 from flexapod.results.robot import cause_results
 from flexapod.review.plausibility import leg_stress
-from flexapod.solve.at_poses import robot_modes
-from flexapod.solve.recording import Counters
+from flexapod.solve.modal.at_poses import robot_modes
 from flexapod.solve.system import System
+from flexapod.solve.time.recording import Counters
 from flexapod.ties import first_largest
 
 

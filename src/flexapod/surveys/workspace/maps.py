@@ -22,7 +22,7 @@ from flexapod.review.reach import flags
 from flexapod.review.room import check_map
 from flexapod.review.unstable_loops import unstable_at
 from flexapod.runtime.threads import one_thread
-from flexapod.solve.frequencies import count_real
+from flexapod.solve.modal.frequencies import count_real
 from flexapod.surveys.workspace.findings import forms
 from flexapod.surveys.workspace.grid import UNITS, Axes, Grid, grid
 from flexapod.surveys.workspace.quantities import Wanted, batch_values

@@ -14,13 +14,13 @@ from flexapod.kinematics.rotations import matrix
 from flexapod.results.bodies import clearance, largest_turns, turns
 from flexapod.review.estimates import buckling_loads
 from flexapod.review.reach import REACHED, Codes, leg_limits, rigid_codes, slider_limits
-from flexapod.solve.at_poses import locked_poses
 from flexapod.solve.batch import port_forces
-from flexapod.solve.locked import LockedPoses
-from flexapod.solve.modes import modes_of
+from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.modal.modes import modes_of
 from flexapod.solve.rigid_motion import rigid_motion
-from flexapod.solve.static_loads import at_drives
-from flexapod.solve.stiffness import compliance, displacement, stiffness_of, tool_motion
+from flexapod.solve.statics.locked import LockedPoses
+from flexapod.solve.statics.static_loads import at_drives
+from flexapod.solve.statics.stiffness import compliance, displacement, stiffness_of, tool_motion
 from flexapod.study.many_modes import codes_at_rest, poses_of
 from flexapod.ties import EQUALS, alike
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexapod.arrays import Array
 from flexapod.model import Actuator, Simulation
-from flexapod.solve.actuator_modes import actuator_modes
+from flexapod.solve.modal.actuator_modes import actuator_modes
 from flexapod.study.static import modes
 from flexapod.verify.case import Check, case, checks
 from flexapod.verify.robots import STEEL, heavy_robot, round_piston

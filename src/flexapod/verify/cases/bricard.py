@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod.arrays import Array
-from flexapod.solve.recording import Recording
+from flexapod.solve.time.recording import Recording
 from flexapod.symbolic.vocabulary import SX, constant, cos, dot, mtimes, sin, time_derivative, vertcat, zeros
 from flexapod.verify.case import Check, case, checks
 from flexapod.verify.mechanism import Mechanism, extrapolated, run_mechanism, still

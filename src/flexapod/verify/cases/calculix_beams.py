@@ -12,7 +12,7 @@ from flexapod.exchange.decks_beam import ELEMENTS, clamped_frequencies, clamped_
 from flexapod.fem.frequencies import frequencies
 from flexapod.fem.mesh import SolidMesh, extruded
 from flexapod.fem.section_mesh import section_mesh
-from flexapod.solve.actuator_modes import actuator_modes
+from flexapod.solve.modal.actuator_modes import actuator_modes
 from flexapod.study.actuator import simulate_actuator
 from flexapod.verify.case import Check, case, checks
 from flexapod.verify.cases.calculix_corrections import ONE_ELEMENT, clamped_thick

@@ -13,8 +13,8 @@ from flexapod import model
 from flexapod.arrays import Array
 from flexapod.bases import lateral_basis
 from flexapod.bases.beam_functions import gauss_unit
-from flexapod.solve.actuator_modes import actuator_modes
-from flexapod.solve.modes import RobotModes
+from flexapod.solve.modal.actuator_modes import actuator_modes
+from flexapod.solve.modal.modes import RobotModes
 
 ONE_ELEMENT = 2.0
 """E / k G of solid elements at Poisson's ratio 0, one across the height: their section stays plane, so k = 1."""

@@ -9,7 +9,7 @@ import numpy as np
 from flexapod import model
 from flexapod.exchange.export import abaqus_deck
 from flexapod.results.arguments import as_pose
-from flexapod.solve.at_poses import robot_modes
+from flexapod.solve.modal.at_poses import robot_modes
 from flexapod.study.static import modes
 from flexapod.verify.case import Check, case, checks
 from flexapod.verify.cases.calculix_corrections import ONE_ELEMENT, robot_thick

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from flexapod import model
 from flexapod.arrays import Array
 from flexapod.results.record import Record, collect
-from flexapod.solve.actuator_march import prepare_actuator
+from flexapod.solve.time.actuator_march import prepare_actuator
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.simulation import simulate
 from flexapod.verify.case import Check, case, checks

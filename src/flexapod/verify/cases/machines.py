@@ -12,8 +12,8 @@ from flexapod.model import Geometry, Heat
 from flexapod.model.drive import PrescribedDrive
 from flexapod.model.joint import Joint
 from flexapod.model.material import MATERIALS
-from flexapod.solve.linear import LinearRobot
-from flexapod.solve.random_vibration import Source, random_vibration
+from flexapod.solve.linear.random_vibration import Source, random_vibration
+from flexapod.solve.linear.robot import LinearRobot
 from flexapod.study.simulation import simulate
 from flexapod.verify.case import Check, case, checks
 from flexapod.verify.cases.real_parts import machine

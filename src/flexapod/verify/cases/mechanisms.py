@@ -18,7 +18,7 @@ from flexapod.model.joint import Carriage
 from flexapod.model.leg import Leg
 from flexapod.model.payload import Payload
 from flexapod.model.piston import Piston, Strut
-from flexapod.solve.released import rigid_forces
+from flexapod.solve.statics.released import rigid_forces
 from flexapod.study.kinematics import mobility
 from flexapod.study.simulation import simulate
 from flexapod.verify.case import Check, case, checks

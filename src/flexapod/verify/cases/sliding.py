@@ -13,7 +13,7 @@ from flexapod.fem.beam_guide import ElementContact, GuideContact, InterpolatedCl
 from flexapod.fem.beam_march import march_sliding_beam
 from flexapod.results.record import collect
 from flexapod.results.vibration import local_vibration
-from flexapod.solve.actuator_march import prepare_actuator
+from flexapod.solve.time.actuator_march import prepare_actuator
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.solid import simulate_solid
 from flexapod.verify.case import Case, Check, case, checks

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod.arrays import Array
-from flexapod.solve.recording import Recording
+from flexapod.solve.time.recording import Recording
 from flexapod.symbolic.vocabulary import SX, cos, dot, sin, sqrt, time_derivative, vertcat, zeros
 from flexapod.verify.case import Check, case, checks
 from flexapod.verify.mechanism import Mechanism, extrapolated, run_mechanism

@@ -17,8 +17,8 @@ from flexapod.model.cylinder import Cylinder
 from flexapod.model.joint import Joint
 from flexapod.model.payload import Payload
 from flexapod.model.piston import Piston
-from flexapod.solve.at_poses import locked_poses
-from flexapod.solve.equilibrium import equilibria
+from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.statics.equilibrium import equilibria
 from flexapod.study.static import modes, stiffness
 from flexapod.verify.case import Case, Check, case, checks
 from flexapod.verify.robots import CYLINDER, PISTON, eight_legs, hexapod, table, tripod, without_gravity

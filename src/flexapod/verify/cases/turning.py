@@ -10,7 +10,7 @@ import numpy as np
 from flexapod import model
 from flexapod.arrays import Array
 from flexapod.model import Actuator, Simulation
-from flexapod.solve.actuator_modes import actuator_modes, stretching_lag
+from flexapod.solve.modal.actuator_modes import actuator_modes, stretching_lag
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.static import modes
 from flexapod.verify.case import Check, case, checks

@@ -1,0 +1,1 @@
+"""The linear model about rest, and what shakes it."""

@@ -1,0 +1,236 @@
+"""Random vibration of a robot about its static equilibrium: spectra integrated over frequency, (T18.6)-(T18.11)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexapod.arrays import Array
+from flexapod.errors import InputError
+from flexapod.model import Disturbance, Floor, Spectrum
+from flexapod.solve.linear.robot import Complex, LinearRobot
+
+__all__ = ["RandomVibration", "Source", "density_at", "random_vibration", "sources_of"]
+
+NODES, WEIGHTS = (0.5 * x for x in np.polynomial.legendre.leggauss(4))
+PER_DECADE = 12  # panels where nothing resonates
+ELLIPSE = 3 + np.sqrt(8)  # half axes of an ellipse without a pole, added, over half a panel
+SHARES = 2.0 ** -np.arange(0.0, 32.0, 0.5)  # of the widest panel
+BLOCK = 256  # frequencies side by side
+POINTS = 8  # of a polynomial through a response, on a panel whose ellipse holds no pole; error below 5.8**-16
+UNDAMPED = 1e-9  # damping ratio below which nothing limits a resonance
+FLOOR_RATES = {"acceleration": 0, "velocity": 1, "displacement": 2}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Source:
+    """One disturbance: ``name``, its inputs (r, k) as modal ``forces`` that are independent of each other.
+
+    ``frequency`` (m,) [Hz] and ``density`` (m, k) of its table, to be multiplied by (2 pi f)^(2 ``rates``).
+    """
+
+    name: str
+    forces: Array
+    frequency: Array
+    density: Array
+    rates: int = 0
+
+    def at(self, f: Array) -> Array:
+        """Density (f, k) of the inputs."""
+        return density_at(self.frequency, self.density, f) * (2 * np.pi * f[:, None]) ** (2 * self.rates)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RandomVibration:
+    """Vibration of the tool: displacement [m] along and rotation [rad] about world axes relative to the base.
+
+    ``frequency`` (f,) [Hz] with ``weight`` (f,) of the integral; one-sided ``psd`` (f, 6); ``by_input``: rms by each
+    input of each source, (k, 6); ``by_mode`` (r, 6): shares that add up to the rms; ``covariance`` (6, 6).
+    """
+
+    sources: tuple[str, ...]
+    frequency: Array
+    weight: Array
+    psd: Array
+    by_input: tuple[Array, ...]
+    by_mode: Array
+    covariance: Array
+
+    @property
+    def rms(self) -> Array:
+        """Standard deviations, (6,), Eq. (T18.7)."""
+        return np.sqrt(np.diag(self.covariance))
+
+    @property
+    def by_source(self) -> Array:
+        """Standard deviations by source, whose squares add up, (sources, 6), Eq. (T18.8)."""
+        return np.sqrt([(one**2).sum(axis=0) for one in self.by_input])
+
+    @property
+    def cumulative(self) -> Array:
+        """Rms of what is at each frequency and above, (f, 6), Eq. (T18.10)."""
+        power = self.weight[:, None] * self.psd
+        return np.sqrt(np.cumsum(power[::-1], axis=0)[::-1])
+
+
+#: What shakes a robot by the field of its disturbance.
+SOURCES = {"floor": "floor vibration", "wrench": "wrench noise", "force_noise": "force noise"}
+
+
+def sources_of(given: Disturbance, model: LinearRobot) -> list[Source]:
+    """The disturbances of a study at its linear model.
+
+    Raises
+    ------
+    InputError
+        A noise of drives that hold their positions whatever pushes them.
+    """
+    found = []
+    if given.floor is not None:
+        found.append(_source(SOURCES["floor"], model.inputs["floor"], given.floor))
+    if given.wrench is not None:
+        found.append(_source(SOURCES["wrench"], model.inputs["wrench"], given.wrench))
+    if given.force_noise is not None:
+        if not model.inputs["drive"].any():
+            raise InputError(
+                "moves nothing: the drives hold their positions, whatever pushes them",
+                key="disturbance.force_noise",
+                allowed='drives that give way: "servo", or "screw" commanded by "servo" or "torque"',
+                next_step="Leave force_noise out, or choose another leg.drive",
+            )
+        found.append(_source(SOURCES["force_noise"], model.inputs["drive"], given.force_noise))
+    return found
+
+
+def _source(name: str, forces: Array, table: Floor | Spectrum) -> Source:
+    rates = FLOOR_RATES[table.of] if isinstance(table, Floor) else 0
+    density = np.broadcast_to(table.density, (len(table.frequency), forces.shape[1]))
+    return Source(name=name, forces=forces, frequency=table.frequency, density=density, rates=rates)
+
+
+def density_at(frequency: Array, density: Array, f: Array) -> Array:
+    """A table's density (f, k) at frequencies, Eq. (T18.6): straight in logarithms, or in numbers beside a 0."""
+    k = np.clip(np.searchsorted(frequency, f, side="right") - 1, 0, len(frequency) - 2)
+    low, high, left, right = frequency[k, None], frequency[k + 1, None], density[k], density[k + 1]
+    straight = left + (right - left) * (f[:, None] - low) / (high - low)
+    power = (left > 0) & (right > 0)
+    ratio = np.divide(right, left, out=np.ones_like(left), where=power)
+    curved = left * ratio ** (np.log(f[:, None] / low) / np.log(high / low))
+    inside = (f >= frequency[0]) & (f <= frequency[-1])
+    return np.where(power, curved, straight) * inside[:, None]
+
+
+def random_vibration(model: LinearRobot, sources: list[Source], *, refine: int = 1) -> RandomVibration:
+    """Response of the tool to independent sources; ``refine``: into how many each panel is cut further.
+
+    Raises
+    ------
+    InputError
+        Something without damping vibrates within the spectra.
+    """
+    edges = panels(model, sources, refine)
+    half = np.diff(edges)
+    f = (0.5 * (edges[1:] + edges[:-1])[:, None] + half[:, None] * NODES).ravel()
+    weight = (half[:, None] * WEIGHTS).ravel()
+    forces = np.concatenate([source.forces for source in sources], axis=1)
+    response = _response(model, forces, f, refine)
+    psd, covariance = np.zeros((len(f), 6)), np.zeros((6, 6))
+    by_mode, by_input = np.zeros((model.omega.size, 6)), np.zeros((forces.shape[1], 6))
+    for start in range(0, len(f), BLOCK):
+        some = slice(start, start + BLOCK)
+        S = np.concatenate([source.at(f[some]) for source in sources], axis=1)
+        eta = response(f[some])
+        H = model.tool @ eta
+        power = np.abs(H) ** 2 * S[:, None]  # (T18.7)
+        psd[some] = power.sum(axis=2)
+        by_input += np.einsum("f,fck->kc", weight[some], power)
+        weighted = np.conj(H) * (weight[some, None] * S)[:, None]
+        covariance += np.tensordot(H, weighted, axes=((0, 2), (0, 2))).real
+        by_mode += np.tensordot(eta, weighted, axes=((0, 2), (0, 2))).real * model.tool.T  # (T18.9)
+    rms = np.sqrt(np.diag(covariance))
+    widths = np.cumsum([source.forces.shape[1] for source in sources])[:-1]
+    return RandomVibration(
+        sources=tuple(source.name for source in sources),
+        frequency=f,
+        weight=weight,
+        psd=psd,
+        by_input=tuple(np.sqrt(one) for one in np.split(by_input, widths)),
+        by_mode=np.divide(by_mode, rms, out=np.zeros_like(by_mode), where=rms > 0),
+        covariance=0.5 * (covariance + covariance.T),
+    )
+
+
+def _response(model: LinearRobot, forces: Array, f: Array, refine: int) -> Callable[[Array], Complex]:
+    """Amplitudes (f, r, k) at frequencies: solved for, or where tables have many rows polynomials on wider panels."""
+    span = Source(name="", forces=forces, frequency=f[[0, -1]], density=np.zeros((2, 1)))
+    edges = panels(model, [span], 2 * refine)
+    if len(f) <= 4 * POINTS * (len(edges) - 1):
+        return lambda some: model.amplitudes(some, forces)
+    angle = np.pi * (np.arange(POINTS) + 0.5) / POINTS
+    nodes = 0.5 - 0.5 * np.cos(angle)
+    at = (edges[:-1, None] + np.diff(edges)[:, None] * nodes).ravel()
+    known = [model.amplitudes(at[i : i + BLOCK], forces) for i in range(0, len(at), BLOCK)]
+    values = np.concatenate(known).reshape(len(edges) - 1, POINTS, -1)
+    weights = np.sin(angle) * (-1.0) ** np.arange(POINTS)  # barycentric, of the zeros of Chebyshev's polynomial
+
+    def between(some: Array) -> Complex:
+        panel = np.clip(np.searchsorted(edges, some, side="right") - 1, 0, len(edges) - 2)
+        away = (some - edges[panel])[:, None] / np.diff(edges)[panel, None] - nodes
+        share = weights / np.where(away == 0, 1e-300, away)
+        share /= share.sum(axis=1, keepdims=True)
+        found = np.empty((len(some), values.shape[2]), dtype=complex)
+        for p in np.unique(panel):
+            found[panel == p] = share[panel == p] @ values[p]
+        return found.reshape(len(some), *forces.shape)
+
+    return between
+
+
+def panels(model: LinearRobot, sources: list[Source], refine: int) -> Array:
+    """Edges [Hz] of panels each as long as rows of the tables and poles let it be, Eq. (T18.11)."""
+    breaks = np.unique(np.concatenate([source.frequency for source in sources]))
+    z = _poles(model, breaks[0], breaks[-1])
+    edges = [breaks[0]]
+    for end in breaks[1:]:
+        while (left := end - edges[-1]) > 0:
+            widest = min(left, edges[-1] * (10 ** (1 / PER_DECADE) - 1))
+            share = 1.0 if _free(z, edges[-1], widest, SHARES[:1])[0] else None
+            if share is None:
+                found = _free(z, edges[-1], widest, SHARES)
+                share = SHARES[found.argmax() if found.any() else -1]
+            reached = edges[-1] + widest * share
+            edges.append(reached if end - reached > 1e-9 * end else end)
+    cuts = np.array(edges[:-1])[:, None] + np.diff(edges)[:, None] * np.arange(refine) / refine
+    return np.append(cuts.ravel(), edges[-1])
+
+
+def _free(z: Complex, start: float, widest: float, shares: Array) -> NDArray[np.bool_]:
+    """Whether an ellipse about a panel holds none of the poles, for panels of shares of the widest."""
+    half = 0.5 * widest * shares[:, None]
+    x = (z - start - half) / half
+    root = np.sqrt(x**2 - 1)
+    return (np.maximum(np.abs(x + root), np.abs(x - root)) >= ELLIPSE).all(axis=1)
+
+
+def _poles(model: LinearRobot, low: float, high: float) -> Complex:
+    """Frequencies [Hz] at which responses are infinite, above the real axis.
+
+    Raises
+    ------
+    InputError
+        One of them is real.
+    """
+    z = model.poles(2 * np.pi * high) / (2j * np.pi)
+    z = z[z.real > 0]
+    lasting = z.imag <= UNDAMPED * z.real
+    if (within := z.real[lasting & (z.real >= low) & (z.real <= high)]).size:
+        raise InputError(
+            f"leaves the vibration at {within[0]:.4g} Hz without damping: it would grow without end",
+            key="leg.damping",
+            allowed="damping of whatever gives way: legs, joints, springs, drives",
+            next_step="For example: damping = 0.005 in [leg]",
+        )
+    return z[~lasting]

@@ -1,0 +1,1 @@
+"""Frequencies, shapes and damping about rest."""

@@ -1,0 +1,65 @@
+"""A robot with locked drives at poses, springs with what they lose: equilibria, modes, stiffness."""
+
+from flexapod import kinematics
+from flexapod.model import Load, Robot, Simulation
+from flexapod.solve.modal.loss_factor import per_loss
+from flexapod.solve.modal.modes import RobotModes, the_modes
+from flexapod.solve.statics.locked import LockedPoses, lock, the_equilibrium
+from flexapod.solve.statics.stiffness import PoseStiffness, stiffness_of
+
+__all__ = ["locked_poses", "robot_modes", "robot_stiffness"]
+
+
+def locked_poses(
+    robot: Robot, simulation: Simulation, path: kinematics.Poses, load: Load | None = None, time: float = 0.0
+) -> LockedPoses:
+    """Static equilibria with the drives locked at the lengths of each of P rigid poses.
+
+    The drives' forces and the wrench of ``load`` are those of `rest.rest_load` at ``time`` [s].
+
+    Raises
+    ------
+    InputError
+        A pure force drive.
+    """
+    return lock(robot, simulation, path, load, time, per_loss=per_loss(robot, simulation))
+
+
+def robot_modes(
+    robot: Robot,
+    simulation: Simulation,
+    path: kinematics.Poses | None = None,
+    load: Load | None = None,
+    time: float = 0.0,
+) -> RobotModes:
+    """Modes of the locked robot at a pose (default: home), all degrees of freedom; loads as of `locked_poses`.
+
+    Raises
+    ------
+    InputError
+        Rigid legs on prescribed strokes (nothing can move), or a pure force drive.
+    ComputationError
+        No equilibrium at this pose, masses that no body can have, or a number that is not finite.
+    """
+    return the_modes(locked_poses(robot, simulation, kinematics.home_pose(robot) if path is None else path, load, time))
+
+
+def robot_stiffness(
+    robot: Robot, simulation: Simulation, path: kinematics.Poses | None = None, load: Load | None = None
+) -> PoseStiffness:
+    """Stiffness against a wrench at the tool, drives locked, about the static equilibrium at a pose (default: home).
+
+    Loads as of `locked_poses`.
+
+    Raises
+    ------
+    InputError
+        Rigid legs on prescribed strokes (no compliance), or a pure force drive.
+    ComputationError
+        No equilibrium at this pose.
+    """
+    locked = locked_poses(robot, simulation, kinematics.home_pose(robot) if path is None else path, load)
+    rest, found = the_equilibrium(locked), stiffness_of(robot, locked)
+    return PoseStiffness(
+        total=found.total[0], legs=found.legs[0], load=found.load[0], equilibrium=rest, system=locked.system
+    )

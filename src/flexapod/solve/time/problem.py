@@ -1,0 +1,73 @@
+"""What a time integration is to solve, and the words for where it fails."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from flexapod.arrays import Array
+from flexapod.integration import GeneralizedAlpha
+from flexapod.solve.system import Flow, System
+from flexapod.solve.time.recording import Recording
+from flexapod.solve.time.stops import Stops
+from flexapod.solve.time.tables import Law
+
+__all__ = ["ADVICE", "CAUSES", "Chunk", "Measure", "Problem", "Weight"]
+
+Measure = Callable[[Recording], list[Array]]
+CAUSES = {
+    1: "the step's equations were not solved",
+    2: "numbers became infinite",
+    3: "the linear equations are singular",
+}
+ADVICE = (
+    "Reduce the step, check for a singular pose, a leg near buckling or a piston almost inside its cylinder, "
+    "or start from equilibrium."
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Weight:
+    """How much displacements of coordinates count in one group of the measure: of a leg (n,), of the payload (6,)."""
+
+    leg: Array
+    hub: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class Problem:
+    """A time integration: system, commands, method and output grid.
+
+    ``tables`` see `tables.Law`; ``measure`` gives the quantities whose error is controlled, as
+    groups (T, ...) with a common scale each, ``weights`` what moves them; ``restart(flow, t, h)`` goes on after a jump
+    of a command or a load just before t, of which ``stops`` tells the instants; between ``knots`` (n,), its ends
+    included, the commanded path is smooth.
+    """
+
+    system: System
+    method: GeneralizedAlpha
+    tables: Law
+    output_step: float
+    outputs: int
+    measure: Measure
+    restart: Callable[[Flow, float, float], Flow]
+    stops: Stops
+    check: Callable[[Recording], None]
+    tolerance: float | None
+    weights: tuple[Weight, ...] = ()
+    knots: Array = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def adaptive(self) -> bool:
+        """Whether steps follow the tolerance one by one: compiled equations."""
+        return self.tolerance is not None and self.system.kernel.library is not None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Chunk:
+    """Piece of a result: recording, largest estimated relative error, step used, estimated error of forces [N]."""
+
+    recording: Recording
+    error: float
+    step: float
+    force_error: float | None = None

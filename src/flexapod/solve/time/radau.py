@@ -1,0 +1,136 @@
+"""Time integration within a tolerance: Radau's method of order 5 with steps of its own, Eqs. (T6.28)-(T6.33)."""
+
+from ctypes import Structure, byref, c_double, c_long, c_void_p
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod.arrays import Array
+from flexapod.integration import GeneralizedAlpha
+from flexapod.solve.system import Flow, System
+from flexapod.solve.time.chebyshev import Series
+from flexapod.solve.time.native import Call, address, loops, memory, settings
+from flexapod.solve.time.pieces import NODES
+from flexapod.solve.time.recording import Counters, record_width
+
+__all__ = ["OUT_OF_REACH", "Advanced", "Within"]
+
+OUT_OF_REACH = 4  # as in radau.c
+FIRST = 1e-5  # of the first step, and after a jump [s]; it grows four times a step
+LONGEST, SHORTEST = np.inf, 1e-7  # s
+UNSOLVED = 0.05  # share of a step's error that corrections may leave, in the displacements that its rates bring
+MOST = 8192  # steps per output in a call
+#: Places in the memory, as in `Memory` of radau.c; what follows is C's own.
+TIME, STEP, SPENT, PEAK, STAGES, REJECTED, RECORDED, THRUST = 0, 1, 2, 4, 6, 7, 8, 9
+
+
+class _Control(Structure):
+    _fields_ = [
+        *[(name, c_double) for name in ("horizon", "tolerance")],
+        ("weight", c_void_p),
+        ("hub_weight", c_void_p),
+        *[(name, c_double) for name in ("longest", "shortest", "unsolved", "output_first", "output_step")],
+        *[(name, c_long) for name in ("outputs", "pieces", "terms", "most", "stops")],
+        *[(name, c_void_p) for name in ("edges", "series", "stop")],
+        *[(name, c_long) for name in ("along", "springs")],
+    ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Advanced:
+    """Outcome of a call: new flow, output rows so far, status (0: done), where it failed and when."""
+
+    flow: Flow
+    rows: Array
+    status: int
+    leg: int
+    time: float
+
+
+class Within:
+    """The method's memory from call to call: time, step, local errors so far, and all that C works with.
+
+    Parameters
+    ----------
+    system : System
+    series : Series
+        Commands and loads.
+    horizon : float
+        When the run ends [s]: the local errors up to there may add up to the tolerance.
+    tolerance : float
+    """
+
+    def __init__(self, system: System, series: Series, horizon: float, tolerance: float) -> None:
+        self.system, self.series, self.horizon, self.tolerance = system, series, horizon, tolerance
+        self._along = _along(system)
+        self._memory = memory(loops(system.kernel).radau_memory(byref(settings(system, GeneralizedAlpha(1.0), 1.0, 1))))
+        self._memory[STEP] = FIRST
+
+    @property
+    def spent(self) -> float:
+        """Sum of the local errors, an estimate of the error: relative to what the weights say."""
+        return float(self._memory[SPENT])
+
+    @property
+    def thrust(self) -> float | None:
+        """Sum of the local errors of the force along a leg, the largest of all legs [N]; None: no spring tells it."""
+        return float(self._memory[THRUST : THRUST + self.system.legs].max()) if self._along[1] else None
+
+    @property
+    def time(self) -> float:
+        """Instant reached [s]."""
+        return float(self._memory[TIME])
+
+    @property
+    def step(self) -> float:
+        """Step that is to be tried next [s]."""
+        return float(self._memory[STEP])
+
+    def weigh(self, ratio: float) -> None:
+        """Go on with weights that are `ratio` times those before: what is remembered of errors is in their units."""
+        self._memory[[SPENT, PEAK]] *= ratio
+
+    def jumped(self) -> None:
+        """Forget what is extrapolated from: commands have jumped."""
+        self._memory[[STEP, PEAK, STAGES]] = FIRST, 0.0, 0.0
+
+    def advance(
+        self,
+        flow: Flow,
+        stops: Array,
+        weights: tuple[Array, Array],
+        outputs: tuple[float, float, int],
+        most: int,
+        counters: Counters,
+    ) -> Advanced:
+        """Advance to the last of `stops`, ascending instants on which steps end, or by `most` steps.
+
+        `outputs`: first instant, distance and number of the records on the way.
+        """
+        new, rows = flow.copy(), np.empty((outputs[2], record_width(self.system)))
+        call = Call(self.system, new, rows, GeneralizedAlpha(1.0), 1.0, 1)
+        edges, series = (np.ascontiguousarray(x) for x in self.series.between(float(self._memory[TIME]), stops[-1]))
+        leg, hub = (np.ascontiguousarray(x) for x in weights)
+        control = _Control(
+            self.horizon, self.tolerance, address(leg), address(hub), LONGEST, SHORTEST,
+            UNSOLVED, *outputs, len(series), NODES, most, len(stops),
+            address(edges), address(series), address(stops), *self._along,
+        )  # fmt: skip
+        before = self._memory[REJECTED]
+        status = loops(self.system.kernel).radau(
+            byref(call.settings), byref(call.state), byref(control), address(self._memory)
+        )
+        counters.steps += call.state.steps
+        counters.iterations += call.state.iterations
+        counters.factorisations += call.state.factorisations
+        counters.rejected += int(self._memory[REJECTED] - before)
+        rows = rows[: int(self._memory[RECORDED])]
+        return Advanced(flow=new, rows=rows, status=status, leg=call.state.bad_leg, time=float(self._memory[TIME]))
+
+
+def _along(system: System) -> tuple[int, int]:
+    """Coordinates whose springs carry the force along a leg, first and number: of its stretch, else its stroke."""
+    shapes = system.kernel.shapes
+    if shapes.beam.axial.count:
+        return shapes.index("c"), shapes.beam.axial.count
+    return shapes.l_index, int(not system.held[:, shapes.l_index].any())

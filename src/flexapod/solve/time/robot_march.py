@@ -1,0 +1,314 @@
+"""A robot in time: start, commands and error measure around the time integration."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from flexapod import kinematics
+from flexapod.arrays import Array
+from flexapod.elements.springs import springs_along
+from flexapod.errors import ComputationError, InputError
+from flexapod.integration import GeneralizedAlpha
+from flexapod.kinematics.inverse import BETA_LIMIT
+from flexapod.kinematics.rotations import matrix
+from flexapod.mechanics.layout import columns
+from flexapod.model import ForceDrive, Robot, Study
+from flexapod.solve.batch import RestStates
+from flexapod.solve.frames import floor
+from flexapod.solve.modal.loss_factor import per_loss
+from flexapod.solve.rigid_motion import built_state, rigid_state
+from flexapod.solve.robot_system import robot_system
+from flexapod.solve.statics.branch import flipped, refuse_fallen, refuse_flipped
+from flexapod.solve.statics.equilibrium import equilibrium
+from flexapod.solve.statics.locked import refuse_pure_force
+from flexapod.solve.statics.static_loads import rest_commands, rest_load
+from flexapod.solve.system import Flow, State, System
+from flexapod.solve.time.march import initial_step, march
+from flexapod.solve.time.motor_lag import settled
+from flexapod.solve.time.pieces import Pieces
+from flexapod.solve.time.problem import Chunk, Problem, Weight
+from flexapod.solve.time.recording import Counters, Recording
+from flexapod.solve.time.redundant import independent, shared
+from flexapod.solve.time.start import consistent_start
+from flexapod.solve.time.stops import Stops
+from flexapod.solve.time.tables import Law, robot_law
+
+AHEAD = 2000  # outputs whose rigid places are made at once
+ROUNDING = 1e-12  # of the sum of what rounding makes along the legs [m]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RobotMarch:
+    """A prepared time integration of a study; iterate over `chunks`.
+
+    ``impact`` is the step of kinetic energy [J] where the command starts with a jump in rate.
+    """
+
+    system: System
+    start: Flow
+    impact: float
+    step: float
+    chunks: Iterator[Chunk]
+    counters: Counters = field(default_factory=Counters)
+
+
+def prepare(study: Study, state: State | None = None) -> RobotMarch:
+    """Start and time integration of a robot study.
+
+    Parameters
+    ----------
+    study : Study
+    state : State, optional
+        Configuration (closures satisfied) and velocities in place of the study's start.
+
+    Raises
+    ------
+    InputError
+        Equilibrium start of a pure force drive; pistons without mass whose shapes would have none either.
+    ComputationError
+        There is no equilibrium at the start, or a platform joint is half a turn off.
+    """
+    refuse_massless(study)
+    refuse_growing_plates(study)
+    refuse_gaps(study)
+    robot, simulation = study.robot, study.simulation
+    system = robot_system(robot, simulation, per_loss(robot, simulation))
+    path = _Path(study)
+    law = robot_law(system, robot, study.load, path.poses, path.knots)
+    method = GeneralizedAlpha(simulation.rho_inf)
+    if state is None:
+        state = _configuration(study, system)
+        if system.kernel.shapes.has("j"):
+            rests = study.initial.start == "equilibrium"
+            table, wrench = (part[0] for part in law(np.zeros(1)))
+            table[..., 1:3] *= not rests
+            state = settled(system, state, table, wrench, rests=rests)
+    refuse_flipped(system, robot, RestStates.of(state))
+    system = independent(system, state)
+    counters, output_step = Counters(), simulation.stored_step
+    outputs = simulation.outputs(study.duration)
+    measure = _Measure(study, system, path)
+    far = 0.0 if simulation.tolerance is not None and system.kernel.library else None  # steps end on every row
+    problem = Problem(
+        system=system,
+        method=method,
+        tables=law,
+        output_step=output_step,
+        outputs=outputs,
+        measure=measure,
+        weights=measure.weights(),
+        knots=path.knots,
+        restart=lambda flow, t, h: after_impact(system, flow, law, t, method, h),
+        stops=Stops.of(kinematics.robot_breaks(study, far), output_step, simulation.step, outputs),
+        check=_Range(study, system),
+        tolerance=simulation.tolerance,
+    )
+    step = initial_step(problem, simulation.step)
+    start, impact = consistent_start(system, state, law, 0.0, method, step)
+    chunks = march(problem, start, step, counters)
+    if system.slack is not None:
+        chunks = (replace(x, recording=shared(system, x.recording, law(x.recording.time)[0])) for x in chunks)
+    return RobotMarch(system=system, start=start, impact=impact, step=step, chunks=chunks, counters=counters)
+
+
+def refuse_massless(study: Study) -> None:
+    """Raise InputError if a piston without mass leaves coordinates that nothing but their stiffness determines."""
+    simulation = study.simulation
+    for i, leg in enumerate(study.robot.legs, start=1):
+        still = leg.strut is not None or (leg.drive.holds and leg.holds_stroke)
+        soft = {spring.at for spring in springs_along(leg)} - ({"base"} if leg.cylinder.mass else set())
+        alone = simulation.axial_shapes(study.robot.legs[0].axial_modes) - still + len(soft & {"base", "platform"})
+        if leg.piston.rhoA == 0 and (simulation.lateral_shapes or alone > 0):
+            raise InputError(
+                f"of leg {i} leaves shapes of the piston without mass: they have statics, but no motion in time",
+                file=study.path,
+                key="leg.piston.rhoA",
+                value=0,
+                allowed='0 in modes, stiffness, maps; in time with "rigid", or "lumped" and prescribed strokes',
+                next_step="Give a small rhoA, as 1e-6 kg/m: steps need not follow what is that light",
+            )
+
+
+def refuse_gaps(study: Study) -> None:
+    """Raise InputError if play is to be a gap in legs without springs before their piston."""
+    for i, leg in enumerate(study.robot.legs if study.simulation.play == "gap" else (), start=1):
+        if leg.half_play and not (leg.gives and leg.driven == "stroke"):
+            raise InputError(
+                f"is a gap in the springs between drive and piston, of which leg {i} has none",
+                file=study.path,
+                key="simulation.play",
+                value="gap",
+                allowed='legs whose drive is a screw, or with springs at = "nut"',
+                next_step="Give leg.springs, or leave simulation.play out: flexapod.play follows play without a motion",
+            )
+
+
+def refuse_growing_plates(study: Study) -> None:
+    """Raise InputError if plates grow during a simulation under legs that cannot take that as a length."""
+    heat, legs = study.robot.heat, study.robot.legs
+    follows = kinematics.rigid_limbs(study.robot).plain and not any(isinstance(leg.drive, ForceDrive) for leg in legs)
+    for plate in ("base", "platform"):
+        if heat is not None and plate in heat.columns and not follows:
+            raise InputError(
+                f"has a column {plate!r}: joints that move by heat during a motion are known of legs UPS alone, whose "
+                "drives have a position",
+                file=study.path,
+                key="heat.file",
+                value=heat.file,
+                allowed="over time the temperatures of pistons, cylinders and screws",
+                next_step=f"Give heat.{plate} a number here; flexapod.accuracy follows the whole table",
+            )
+
+
+def _configuration(study: Study, system: System) -> State:
+    """Configuration and velocities before the impact projection, by the kind of start and what acts until then."""
+    path = kinematics.poses(study.robot, study.motion, np.zeros(1))
+    built = bool(kinematics.built_parts(study.robot)) and study.initial.start != "equilibrium"
+    straight = (built_state if built else rigid_state)(system, study.robot, path)
+    if study.initial.start == "moving":
+        return straight
+    at_rest = replace(straight, v=np.zeros(system.size), v_dot=np.zeros(system.size))
+    if study.initial.start == "straight":
+        return at_rest
+    refuse_pure_force(study.robot, "the equilibrium start")
+    still = system
+    if system.kernel.shapes.has("w") or system.kernel.shapes.has("j"):
+        still = robot_system(study.robot, study.simulation, per_loss(study.robot, study.simulation), at_rest=True)
+        at_rest = replace(at_rest, drive=np.zeros((still.legs, still.ports.size)))
+    acts = rest_load(still, study.robot, path, study.load)
+    command = rest_commands(still, study.robot, straight.q[None])[0]
+    found = equilibrium(still, at_rest, command, acts.force[0], acts.wrench)
+    if not found.found:
+        raise ComputationError(f"the robot cannot start at rest: {found.reason}", next_step="See `flexapod check`.")
+    refuse_fallen(still, study.robot, RestStates.of(straight), RestStates.of(found.state))
+    if system.kernel.shapes.has("j"):
+        return replace(found.state, drive=np.zeros((system.legs, system.ports.size)))
+    return found.state if still is system else _summed(study.robot, system, still, found.state)
+
+
+def _summed(robot: Robot, system: System, still: System, state: State) -> State:
+    """A state at rest whose loops have summed what holds their rotors, Eq. (T23.16)."""
+    shapes, q = system.kernel.shapes, state.q.copy()
+    force = state.drive[:, still.ports == shapes.index("r")][:, 0]
+    gain = np.array([leg.screw.integral if leg.screw is not None else 0.0 for leg in robot.legs])
+    q[:, shapes.index("w")] = np.divide(force, gain, out=np.zeros_like(gain), where=gain > 0)
+    return replace(state, q=q, drive=np.zeros((system.legs, system.ports.size)))
+
+
+class _Path:
+    """Rigid path, for commands and error measure: the last poses are remembered, and places of outputs."""
+
+    def __init__(self, study: Study) -> None:
+        self.robot, self.motion = study.robot, study.motion
+        self.knots = kinematics.path_knots(study.motion, study.duration)
+        self.time, self.last = np.zeros(0), None
+        self.guided = Pieces(self._centre, self.knots) if kinematics.rigid_limbs(study.robot).guides else None
+        self.output_step, self.outputs = study.simulation.stored_step, study.simulation.outputs(study.duration)
+        self.stored, self.centres = np.zeros(0), (np.zeros((0, 3)), np.zeros((0, 3, 3)))
+
+    def poses(self, t: Array) -> kinematics.Poses:
+        """Poses with rates at instants (T,), ascending."""
+        if self.last is None or not np.array_equal(t, self.time):
+            self.time, self.last = t, kinematics.poses(self.robot, self.motion, t)
+        return self.last
+
+    def centre(self, t: Array) -> tuple[Array, Array]:
+        """Centre of mass (T, 3) and rotation (T, 3, 3) at instants (T,), ascending: many outputs are made at once."""
+        if self.guided is not None:
+            place, rotation = self.guided(t)
+            return place, rotation
+        if len(t) > 1 and not (len(self.stored) and self.stored[0] <= t[0] and t[-1] <= self.stored[-1]):
+            first = round(t[0] / self.output_step)
+            self.stored = np.arange(first, min(first + AHEAD, self.outputs) + 1) * self.output_step
+            self.centres = self._centre(self.stored)
+        at = np.minimum(np.searchsorted(self.stored, t), max(len(self.stored) - 1, 0))
+        if not len(self.stored) or (self.stored[at] != t).any():
+            return self._centre(t)
+        place, rotation = self.centres
+        return place[at], rotation[at]
+
+    def _centre(self, t: Array) -> tuple[Array, Array]:
+        place, rotation = kinematics.places(self.robot, self.motion, t)
+        return place + rotation @ self.robot.com, rotation
+
+
+class _Measure:
+    """Deviation of the payload (CoM, and rotation at the joints' radius) and the lateral amplitudes of a recording.
+
+    A payload that is fixed has no deviation: there amplitudes count, those along the legs as well.
+    """
+
+    def __init__(self, study: Study, system: System, path: _Path) -> None:
+        shapes = system.kernel.shapes
+        first = shapes.index("a")
+        self.system, self.robot = system, study.robot
+        self.path, self.lateral = path, slice(first, first + shapes.beam.a.count + shapes.beam.b.count)
+        self.along = columns(shapes.layout, "c") if shapes.beam.axial.count else slice(0)
+        self.radius = np.linalg.norm(study.robot.platform_joints, axis=1).max()
+        self.fixed = bool(system.hub_held.all())
+        self.least = ROUNDING / (study.simulation.tolerance or 1.0)  # what is smaller along a leg does not count
+
+    def weights(self) -> tuple[Weight, ...]:
+        """What moves the deviation, and the lateral amplitudes: these may have ten times the error."""
+        still, lateral = np.zeros(self.system.n), np.zeros(self.system.n)
+        if self.fixed:
+            along, none = still.copy(), np.zeros(6)
+            lateral[self.lateral] = along[self.along] = 1.0
+            return Weight(leg=lateral, hub=none), Weight(leg=along, hub=none)
+        lateral[self.lateral] = 0.1
+        hub = np.array([1.0, 1.0, 1.0, self.radius, self.radius, self.radius])
+        return Weight(leg=still, hub=hub), Weight(leg=lateral, hub=np.zeros(6))
+
+    def __call__(self, recording: Recording) -> list[Array]:
+        if self.fixed:
+            return [recording.q[:, :, self.lateral], np.append(recording.q[:, :, self.along], self.least)]
+        com, rigid_rotation = self.path.centre(recording.time)
+        place, rotation = recording.pose[:, :3], matrix(recording.pose[:, 3:])
+        if self.robot.base_motion is not None:
+            place, rotation = floor(self.system, self.robot, recording.q).seen(place, rotation)
+        turn = rigid_rotation.swapaxes(1, 2) @ rotation
+        skew = [turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]]
+        shift = place - com
+        return [
+            np.concatenate([shift, 0.5 * self.radius * np.stack(skew, axis=1)], axis=1),
+            recording.q[:, :, self.lateral],
+        ]
+
+
+def after_impact(system: System, flow: Flow, law: Law, now: float, method: GeneralizedAlpha, h: float) -> Flow:
+    """Flow after a jump in the commanded rates; the drives do the work of the impact."""
+    start, impact = consistent_start(system, flow, law, now, method, h)
+    return replace(start, sums=flow.sums + np.array([0.0, impact, 0.0, 0.0]))
+
+
+class _Range:
+    """Stop where the model has no meaning: a piston inside or out of its cylinder, a universal joint turned over."""
+
+    def __init__(self, study: Study, system: System) -> None:
+        legs, shapes = study.robot.legs, system.kernel.shapes
+        self.system, self.robot = system, study.robot
+        self.mouth = np.array([leg.cylinder.mouth for leg in legs])
+        self.guided = np.array([leg.piston.length if leg.cylinder.mouth > 0 else np.inf for leg in legs]) * (1 + 1e-9)
+        self.l, self.beta = shapes.l_index, shapes.index("beta")
+        self.tilt = shapes.index("gamma2") if shapes.has("gamma2") else None
+
+    def __call__(self, recording: Recording) -> None:
+        """Raise ComputationError at the first instant of a recording at which it has none."""
+        q = recording.q
+        free = q[:, :, self.l] - self.mouth
+        found = [
+            (free <= 0, "its piston has slid wholly into the cylinder"),
+            (free > self.guided, "its piston has been pulled out of the cylinder"),
+            (np.abs(q[:, :, self.beta]) > BETA_LIMIT, "its universal joint has turned over"),
+        ]
+        if self.tilt is not None:
+            turned = flipped(self.system, self.robot, q, recording.pose) | (np.abs(q[:, :, self.tilt]) > BETA_LIMIT)
+            found.append((turned, "its joint at the platform has turned over"))
+        for bad, words in found:
+            if bad.any():
+                at, leg = np.argwhere(bad)[0]
+                raise ComputationError(
+                    f"leg {leg + 1} left the range of the model at t = {recording.time[at]:.6g} s: {words}",
+                    next_step="Check drive forces and feedback of this leg, or the start.",
+                )
