@@ -134,7 +134,7 @@ def test_a_page_of_verify_that_could_not_be_written_is_refused_first(flexapod, f
 WRITING = """
 import os, signal, sys
 from flexapod.cli import cli
-from flexapod.study import netcdf
+from flexapod.results import netcdf
 
 whole = netcdf.write
 def half(data, path, **more):
@@ -189,7 +189,7 @@ def test_sigterm_keeps_what_was_computed(study, folder):
     changes = [('duration = "2 s" ', 'duration = "1000 s" '), ('hold = "1 s" ', 'hold = "999 s" ')]
     file = study(*changes, ("tolerance = 1e-4", 'step = "0.5 ms"\noutput_step = "10 ms"'))
     code = (
-        "import os, signal, sys\nfrom flexapod.study import record\nfrom flexapod.cli import cli\n"
+        "import os, signal, sys\nfrom flexapod.results import record\nfrom flexapod.cli import cli\n"
         "kept = record._kept\ncount = []\n"
         "def some(*a):\n    count.append(1)\n    len(count) == 3 and os.kill(os.getpid(), signal.SIGTERM)\n"
         "    return kept(*a)\nrecord._kept = some\nsys.argv = ['flexapod', 'run', sys.argv[1]]\ncli.main()"

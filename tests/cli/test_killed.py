@@ -68,7 +68,7 @@ def test_what_a_killed_command_left_is_removed_by_the_next(command, study, folde
         "new": ("new", "other.toml", "--force"),
         "modes": ("modes", file, "--out", "modes"),
     }[command]
-    killed("from flexapod import files\nfiles._settle = stay", *arguments)
+    killed("from flexapod.runtime import files\nfiles._settle = stay", *arguments)
     assert len(unfinished(folder)) == 1
     assert flexapod(*arguments).exit_code == 0
     assert unfinished(folder) == []
