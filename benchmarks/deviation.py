@@ -57,7 +57,7 @@ def rigid_centre(study: Study, t: Array) -> Array:
 
 def deflection(study: ActuatorStudy, amplitudes: Array) -> Array:
     """Deflection of the tip of a planar actuator of amplitudes (T, k), (T, 1) [m]."""
-    return (amplitudes @ actuator_shapes(study.actuator, study.simulation).a.tip)[:, None]
+    return (amplitudes @ actuator_shapes(study.actuator, study.simulation).beam.a.tip)[:, None]
 
 
 def marched(study: Study | ActuatorStudy) -> Marched:
