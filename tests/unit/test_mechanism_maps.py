@@ -117,3 +117,9 @@ def test_poses_of_a_tripod_by_name_are_completed():
     robot = ROBOTS["3-RPS"]()
     data = fx.stiffness(robot, {"roll": 0.2})
     assert np.isfinite(data.stiffness.values).all()
+
+
+def test_a_map_of_poses_that_have_no_equilibrium_says_why():
+    # The legs of this 3-UPU give way wherever the map looks: no pose is left to compute anything about.
+    found = fx.workspace_map(ROBOTS["3-UPU"](), {"surge": [0.02], "heave": [0.01, 0.02]})
+    assert (found.reason != 0).all() and np.isnan(found.static_deviation_size).all()

@@ -19,8 +19,8 @@ BLOCK = 1024  # poses; an array of six legs then takes 48 kB, and what a block n
 
 
 def blocks(count: int) -> Iterator[slice]:
-    """Ranges of at most `BLOCK` out of `count` poses."""
-    return (slice(first, min(first + BLOCK, count)) for first in range(0, count, BLOCK))
+    """Ranges of at most `BLOCK` out of `count` poses; of no poses one, which is empty."""
+    return (slice(first, min(first + BLOCK, count)) for first in range(0, max(count, 1), BLOCK))
 
 
 def time_last(array: Array) -> Array:
