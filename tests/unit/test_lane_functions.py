@@ -24,7 +24,7 @@ ANGLES = np.concatenate(
 def turn():
     x = symbol("x", len(ANGLES))
     functions = [NamedFunction("turn", [("x", x)], [("sine", sin(x)), ("cosine", cos(x))])]
-    library, signatures = compiled_library(["turn"], lambda: functions, (), compiler.compiler())
+    library, signatures = compiled_library(["turn"], lambda: functions, compiler.compiler())
     return CompiledFunction(library, "turn", signatures["turn"])
 
 
@@ -50,7 +50,7 @@ def test_the_exponential_is_that_of_the_library():
     )
     argument = symbol("x", len(x))
     functions = [NamedFunction("power", [("x", argument)], [("y", exp(argument))])]
-    library, signatures = compiled_library(["power"], lambda: functions, (), compiler.compiler())
+    library, signatures = compiled_library(["power"], lambda: functions, compiler.compiler())
     # Reduction, sum and product round once each, and the library: less than four units in the last place.
     with np.errstate(over="ignore"):
         expected = np.exp(x)
@@ -71,7 +71,7 @@ def test_a_function_in_parts_gives_the_same_bits(monkeypatch):
     for most in (5000, 7):
         monkeypatch.setattr(c_source, "LONGEST", most)
         monkeypatch.setattr(c_source, "WHOLE", most)
-        library, signatures = compiled_library(["chain", most], lambda: [_chain()], (), compiler.compiler())
+        library, signatures = compiled_library(["chain", most], lambda: [_chain()], compiler.compiler())
         found.append(CompiledFunction(library, "chain", signatures["chain"])(x))
         assert ("chain_lanes_1" in c_source.c_source(_chain())) == (most == 7)
     for whole, parts in zip(*found, strict=True):
@@ -96,7 +96,7 @@ def test_a_function_as_a_table_gives_the_same_bits(monkeypatch):
     found = []
     for most in (10**6, 0):
         monkeypatch.setattr(c_source, "TABLED", most)
-        library, signatures = compiled_library(["kinds", most], lambda: [_of_every_kind()], (), compiler.compiler())
+        library, signatures = compiled_library(["kinds", most], lambda: [_of_every_kind()], compiler.compiler())
         kinds = CompiledFunction(library, "kinds", signatures["kinds"])
         found.append(kinds.each(19, [x], [(258,), (1,)]))
         assert ("RowInput" in c_source.c_source(_of_every_kind())) == (most == 0)
@@ -116,7 +116,7 @@ def test_a_function_as_a_table_gives_the_same_bits(monkeypatch):
     ],
 )
 def test_wrong_sizes_are_refused_before_c_sees_them(rows, shapes):
-    library, signatures = compiled_library(["chain", 5000], lambda: [_chain()], (), compiler.compiler())
+    library, signatures = compiled_library(["chain", 5000], lambda: [_chain()], compiler.compiler())
     chain = CompiledFunction(library, "chain", signatures["chain"])
     assert [x.shape for x in chain.each(2, [np.ones((1, 3))], [(42,), (1,)])] == [(2, 42), (2, 1)]
     with pytest.raises(ValueError, match="expected sizes of inputs and outputs"):
