@@ -1,0 +1,1 @@
+"""Linear systems with named channels, and loops around them: they take any state space, robots or not."""

@@ -1,0 +1,1 @@
+"""Commands that a study should follow instead of its own: compensated, shaped, of least time."""
