@@ -41,6 +41,8 @@ def test_a_table_that_does_not_exist_is_refused():
         ("stribeck", "'leg.base_joint.friction.stribeck' or "),
         ("home_height", "`flexapod keys robot`"),
         ("leg.drive.nut.preload", "`flexapod keys leg.drive.nut`"),
+        ("piston.diamter", "the key leg.piston.diameter? `flexapod keys leg.piston`"),
+        ("leg.dirve", "Did you mean 'leg.drive'?"),
         ("pistn", "Did you mean 'leg.piston'?"),
         ("qqqqqq", "`flexapod keys` lists all"),
     ],

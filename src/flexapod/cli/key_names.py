@@ -42,5 +42,10 @@ def _meant(wanted: str, tables: list[str], entries: tuple[Entry, ...]) -> str:
         which = " or ".join(f"`flexapod keys {name}`" for name in holders[:MOST])
         return f"{last} is a key of a table: {which}"
     lasts = {name.rpartition(".")[2]: name for name in reversed(tables)}
-    close = nearest(wanted, tables) or lasts.get(nearest(last, lasts) or "")
+    keys = {f"{entry.table}.{key}": entry.table for entry in entries for key in entry.data}
+    keys = {name: table for name, table in keys.items() if name not in tables}
+    close = nearest(wanted, [*tables, *keys])
+    if close in keys:
+        return f"Did you mean the key {close}? `flexapod keys {keys[close]}`"
+    close = close or lasts.get(nearest(last, lasts) or "")
     return f"Did you mean {close!r}?" if close else "`flexapod keys` lists all tables with their keys"
