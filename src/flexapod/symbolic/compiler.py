@@ -130,7 +130,7 @@ class CompiledFunction:
 
 
 def compiled_library(
-    key: Sequence[object], functions: Callable[[], list], command: list[str]
+    key: Sequence[object], functions: Callable[[], list], command: list[str], callers: str = ""
 ) -> tuple[ctypes.CDLL, dict[str, dict]]:
     """Load (compiling on first use) generated functions, and their signatures.
 
@@ -142,18 +142,20 @@ def compiled_library(
         Builds the list of NamedFunction; called only where it is not known what the code is, or is not compiled.
     command : list of str
         C compiler.
+    callers : str
+        C text that calls them.
 
     Raises
     ------
     ComputationError
         The compiler failed (the message carries its words), or its library cannot be loaded.
     """
-    cache, source = open_cache(), _hash([*key, version("casadi")])
+    cache, source = open_cache(), _hash([*key, callers, version("casadi")])
     if cache and (text := known_text(cache, source)):
         if found := _first(intact_libraries(cache, _name([text], FLAGS, command))):
             return found
     with _announced(), scratch() as folder:
-        units = _generated(functions())
+        units = _generated(functions(), callers)
         text = _hash(units)
         found = _library(_name([text], FLAGS, command), units, FLAGS, command, cache, folder)
     if cache:
@@ -176,15 +178,16 @@ def lanes(library: ctypes.CDLL) -> int:
     return int(getattr(library, LANES)())
 
 
-def _generated(functions: list) -> list[str]:
+def _generated(functions: list, callers: str) -> list[str]:
     """C text of functions in units that take a compiler about as long: as many as it pays to compile side by side."""
     from flexapod.symbolic.c_source import c_source
 
     units: list[list[str]] = [[_signatures({f.name: f.signature() for f in functions})]]
     texts = sorted(map(c_source, functions), key=len, reverse=True)
-    units += [[] for _ in range(min(UNITS, sum(map(len, texts)) // WORTH_IT + 1) - 1)]
+    units += [[] for _ in range(min(UNITS, sum(map(len, texts)) // WORTH_IT + 1) - 1) if not callers]
     for text in texts:
         min(units, key=lambda unit: sum(map(len, unit))).append(text)
+    units[0].append(callers)
     return ["\n".join([PRELUDE.read_text(), STRAIGHT, *unit]) for unit in units]
 
 
