@@ -8,7 +8,7 @@ RUN := .venv/.installed-to-run
 DEV := .venv/.installed-to-develop
 COMPILER ?= $(shell command -v cc || command -v gcc || command -v clang)
 COMMA := ,
-PARTS = page,verify$(if $(COMPILER),,$(COMMA)compiler)
+PARTS = page,verify,control$(if $(COMPILER),,$(COMMA)compiler)
 
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test lint format bench clean
