@@ -15,7 +15,7 @@ from flexapod.arrays import Array
 from flexapod.control.state_space import StateSpace
 from flexapod.errors import InputError
 from flexapod.kinematics.rotations import matrix
-from flexapod.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose, read
+from flexapod.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
 from flexapod.results.poses import coordinates_of
 from flexapod.runtime.threads import one_thread
 from flexapod.solve.linear.channels import asked
@@ -132,8 +132,6 @@ def _plant(
         raise InputError("is not a way to take drives", key="drives", value=drives, allowed='"given", "force"')
     found = model.override(at_pose(study, load), friction=friction)
     path = as_pose(found.robot, pose)
-    if found.robot.platform_fixed:
-        raise InputError("has no tool that moves: the platform is fixed", key="robot.platform.fixed", value=True)
     try:
         plant = plant_at(found.robot, found.simulation, path, found.load, drives)
     except InputError as error:

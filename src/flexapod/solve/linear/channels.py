@@ -26,6 +26,7 @@ OUTPUTS = {
     "accelerometer": AXES, "geophone": AXES,
 }  # fmt: skip
 AT_POINTS = ("force", "accelerometer", "geophone")
+ON_PLATFORM = (*AT_POINTS, "wrench", "tool", "com")
 #: Geophone of which nothing is said: a corner of 4.5 Hz, 0.7 of critical damping, and an output that is the velocity.
 USUAL = (4.5, 0.7, 1.0)
 
@@ -88,6 +89,11 @@ def _of(name: str, known: dict[str, object], robot: Robot, key: str) -> list[Cha
         raise InputError(
             "is not a channel", key=key, value=name, allowed=_words(known),
             next_step=None if like is None else f"Did you mean {like!r}?",
+        )  # fmt: skip
+    if robot.platform_fixed and group in ON_PLATFORM:
+        raise InputError(
+            "has no meaning: the platform is fixed", key=key, value=name,
+            allowed=_words({g: x for g, x in known.items() if g not in ON_PLATFORM}),
         )  # fmt: skip
     rest = name[len(group) + 1 :]
     every = _at_point(group, rest, robot, key) if group in AT_POINTS else _members(group, known[group], robot)

@@ -7,8 +7,6 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal, cast
 
-import numpy as np
-
 from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.errors import ComputationError, InputError

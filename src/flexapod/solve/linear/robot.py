@@ -18,7 +18,6 @@ from flexapod.solve.modal.modes import loops_of, modal_damping, no_mass, unit_mo
 from flexapod.solve.statics.drive_forces import push_ports
 from flexapod.solve.statics.locked import LockedPoses, the_equilibrium
 from flexapod.solve.statics.stiffness import tool_motion
-from flexapod.solve.system import System
 
 __all__ = ["LinearRobot", "linear_robot"]
 
