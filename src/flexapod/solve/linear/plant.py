@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal, cast
 
+import numpy as np
+
 from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.errors import ComputationError, InputError
@@ -57,8 +59,11 @@ class Plant:
 
     @property
     def command(self) -> Array:
-        """Commands of all ports, (P, legs, ports)."""
-        return self.locked.command[self.locked.at]
+        """Commands of all ports, (P, legs, ports); where statics know of none, what is there."""
+        found, told = self.x.q[..., self.system.ports], self.locked.command[self.locked.at]
+        for k, port in enumerate(self.locked.system.ports):
+            found[..., self.system.ports == port] = told[..., k, None]
+        return found
 
 
 def plant_at(
@@ -81,6 +86,8 @@ def plant_at(
     as_at_rest = drives == "given" and not (shapes.has("w") or shapes.has("j"))
     system = locked.system if as_at_rest else _moving(robot, simulation, locked.per_loss, drives)
     x = locked.equilibria.states[locked.at]
+    if not as_at_rest:
+        x = replace(x, drive=np.zeros((len(x), system.legs, system.ports.size)))  # forces of statics: none is asked for
     m = with_friction(system, x, matrices_at_rest(system, x, locked.acts.wrench), stuck=simulation.friction == "stuck")
     if (more := pushes(system, x.q)) is not None:
         m = replace(m, D=m.D + more[0], K=m.K + more[1])
