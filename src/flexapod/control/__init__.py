@@ -10,14 +10,66 @@ from typing import TYPE_CHECKING
 from flexapod.runtime.loading import loaded
 
 if TYPE_CHECKING:
+    from flexapod.control.closing import DelayedLoop
+    from flexapod.control.controllers import DVF, IFF, PID, Controller, Decentralised, Decoupled, Fused, Together
+    from flexapod.control.laws import (
+        Law,
+        complementary,
+        gain,
+        high_pass,
+        integrator,
+        lead,
+        low_pass,
+        notch,
+        pid,
+        positive_feedback,
+        rate,
+    )
     from flexapod.control.state_space import StateSpace
 
 _HOMES = {
+    "closing": ("DelayedLoop",),
+    "controllers": ("DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together"),
+    "laws": (
+        "Law",
+        "complementary",
+        "gain",
+        "high_pass",
+        "integrator",
+        "lead",
+        "low_pass",
+        "notch",
+        "pid",
+        "positive_feedback",
+        "rate",
+    ),
     "state_space": ("StateSpace",),
 }
 _NAMES = {name: module for module, names in _HOMES.items() for name in names}
 
-__all__ = ["StateSpace"]
+__all__ = [
+    "DVF",
+    "IFF",
+    "PID",
+    "Controller",
+    "Decentralised",
+    "Decoupled",
+    "DelayedLoop",
+    "Fused",
+    "Law",
+    "StateSpace",
+    "Together",
+    "complementary",
+    "gain",
+    "high_pass",
+    "integrator",
+    "lead",
+    "low_pass",
+    "notch",
+    "pid",
+    "positive_feedback",
+    "rate",
+]
 
 
 def __getattr__(name: str) -> object:

@@ -23,8 +23,8 @@ BLOCK = 64  # frequencies solved for side by side
 def response(A: Array, B: Array, C: Array, D: Array, s: Complex) -> Complex:
     """C (s - A)^-1 B + D at points s (f,): (outputs, inputs, f), Eq. (T21.1).
 
-    Of the states that inputs move and outputs show. By poles and residues where that agrees with solving at some of the points, else by
-    solving at all of them.
+    Of the states that inputs move and outputs show. By poles and residues where that agrees with solving at some of
+    the points, else by solving at all of them.
 
     Raises
     ------

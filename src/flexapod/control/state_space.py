@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,13 +10,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexapod.arrays import Array
-from flexapod.control.channels import Names, chosen
+from flexapod.control.channels import RATE, Names, chosen
 from flexapod.control.frequency import response
 from flexapod.control.poles import damping_of, poles_of, zeros_of
 from flexapod.errors import InputError
+from flexapod.units import to_si
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+    from flexapod.control.closing import DelayedLoop
+    from flexapod.control.controllers import Controller
 
 __all__ = ["StateSpace"]
 
@@ -76,6 +80,46 @@ class StateSpace:
             units=self.units,
             sample=self.sample,
         )
+
+    def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] | None = None) -> StateSpace:
+        """Itself, as a controller from some `outputs` of another system to some of its `inputs`."""
+        for name in self.inputs:
+            chosen(name.removeprefix(RATE), outputs, "sensor")
+        for name in self.outputs:
+            chosen(name, inputs, "actuator")
+        return self
+
+    def sampled(self, period: float | str, delay: float | str = 0.0) -> StateSpace:
+        """The same between samples, inputs held for a `period` [s] (or "5 kHz") and late by a `delay` [s], (T21.17)."""
+        from flexapod.control.sampling import held, period_of
+
+        if self.sample is not None:
+            raise InputError("is sampled already", key="sample", value=self.sample, allowed="a continuous system")
+        return held(self, period_of(period), to_si(delay, "time", key="delay"))
+
+    def close(
+        self, controller: Controller | StateSpace, *, delay: float | str = 0.0, sample: float | str | None = None
+    ) -> StateSpace | DelayedLoop:
+        """The system with a controller, u = r + K (y + w), Eq. (T21.21).
+
+        Parameters
+        ----------
+        controller : Controller or StateSpace
+            From outputs to inputs of this system.
+        delay : float or str
+            Of the actuators [s]: exact in the response of a continuous loop, and between samples.
+        sample : float or str, optional
+            Time between samples [s], or their rate as ``"5 kHz"``: readings and actuators are held in between.
+
+        Returns
+        -------
+        StateSpace or DelayedLoop
+            With inputs ``noise:SENSOR``, which are added to readings, and outputs ``control:ACTUATOR``. A continuous
+            loop with a delay has no finite number of states: a `DelayedLoop` has its response and its margins.
+        """
+        from flexapod.control.closing import close
+
+        return close(self, controller, delay, sample)
 
     def at(self, hz: ArrayLike) -> Complex:
         """Complex response (outputs, inputs, frequencies) at frequencies [Hz], Eqs. (T21.1)-(T21.3)."""
