@@ -77,7 +77,7 @@ class DelayedLoop:
         """Response at frequencies [Hz] as a Dataset: `frequency_response` (output, input, frequency, part)."""
         from flexapod.control.datasets import response_dataset
 
-        return response_dataset(self, hz)
+        return response_dataset(self, hz, self.at(hz))
 
 
 def close(

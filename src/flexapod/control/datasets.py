@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import xarray as xr
@@ -13,10 +14,31 @@ from flexapod.arrays import Array
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
 
-__all__ = ["PARTS", "channel_labels", "complex_of", "damping_dataset", "in_parts", "response_dataset"]
+__all__ = [
+    "PARTS",
+    "channel_labels",
+    "complex_of",
+    "damping_dataset",
+    "h2_dataset",
+    "hinf_dataset",
+    "in_parts",
+    "response_dataset",
+]
 
 Complex = NDArray[np.complex128]
 PARTS = ["real", "imaginary"]
+RESPONSE = ("frequency_response", "response of outputs to inputs", "output_units / input_units")
+
+
+class Channels(Protocol):
+    """What has named inputs and outputs with units."""
+
+    @property
+    def inputs(self) -> tuple[str, ...]: ...
+    @property
+    def outputs(self) -> tuple[str, ...]: ...
+    @property
+    def units(self) -> Mapping[str, str]: ...
 
 
 def in_parts(values: Complex) -> Array:
@@ -29,21 +51,51 @@ def complex_of(values: xr.DataArray) -> xr.DataArray:
     return values.sel(part="real", drop=True) + 1j * values.sel(part="imaginary", drop=True)
 
 
-def channel_labels(system: StateSpace, *dims: str) -> dict[str, tuple[str, list[str]]]:
+def channel_labels(system: Channels, *dims: str) -> dict[str, tuple[str, list[str]]]:
     """Names and units of channels as coordinates: `output`, `output_units`, `input`, `input_units`."""
     names = {"input": system.inputs, "output": system.outputs}
     labels = {dim: (dim, list(names[dim])) for dim in dims}
     return labels | {f"{dim}_units": (dim, [system.units.get(name, "1") for name in names[dim]]) for dim in dims}
 
 
-def response_dataset(system: StateSpace, hz: ArrayLike) -> xr.Dataset:
-    """`frequency_response` (output, input, frequency, part) in the output's unit over the input's."""
+def response_dataset(
+    system: Channels, hz: ArrayLike, values: Complex, words: tuple[str, str, str] = RESPONSE
+) -> xr.Dataset:
+    """Complex values (output, input, frequency, part) under the name of `words`: name, long name, unit."""
     frequency = np.atleast_1d(np.asarray(hz, dtype=float))
-    words = {"long_name": "response of outputs to inputs", "units": "output_units / input_units"}
+    name, long_name, unit = words
+    attrs = {"long_name": long_name, "units": unit}
     return xr.Dataset(
-        {"frequency_response": (("output", "input", "frequency", "part"), in_parts(system.at(frequency)), words)},
+        {name: (("output", "input", "frequency", "part"), in_parts(values), attrs)},
         channel_labels(system, "output", "input")
         | {"frequency": ("frequency", frequency, {"units": "Hz"}), "part": ("part", PARTS)},
+    )
+
+
+def h2_dataset(system: StateSpace, values: Array, why: dict[tuple[int, int], str]) -> xr.Dataset:
+    """`h2_norm` and `reason` (output, input); attribute `warnings`: a line for each channel that is infinite."""
+    reason = np.full(values.shape, "", dtype=object)
+    for at, words in why.items():
+        reason[at] = words
+    lines = [f"{system.outputs[i]} by {system.inputs[j]} is infinite: {words}" for (i, j), words in why.items()]
+    attrs = {"long_name": "H2 norm", "units": "output_units / input_units * Hz**0.5"}
+    return xr.Dataset(
+        {
+            "h2_norm": (("output", "input"), values, attrs),
+            "reason": (("output", "input"), reason.astype(str), {"long_name": "why the norm is infinite"}),
+        },
+        channel_labels(system, "output", "input"),
+        {"warnings": "\n".join(lines)},
+    )
+
+
+def hinf_dataset(value: float, hertz: float) -> xr.Dataset:
+    """`hinf_norm` and the `frequency` of it."""
+    return xr.Dataset(
+        {
+            "hinf_norm": ((), value, {"long_name": "largest singular value over frequency"}),
+            "frequency": ((), hertz, {"units": "Hz", "long_name": "frequency of the largest singular value"}),
+        }
     )
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from flexapod.arrays import Array, Mask
 from flexapod.errors import ComputationError
 
-__all__ = ["response"]
+__all__ = ["moved_and_shown", "reached", "response"]
 
 Complex = NDArray[np.complex128]
 
@@ -53,11 +53,11 @@ def response(A: Array, B: Array, C: Array, D: Array, s: Complex) -> Complex:
 def moved_and_shown(A: Array, B: Array, C: Array) -> tuple[Array, Array, Array]:
     """The states that some input moves and some output shows, by what is 0 in the matrices."""
     links = A != 0
-    kept = np.flatnonzero(_reached(links, (B != 0).any(axis=1)) & _reached(links.T, (C != 0).any(axis=0)))
+    kept = np.flatnonzero(reached(links, (B != 0).any(axis=1)) & reached(links.T, (C != 0).any(axis=0)))
     return A[np.ix_(kept, kept)], B[kept], C[:, kept]
 
 
-def _reached(links: Mask, start: Mask) -> Mask:
+def reached(links: Mask, start: Mask) -> Mask:
     """States that lie behind those of the start, which are among them."""
     while True:
         further = start | (links @ start)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from flexapod.arrays import Array
 from flexapod.control.channels import RATE, Names, chosen
 from flexapod.control.frequency import response
+from flexapod.control.norms import h2_norms, hinf_norm, relative_gains
 from flexapod.control.poles import damping_of, poles_of, zeros_of
 from flexapod.errors import InputError
 from flexapod.units import to_si
@@ -121,6 +122,16 @@ class StateSpace:
 
         return close(self, controller, delay, sample)
 
+    def _square(self, key: str, inputs: Names, outputs: Names) -> StateSpace:
+        part = self.select(inputs, outputs)
+        if len(part.inputs) != len(part.outputs):
+            raise InputError(
+                f"are {len(part.inputs)} inputs and {len(part.outputs)} outputs",
+                key=key,
+                allowed="as many inputs as outputs, for example one of each",
+            )
+        return part
+
     def at(self, hz: ArrayLike) -> Complex:
         """Complex response (outputs, inputs, frequencies) at frequencies [Hz], Eqs. (T21.1)-(T21.3)."""
         s = 2j * np.pi * np.atleast_1d(np.asarray(hz, dtype=float))
@@ -130,7 +141,7 @@ class StateSpace:
         """Response at frequencies [Hz] as a Dataset: `frequency_response` (output, input, frequency, part)."""
         from flexapod.control.datasets import response_dataset
 
-        return response_dataset(self, hz)
+        return response_dataset(self, hz, self.at(hz))
 
     def poles(self) -> Complex:
         """Eigenvalues of A, the slowest first, (n,) [1/s]; of a sampled system in the plane of z."""
@@ -141,14 +152,46 @@ class StateSpace:
 
         What no input moves or no output shows is left out: such a pole and its zero cancel.
         """
-        part = self.select(input, output)
-        if len(part.inputs) != len(part.outputs):
-            raise InputError(
-                f"are {len(part.inputs)} inputs and {len(part.outputs)} outputs",
-                key="zeros",
-                allowed="as many inputs as outputs, for example one of each",
-            )
+        part = self._square("zeros", input, output)
         return zeros_of(part.A, part.B, part.C, part.D, part.poles())
+
+    def h2(self, inputs: Names = None, outputs: Names = None) -> Dataset:
+        """`h2_norm` (output, input) of each channel, Eq. (T21.25): rms under white noise of density 2, one-sided.
+
+        Infinite where something follows what has no end of frequencies or never decays; `reason` says what.
+        """
+        from flexapod.control.datasets import h2_dataset
+
+        part = self.select(inputs, outputs)
+        return h2_dataset(part, *h2_norms(part))
+
+    def hinf(self, inputs: Names = None, outputs: Names = None) -> Dataset:
+        """`hinf_norm`, the largest singular value of the response of the channels, and its `frequency`, Eq. (T21.27).
+
+        Channels of several units are added as they are: choose one unit, or one of each.
+        """
+        from flexapod.control.datasets import hinf_dataset
+
+        return hinf_dataset(*hinf_norm(self.select(inputs, outputs)))
+
+    def rga(self, hz: ArrayLike, inputs: Names = None, outputs: Names = None) -> Dataset:
+        """`relative_gain` (output, input, frequency, part) at frequencies [Hz], Eq. (T21.29), of as many of each."""
+        from flexapod.control.datasets import response_dataset
+
+        part = self._square("rga", inputs, outputs)
+        words = ("relative_gain", "relative gain: 1 where other loops change nothing", "1")
+        return response_dataset(part, hz, relative_gains(part.at(hz)), words)
+
+    def reduce(
+        self, modes: int | None = None, *, below: float | str | None = None, residual: bool = True
+    ) -> StateSpace:
+        """The slowest `modes` of `damp`, or all `below` a frequency [Hz], Eqs. (T21.23)-(T21.24).
+
+        `residual`: what is left out still gives way as at rest. Without that zeros move.
+        """
+        from flexapod.control.reduction import reduced
+
+        return reduced(self, modes, below, residual)
 
     def damp(self) -> Dataset:
         """Frequencies [Hz], damping ratios and poles, by frequency, Eq. (T21.4); of a pair the pole above the axis."""
