@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from flexapod.runtime.loading import loaded
 
 if TYPE_CHECKING:
-    from flexapod import kinematics, model, plot, study
+    from flexapod import control, kinematics, model, plot, study
     from flexapod.citations import cite
     from flexapod.elements.element import Contribution, Element, Output
     from flexapod.elements.frame import Energies
@@ -74,7 +74,7 @@ _HOMES = {
 }
 _NAMES = {name: module for module, names in _HOMES.items() for name in names}
 _FORMER = {"rigid": "kinematics"}  # names of the release before
-_PACKAGES = ("kinematics", "model", "plot", "study")
+_PACKAGES = ("control", "kinematics", "model", "plot", "study")
 
 __all__ = [
     "ActuatorStudy",
@@ -92,6 +92,7 @@ __all__ = [
     "accuracy",
     "budget",
     "cite",
+    "control",
     "converge",
     "forward_kinematics",
     "inverse_dynamics",

@@ -186,3 +186,93 @@ def test_a_rate_of_what_jumps_is_refused():
         strut().close(fc.Decentralised(fc.gain(-1.0), sensor="force-sensor:drive"))
     with pytest.raises(InputError, match="Did you mean 'stroke'"):
         strut().close(fc.DVF(3.0, sensor="strok"))
+
+
+def test_the_best_gain_of_iff_is_its_closed_form():
+    kp = 400.0
+    plant = strut(c=0.0, parallel=kp)
+    w, z = np.sqrt((K + kp) / M), np.sqrt(kp / M)
+    found = fc.best_gain(plant, fc.IFF(1.0), least=1.0, most=1e3)
+    assert found.gain.item() == pytest.approx(w * np.sqrt(w / z), rel=1e-4)  # flat there
+    assert found.damping_ratio.item() == pytest.approx((w - z) / (2 * z), rel=1e-6)
+    assert found.least_damping_ratio.max() <= found.damping_ratio
+
+
+def test_branches_of_a_root_locus_go_from_poles_to_zeros():
+    kp = 400.0
+    plant, z = strut(c=0.0, parallel=kp), np.sqrt(kp / M)
+    gains = np.concatenate([[0.0], np.geomspace(1e-2, 1e6, 400)])
+    data = fc.root_locus(plant, fc.IFF(1.0), gains)
+    pole = data.pole.sel(part="real").values + 1j * data.pole.sel(part="imaginary").values
+    for row, g in zip(pole, gains, strict=True):
+        if 1e-2 < g < 1e4:
+            same(row, np.roots([1, g, (K + kp) / M, g * z**2]), rtol=1e-7)  # two real ones meet on the way
+    steps = np.abs(np.diff(pole[:, :], axis=0)) / (1 + np.abs(pole[1:]))
+    assert steps.max() < 0.6  # no branch jumps to another's place
+    same(pole[0], [0, 1j * np.sqrt((K + kp) / M), -1j * np.sqrt((K + kp) / M)])
+    zeros = data.open_zero.sel(part="real").values + 1j * data.open_zero.sel(part="imaginary").values
+    same(zeros, [1j * z, -1j * z])
+
+
+@pytest.mark.parametrize("tau", [0.0, 0.01, 0.3])
+def test_margins_of_an_integrator_with_a_delay_are_closed_forms(tau):
+    """Integrator g/s around a wire: crossing at g rad/s with 90 degrees but the delay; limit where g tau = pi / 2."""
+    g = 4.0
+    law = fc.Decentralised(fc.integrator(g), sensor="stroke")
+    data = fc.margins(wire(), law, delay=tau)
+    assert data.phase_margin.item() == pytest.approx(np.pi / 2 - g * tau, rel=1e-7)
+    assert data.phase_margin_frequency.item() == pytest.approx(g / (2 * np.pi), rel=1e-7)
+    assert data.delay_margin.item() == pytest.approx(np.pi / (2 * g) - tau, rel=1e-7)
+    limit = np.pi / (2 * tau) / g if tau else np.inf
+    assert data.gain_margin.sel(side="above").item() == pytest.approx(limit, rel=1e-7)
+    assert data.attrs["unstable_poles"] == 0
+
+
+@pytest.mark.parametrize(("factor", "growing"), [(0.98, 0), (1.02, 2), (5.1, 4), (4.9, 2)])
+def test_growing_poles_of_a_delayed_integrator_are_counted(factor, growing):
+    """Pairs cross as g tau passes pi/2, 5 pi/2: s = i w, g = w, w tau = pi/2 + 2 pi n."""
+    g = 4.0
+    law = fc.Decentralised(fc.integrator(g), sensor="stroke")
+    assert fc.margins(wire(), law, delay=factor * np.pi / (2 * g)).attrs["unstable_poles"] == growing
+
+
+def test_margins_of_a_servo_are_those_of_its_polynomials():
+    plant, law = strut(), fc.PID(2000.0, 0.0, 60.0, low_pass=30.0)
+    data = fc.margins(plant, law)
+    w = 2 * np.pi * 30
+    top = np.polyadd(np.polymul([2000.0], [1 / w, 1.0]), [60.0, 0.0])
+    bottom = np.polymul([M, C, K], [1 / w, 1.0])
+    # |top|^2 = |bottom|^2 on the axis: a polynomial in w^2; size 1 and its angle.
+    square = lambda p: np.polymul(p, p * (-1.0) ** np.arange(len(p) - 1, -1, -1))  # noqa: E731
+    roots = np.roots(np.polysub(square(top), square(bottom)))
+    at = np.unique(np.round([abs(r.imag) for r in roots if abs(r.real) < 1e-6 * abs(r)], 9))
+    angles = [np.angle(-np.polyval(top, 1j * x) / np.polyval(bottom, 1j * x)) for x in at]
+    assert data.phase_margin.item() == pytest.approx(min(angles, key=abs), rel=1e-6)
+    x = np.linspace(0.01, 500, 200001)
+    distance = np.abs(1 + np.polyval(top, 1j * x) / np.polyval(bottom, 1j * x)).min()
+    assert data.modulus_margin.item() == pytest.approx(distance, rel=1e-6)
+
+
+def test_two_loops_are_cut_one_by_one():
+    """Two masses, each held by a servo: the loop of the first sees the second with its servo."""
+    m, k, g = 2.0, 500.0, 30.0
+    Kc = np.array([[2 * k, -k], [-k, 2 * k]])
+    plant = fc.StateSpace(
+        A=np.block([[np.zeros((2, 2)), np.eye(2)], [-Kc / m, np.zeros((2, 2))]]),
+        B=np.vstack([np.zeros((2, 2)), np.eye(2) / m]),
+        C=np.hstack([np.eye(2), np.zeros((2, 2))]),
+        D=np.zeros((2, 2)),
+        inputs=("drive:1", "drive:2"),
+        outputs=("stroke:1", "stroke:2"),
+        states=tuple("abcd"),
+        units={},
+    )
+    data = fc.margins(plant, fc.DVF(g))
+    # L1 = g s z1/f1 with f2 = -g z2': z1/f1 = (m s^2 + g s + 2 k) / ((m s^2 + 2 k)(m s^2 + g s + 2 k) - k^2); it is
+    # positive real, so that its phase stays within 90 degrees: no limit of gain, a phase margin of 90 degrees at least.
+    assert np.isinf(data.gain_margin.sel(side="above")).all()
+    s = 2j * np.pi * data.phase_margin_frequency.values
+    own = m * s**2 + g * s + 2 * k
+    L1 = g * s * own / ((m * s**2 + 2 * k) * own - k**2)
+    np.testing.assert_allclose(np.abs(L1), 1.0, rtol=1e-7)
+    np.testing.assert_allclose(np.angle(-L1), data.phase_margin, rtol=1e-7)

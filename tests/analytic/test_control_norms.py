@@ -34,7 +34,7 @@ def chain(system, channel):
 
 def test_h2_of_one_mode_is_its_closed_form():
     data = mode().h2()
-    # (1/2pi) int |H|^2: position 1/(2 c k), speed 1/(2 c m), m^2 times that under the floor, acceleration (c^2/m + k)/(2 c)
+    # (1/2pi) int abs(H)^2: position 1/(2 c k), speed 1/(2 c m), m^2 of that by floors, acceleration (c^2/m + k)/(2 c)
     exact = [[1 / (2 * C * K), M**2 / (2 * C * K)], [1 / (2 * C * M), M / (2 * C)]]
     np.testing.assert_allclose(data.h2_norm[:2] ** 2, exact, rtol=1e-12)
     np.testing.assert_allclose(data.h2_norm[2, 1] ** 2, (C**2 / M + K) / (2 * C), rtol=1e-12)

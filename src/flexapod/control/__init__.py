@@ -12,6 +12,7 @@ from flexapod.runtime.loading import loaded
 if TYPE_CHECKING:
     from flexapod.control.closing import DelayedLoop
     from flexapod.control.controllers import DVF, IFF, PID, Controller, Decentralised, Decoupled, Fused, Together
+    from flexapod.control.function import Function
     from flexapod.control.laws import (
         Law,
         complementary,
@@ -25,11 +26,13 @@ if TYPE_CHECKING:
         positive_feedback,
         rate,
     )
+    from flexapod.control.loops import best_gain, margins, root_locus
     from flexapod.control.state_space import StateSpace
 
 _HOMES = {
     "closing": ("DelayedLoop",),
     "controllers": ("DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together"),
+    "function": ("Function",),
     "laws": (
         "Law",
         "complementary",
@@ -43,6 +46,7 @@ _HOMES = {
         "positive_feedback",
         "rate",
     ),
+    "loops": ("best_gain", "margins", "root_locus"),
     "state_space": ("StateSpace",),
 }
 _NAMES = {name: module for module, names in _HOMES.items() for name in names}
@@ -55,20 +59,24 @@ __all__ = [
     "Decentralised",
     "Decoupled",
     "DelayedLoop",
+    "Function",
     "Fused",
     "Law",
     "StateSpace",
     "Together",
+    "best_gain",
     "complementary",
     "gain",
     "high_pass",
     "integrator",
     "lead",
     "low_pass",
+    "margins",
     "notch",
     "pid",
     "positive_feedback",
     "rate",
+    "root_locus",
 ]
 
 

@@ -44,7 +44,10 @@ class Controller(ABC):
     def sampled(
         self, period: Number, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS
     ) -> StateSpace:
-        """The same from sample to sample: readings held for a `period` [s], Eq. (T21.17)."""
+        """The same from sample to sample, readings held for a `period` [s]: x_next = A x + B y, u = C x + D y.
+
+        Eq. (T21.17). Other arguments as of `on`: names of all channels there are, of which it takes its own.
+        """
         return self.on(outputs, inputs, units).sampled(period)
 
 

@@ -16,12 +16,15 @@ if TYPE_CHECKING:
 
 __all__ = [
     "PARTS",
+    "best_dataset",
     "channel_labels",
     "complex_of",
     "damping_dataset",
     "h2_dataset",
     "hinf_dataset",
     "in_parts",
+    "locus_dataset",
+    "margins_dataset",
     "response_dataset",
 ]
 
@@ -97,6 +100,62 @@ def hinf_dataset(value: float, hertz: float) -> xr.Dataset:
             "frequency": ((), hertz, {"units": "Hz", "long_name": "frequency of the largest singular value"}),
         }
     )
+
+
+def locus_dataset(factors: Array, poles: Complex, zeros: Complex, sample: float | None) -> xr.Dataset:
+    """`pole`, `frequency`, `damping_ratio` over `gain` and `branch`, `open_zero`, where branches end."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        s = poles if sample is None else np.log(poles) / sample
+        size = np.abs(s)
+        ratio = np.where(size > 0, -s.real / size, 0.0)
+    names = {"units": "s-1" if sample is None else "1"}
+    return xr.Dataset(
+        {
+            "pole": (("gain", "branch", "part"), in_parts(poles), names | {"long_name": "pole of the loop"}),
+            "frequency": (("gain", "branch"), size / (2 * np.pi), {"units": "Hz", "long_name": "size over 2 pi"}),
+            "damping_ratio": (("gain", "branch"), ratio, {"units": "1", "long_name": "damping ratio"}),
+            "open_zero": (("zero", "part"), in_parts(zeros), names | {"long_name": "zero of the loop gain"}),
+        },
+        {"gain": ("gain", factors, {"long_name": "factor on the controller"}), "part": PARTS},
+        {} if sample is None else {"sample": sample},
+    )
+
+
+def best_dataset(gain: float, ratio: float, frequency: float, factors: Array, ratios: Array) -> xr.Dataset:
+    """`gain`, `damping_ratio`, `frequency` of the best, `least_damping_ratio` over `factor`."""
+    ratio_words = {"units": "1", "long_name": "least damping ratio of the poles"}
+    return xr.Dataset(
+        {
+            "gain": ((), gain, {"long_name": "factor on the controller"}),
+            "damping_ratio": ((), ratio, ratio_words),
+            "frequency": ((), frequency, {"units": "Hz", "long_name": "frequency of the pole that has it"}),
+            "least_damping_ratio": ("factor", ratios, ratio_words),
+        },
+        {"factor": ("factor", factors, {"long_name": "factor on the controller"})},
+    )
+
+
+def margins_dataset(
+    actuators: tuple[str, ...], each: list[dict[str, tuple[float, float]]], unstable: int
+) -> xr.Dataset:
+    """Margins by `actuator`, and their frequencies."""
+    both = {"gain_margin": ("1", ("below", "above"), "factor at which the loop is at its limit")}
+    single = {
+        "phase_margin": ("rad", "phase", "lag that the loop bears"),
+        "delay_margin": ("s", "delay", "further delay that the loop bears"),
+        "modulus_margin": ("1", "modulus", "least distance of the loop gain from -1"),
+    }
+    found = {}
+    for name, (unit, keys, words) in both.items():
+        values = np.array([[one[key] for key in keys] for one in each])
+        found[name] = (("actuator", "side"), values[..., 0], {"units": unit, "long_name": words})
+        found[f"{name}_frequency"] = (("actuator", "side"), values[..., 1], {"units": "Hz"})
+    for name, (unit, key, words) in single.items():
+        values = np.array([one[key] for one in each])
+        found[name] = ("actuator", values[:, 0], {"units": unit, "long_name": words})
+        found[f"{name}_frequency"] = ("actuator", values[:, 1], {"units": "Hz"})
+    labels = {"actuator": list(actuators), "side": ["below", "above"]}
+    return xr.Dataset(found, labels, {"unstable_poles": unstable})
 
 
 def damping_dataset(poles: Complex, frequency: Array, ratio: Array) -> xr.Dataset:

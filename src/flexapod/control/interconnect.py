@@ -15,7 +15,7 @@ from flexapod.errors import InputError
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
 
-__all__ = ["CONTROL", "closed", "units_with"]
+__all__ = ["CONTROL", "closed", "opened", "units_with"]
 
 CONTROL = "control:"  # before the name of an actuator: what the controller asks of it
 SINGULAR = 1e-12  # distance of a direct gain around a loop from 1 at which nothing says where it ends
@@ -61,6 +61,15 @@ def _readings(system: StateSpace, readings: tuple[str, ...]) -> Readings:
         if not name.startswith(RATE):
             noise[i, every.index(NOISE + name)] = 1.0
     return Readings(C=C, D=D, noise=noise, names=new)
+
+
+def opened(system: StateSpace, controller: StateSpace) -> tuple[Array, Array, Array, Array]:
+    """A, B, C, D from the actuators through system and controller back to them, the loop cut there."""
+    at = [chosen(name, system.inputs, "actuator")[0] for name in controller.outputs]
+    read = _readings(system, controller.inputs)
+    A = np.block([[system.A, np.zeros((len(system.A), len(controller.A)))], [controller.B @ read.C, controller.A]])
+    B = np.vstack([system.B[:, at], controller.B @ read.D[:, at]])
+    return A, B, np.hstack([controller.D @ read.C, controller.C]), controller.D @ read.D[:, at]
 
 
 def closed(system: StateSpace, controller: StateSpace) -> StateSpace:
