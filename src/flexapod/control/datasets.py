@@ -13,6 +13,7 @@ from flexapod.arrays import Array
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
+    from flexapod.solve.linear.random_vibration import RandomVibration
 
 __all__ = [
     "PARTS",
@@ -22,10 +23,14 @@ __all__ = [
     "damping_dataset",
     "h2_dataset",
     "hinf_dataset",
+    "history_dataset",
     "in_parts",
     "locus_dataset",
     "margins_dataset",
     "response_dataset",
+    "source_dataset",
+    "system_dataset",
+    "vibration_dataset",
 ]
 
 Complex = NDArray[np.complex128]
@@ -100,6 +105,57 @@ def hinf_dataset(value: float, hertz: float) -> xr.Dataset:
             "frequency": ((), hertz, {"units": "Hz", "long_name": "frequency of the largest singular value"}),
         }
     )
+
+
+def vibration_dataset(system: StateSpace, found: RandomVibration, error: float) -> xr.Dataset:
+    """`psd` and `cumulative_rms` over `spectrum_frequency`, `rms`, `covariance` of outputs."""
+    labels = channel_labels(system, "output")
+    labels["output_b"] = ("output_b", list(system.outputs))
+    f = ("spectrum_frequency", found.frequency, {"units": "Hz"})
+    along = ("spectrum_frequency", "output")
+    return xr.Dataset(
+        {
+            "psd": (along, found.psd, {"units": "output_units**2 / Hz", "long_name": "one-sided spectral density"}),
+            "cumulative_rms": (along, found.cumulative, {"units": "output_units", "long_name": "rms from here up"}),
+            "rms": ("output", found.rms, {"units": "output_units", "long_name": "standard deviation"}),
+            "covariance": (("output", "output_b"), found.covariance, {"long_name": "covariance of outputs"}),
+        },
+        labels | {"spectrum_frequency": f},
+        {"estimated_error": error},
+    )
+
+
+def source_dataset(system: StateSpace, found: RandomVibration, error: float) -> xr.Dataset:
+    """`rms_by_source` (source, output), whose squares add up to those of `rms`."""
+    words = {"units": "output_units", "long_name": "standard deviation by source"}
+    return xr.Dataset(
+        {
+            "rms_by_source": (("source", "output"), found.by_source, words),
+            "rms": ("output", found.rms, {"units": "output_units", "long_name": "standard deviation"}),
+        },
+        channel_labels(system, "output") | {"source": ("source", list(found.sources))},
+        {"estimated_error": error},
+    )
+
+
+def history_dataset(system: StateSpace, time: Array, values: Array, name: str) -> xr.Dataset:
+    """`step_response` or `impulse_response` (output, input, time)."""
+    words = {"long_name": name.replace("_", " "), "units": "output_units / input_units"}
+    if name.startswith("impulse"):
+        words |= {"units": "output_units / (input_units s)", "feed_through": "its impulse at 0 is left out"}
+    return xr.Dataset(
+        {name: (("output", "input", "time"), values, words)},
+        channel_labels(system, "output", "input") | {"time": ("time", time, {"units": "s"})},
+    )
+
+
+def system_dataset(system: StateSpace) -> xr.Dataset:
+    """Matrices A, B, C, D with named states, inputs and outputs; `sample` [s], 0 of a continuous system."""
+    labels = channel_labels(system, "output", "input")
+    labels |= {name: (name, list(system.states)) for name in ("state", "state_b")}
+    dims = {"A": ("state", "state_b"), "B": ("state", "input"), "C": ("output", "state"), "D": ("output", "input")}
+    found = {name: (dim, getattr(system, name)) for name, dim in dims.items()}
+    return xr.Dataset(found, labels, {"sample": system.sample or 0.0, "sample_units": "s"})
 
 
 def locus_dataset(factors: Array, poles: Complex, zeros: Complex, sample: float | None) -> xr.Dataset:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from flexapod.arrays import Array
 from flexapod.control.channels import RATE, Names, chosen
 from flexapod.control.frequency import response
+from flexapod.control.histories import histories, instants
 from flexapod.control.norms import h2_norms, hinf_norm, relative_gains
 from flexapod.control.poles import damping_of, poles_of, zeros_of
 from flexapod.errors import InputError
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
 
     from flexapod.control.closing import DelayedLoop
     from flexapod.control.controllers import Controller
+    from flexapod.control.spectra import Sources
 
 __all__ = ["StateSpace"]
 
@@ -181,6 +184,61 @@ class StateSpace:
         part = self._square("rga", inputs, outputs)
         words = ("relative_gain", "relative gain: 1 where other loops change nothing", "1")
         return response_dataset(part, hz, relative_gains(part.at(hz)), words)
+
+    def psd(self, sources: Sources, outputs: Names = None) -> Dataset:
+        """Random vibration of outputs by independent sources: the integral of `flexapod.vibration`, (T18.6)-(T18.11).
+
+        Parameters
+        ----------
+        sources : Disturbance or mapping
+            That of a study, or one-sided spectra by channel or group of inputs: tables of a study, or pairs of
+            frequencies (m,) [Hz] and densities (m,) or (m, columns).
+        outputs : names, optional
+
+        Returns
+        -------
+        xarray.Dataset
+            `psd` and `cumulative_rms` (spectrum_frequency, output), `rms` (output), `covariance`.
+        """
+        from flexapod.control.datasets import vibration_dataset
+        from flexapod.control.spectra import shaken
+
+        part = self.select(outputs=outputs)
+        return vibration_dataset(part, *shaken(part, sources))
+
+    def by_source(self, sources: Sources, outputs: Names = None) -> Dataset:
+        """`rms_by_source` (source, output) as of `psd`; squares add up to those of `rms`."""
+        from flexapod.control.datasets import source_dataset
+        from flexapod.control.spectra import shaken
+
+        part = self.select(outputs=outputs)
+        return source_dataset(part, *shaken(part, sources))
+
+    def step(self, duration: float | None = None, step: float | None = None) -> Dataset:
+        """`step_response` (output, input, time) after unit steps at 0, exact; by itself as long as motions last."""
+        from flexapod.control.datasets import history_dataset
+
+        time = instants(self, duration, step)
+        return history_dataset(self, time, histories(self, time, impulse=False), "step_response")
+
+    def impulse(self, duration: float | None = None, step: float | None = None) -> Dataset:
+        """`impulse_response` (output, input, time) after unit impulses at 0, exact; without that of feed-through."""
+        from flexapod.control.datasets import history_dataset
+
+        time = instants(self, duration, step)
+        return history_dataset(self, time, histories(self, time, impulse=True), "impulse_response")
+
+    def to_control(self) -> Any:
+        """The same as `control.StateSpace` of python-control, with its names."""
+        from flexapod.control.files import to_control
+
+        return to_control(self)
+
+    def save(self, path: str | Path) -> Path:
+        """Matrices, names, units and sample time as ``.mat`` (MATLAB 5), ``.npz`` or ``.nc``; replaces a file."""
+        from flexapod.control.files import save
+
+        return save(self, path)
 
     def reduce(
         self, modes: int | None = None, *, below: float | str | None = None, residual: bool = True
