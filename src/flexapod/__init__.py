@@ -21,9 +21,11 @@ if TYPE_CHECKING:
     from flexapod.study import (
         accuracy,
         budget,
+        compliance,
         forward_kinematics,
         inverse_dynamics,
         inverse_kinematics,
+        linearize,
         mobility,
         modes,
         parts,
@@ -33,6 +35,7 @@ if TYPE_CHECKING:
         simulate_actuator,
         simulate_solid,
         stiffness,
+        transmissibility,
         vibration,
     )
     from flexapod.surveys.convergence import converge
@@ -52,9 +55,11 @@ _HOMES = {
     "flexapod.study": (
         "accuracy",
         "budget",
+        "compliance",
         "forward_kinematics",
         "inverse_dynamics",
         "inverse_kinematics",
+        "linearize",
         "mobility",
         "modes",
         "parts",
@@ -64,6 +69,7 @@ _HOMES = {
         "simulate_actuator",
         "simulate_solid",
         "stiffness",
+        "transmissibility",
         "vibration",
     ),
     "flexapod.surveys.convergence": ("converge",),
@@ -92,6 +98,7 @@ __all__ = [
     "accuracy",
     "budget",
     "cite",
+    "compliance",
     "control",
     "converge",
     "forward_kinematics",
@@ -99,6 +106,7 @@ __all__ = [
     "inverse_kinematics",
     "kinematics",
     "ladder",
+    "linearize",
     "load",
     "loads",
     "mobility",
@@ -117,6 +125,7 @@ __all__ = [
     "stiffness",
     "study",
     "sweep",
+    "transmissibility",
     "vibration",
     "workspace_map",
 ]
