@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
-from scipy.sparse.csgraph import connected_components
 
-from flexapod.arrays import Array, Mask
-from flexapod.control.frequency import moved_and_shown, reached
+from flexapod.arrays import Array
+from flexapod.control.integrators import integrators, moved_and_shown, reached
 from flexapod.control.reduction import Part, apart
 from flexapod.errors import ComputationError
 
@@ -39,7 +38,7 @@ def h2_norms(system: StateSpace) -> tuple[Array, dict[tuple[int, int], str]]:
     found, why = np.zeros(D.shape), {}
     links = A != 0
     shown = np.stack([reached(links.T, row != 0) for row in C]) if len(C) else np.zeros((0, len(A)), bool)
-    drifting = _integrators(A) if system.sample is None else np.zeros(len(A), dtype=bool)
+    drifting = integrators(A) if system.sample is None else np.zeros(len(A), dtype=bool)
     for j in range(B.shape[1]):
         moved = reached(links, B[:, j] != 0)
         drifts = (shown & drifting & moved).any(axis=1)
@@ -57,12 +56,6 @@ def h2_norms(system: StateSpace) -> tuple[Array, dict[tuple[int, int], str]]:
     for at in why:
         found[at] = np.inf
     return found, why
-
-
-def _integrators(A: Array) -> Mask:
-    """States that nothing but others moves and that no circle of states holds."""
-    _, circle = connected_components(A != 0, directed=True, connection="strong")
-    return (np.bincount(circle)[circle] == 1) & (np.diag(A) == 0)
 
 
 def _h2_of(A: Array, b: Array, C: Array, d: Array, sample: float | None) -> tuple[Array, list[str]]:

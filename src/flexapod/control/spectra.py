@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod.arrays import Array
 from flexapod.control.channels import chosen
-from flexapod.control.frequency import moved_and_shown
+from flexapod.control.integrators import moved_and_shown
 from flexapod.errors import InputError
 from flexapod.model.disturbance import Disturbance, Floor, Spectrum, check_density
 from flexapod.solve.linear.random_vibration import FLOOR_RATES, SOURCES, RandomVibration, Source, random_vibration
