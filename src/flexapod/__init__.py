@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from flexapod.runtime.loading import loaded
 
 if TYPE_CHECKING:
-    from flexapod import kinematics, model, plot, study
+    from flexapod import control, kinematics, model, plot, study
     from flexapod.citations import cite
     from flexapod.elements.element import Contribution, Element, Output
     from flexapod.elements.frame import Energies
@@ -80,7 +80,7 @@ _HOMES = {
 }
 _NAMES = {name: module for module, names in _HOMES.items() for name in names}
 _FORMER = {"rigid": "kinematics"}  # names of the release before
-_PACKAGES = ("kinematics", "model", "plot", "study")
+_PACKAGES = ("control", "kinematics", "model", "plot", "study")
 
 __all__ = [
     "ActuatorStudy",
@@ -99,6 +99,7 @@ __all__ = [
     "budget",
     "cite",
     "compliance",
+    "control",
     "converge",
     "forward_kinematics",
     "inverse_dynamics",
