@@ -1,4 +1,4 @@
-"""Histories of the linear model by the matrix exponential against the march of the nonlinear equations, small inputs."""
+"""Histories of the linear model by the matrix exponential against the march of the whole equations, small inputs."""
 
 import numpy as np
 import pytest
@@ -72,7 +72,7 @@ def by_exponential(lin, u, step):
 
 #: Of the largest of each unit: displacements and turns as promised. Forces have accelerations of modes of kilohertz in
 #: them that hardly any damper takes, which steps see coarsely, and the march solves its equations to some 1e-10 of
-#: thousands of newtons; a screw's is that at the nut, 1e-4 beside that on the piston, as its stiffness goes with the stroke.
+#: thousands of newtons; a screw's is that at the nut, 1e-4 beside that on the piston, as it softens.
 CLOSE = (1e-5, 1e-5, 3e-4, 1e-3)
 
 

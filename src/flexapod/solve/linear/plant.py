@@ -1,4 +1,4 @@
-"""A robot about its equilibria as it moves from there: loops as they are, drives held or released, Eqs. (T20.1)-(T20.3)."""
+"""A robot about its equilibria with its loops as they are, drives held or released, Eqs. (T20.1)-(T20.3)."""
 
 from __future__ import annotations
 
