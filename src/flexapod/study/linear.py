@@ -14,14 +14,15 @@ from flexapod import model
 from flexapod.arrays import Array
 from flexapod.control.state_space import StateSpace
 from flexapod.errors import InputError
+from flexapod.kinematics import Poses
 from flexapod.kinematics.rotations import matrix
 from flexapod.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
-from flexapod.results.poses import coordinates_of
+from flexapod.results.poses import as_many, batches, coordinates_of, is_many
 from flexapod.runtime.threads import one_thread
 from flexapod.solve.linear.channels import asked
+from flexapod.solve.linear.grid import grid_of
 from flexapod.solve.linear.plant import Drives, Plant, plant_at
-from flexapod.solve.linear.states import Descriptor, descriptor_of, states_of
-from flexapod.solve.statics.locked import the_equilibrium
+from flexapod.solve.linear.states import Descriptor, descriptor_of, states_of, units_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -71,7 +72,7 @@ def linearize(
     drives: Drives = "given",
     friction: Friction | None = None,
     load: LoadLike = None,
-) -> LinearModel:
+) -> LinearModel | Dataset:
     """A robot about its equilibrium under gravity and load as a linear system with named channels, Eq. (T20.1).
 
     Closures are eliminated, so that states are motions by name ("payload x", "leg 3 a2", turns of the payload about
@@ -82,7 +83,7 @@ def linearize(
     ----------
     study : Study, Robot or path
     pose : pose, optional
-        As for `modes`; default home.
+        As for `modes`; default home. Many poses at once: names with arrays, or (P, 6).
     inputs : str or sequence of str
         ``wrench`` [N, N m] at the tool along world axes; ``drive`` [N, of cranks N m], force of each drive;
         ``command`` [m/s^2, rad/s^2], second derivative of what each drive is told: place and rate are states;
@@ -109,7 +110,9 @@ def linearize(
     Returns
     -------
     LinearModel
-        A `control.StateSpace` that knows its pose.
+        A `control.StateSpace` that knows its pose. Of many poses a Dataset for interpolation between them: `mass`,
+        `damping`, `stiffness` (pose, motion, motion_by), `input_matrix` (pose, motion, input), `output_matrix`
+        (pose, output, motion) of M z'' + D z' + K z = B u, y = C z; NaN where a pose has none.
 
     Raises
     ------
@@ -118,6 +121,8 @@ def linearize(
     ComputationError
         No equilibrium at this pose, or one so far from home that the motions chosen there say nothing of it.
     """
+    if is_many(pose):
+        return _grid(study, pose, inputs, outputs, drives, friction, load)
     found, plant = _plant(study, pose, load, drives, friction)
     robot = plant.robot
     states = states_of(plant, asked(inputs, robot, "inputs"), asked(outputs, robot, "outputs"), about=_about(found))
@@ -131,9 +136,13 @@ def _plant(
     if drives not in ("given", "force"):
         raise InputError("is not a way to take drives", key="drives", value=drives, allowed='"given", "force"')
     found = model.override(at_pose(study, load), friction=friction)
-    path = as_pose(found.robot, pose)
+    plant = _at(found, as_pose(found.robot, pose), drives)
+    return found, plant
+
+
+def _at(study: model.Study, path: Poses, drives: Drives) -> Plant:
     try:
-        plant = plant_at(found.robot, found.simulation, path, found.load, drives)
+        return plant_at(study.robot, study.simulation, path, study.load, drives)
     except InputError as error:
         if error.key != "leg.drive" or "pure force" not in error.what:
             raise
@@ -141,8 +150,53 @@ def _plant(
             error.what, key=error.key, value=error.value, allowed=error.allowed,
             next_step='linearize(..., drives="force") releases the drives where they are',
         ) from None  # fmt: skip
-    the_equilibrium(plant.locked)
-    return found, plant
+
+
+def _grid(
+    study: RobotLike,
+    pose: PoseLike,
+    inputs: str | Sequence[str],
+    outputs: str | Sequence[str],
+    drives: Drives,
+    friction: Friction | None,
+    load: LoadLike,
+) -> Dataset:
+    """Matrices on motions at many poses."""
+    import xarray as xr
+
+    found = model.override(at_pose(study, load), friction=friction)
+    path = as_many(found.robot, pose)
+    given, seen = asked(inputs, found.robot, "inputs"), asked(outputs, found.robot, "outputs")
+    parts: dict[str, Array] = {}
+    for part in batches(len(path)):
+        plant = _at(found, path.part(part), drives)
+        grid = grid_of(plant, given, seen, about=_about(found))
+        for name, (of, _) in MATRICES.items():
+            value = getattr(grid, of)
+            parts.setdefault(name, np.full((len(path), *value.shape[1:]), np.nan))
+            parts[name][part][plant.locked.at] = value
+    units = units_of(found.robot, [*given, *seen])
+    labels = {"pose": np.arange(len(path)), "coordinate": list(model.AXES), "motion": list(grid.motions)}
+    labels |= {"motion_by": list(grid.motions), "input": [c.name for c in given], "output": [c.name for c in seen]}
+    data = xr.Dataset(
+        {name: (MATRICES[name][1], value) for name, value in parts.items()}
+        | {"pose_from_home": (("pose", "coordinate"), coordinates_of(found.robot, path))},
+        labels,
+        {"study": _name(found), "drives": drives, "friction": found.simulation.friction, "free_motions": grid.free},
+    )
+    return data.assign_coords(
+        {f"{x}_units": (x, [units[str(name)] for name in data[x].values]) for x in ("input", "output")}
+    )
+
+
+#: Matrices of a grid: their field of `Grid`, and dimensions.
+MATRICES = {
+    "mass": ("M", ("pose", "motion", "motion_by")),
+    "damping": ("D", ("pose", "motion", "motion_by")),
+    "stiffness": ("K", ("pose", "motion", "motion_by")),
+    "input_matrix": ("B", ("pose", "motion", "input")),
+    "output_matrix": ("C", ("pose", "output", "motion")),
+}
 
 
 def _about(study: model.Study) -> Array:
