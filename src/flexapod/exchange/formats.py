@@ -46,6 +46,15 @@ FORMATS: Mapping[str, Format] = {
         named="FILE.inp: both programs ask for it",
         options=("pose", "load", "title", "elements", "modes"),
     ),
+    "mjcf": Format(
+        module="mjcf",
+        function="mjcf",
+        endings=(".xml", ".mjcf"),
+        noun="a model for MuJoCo",
+        words="a model for MuJoCo with closed loops",
+        named="FILE.xml or FILE.mjcf",
+        options=("fidelity",),
+    ),
 }
 
 
@@ -64,6 +73,9 @@ class Exported:
     def __fspath__(self) -> str:
         return os.fspath(self.path)
 
+    def __str__(self) -> str:
+        return str(self.path)
+
 
 def export(
     study: RobotLike,
@@ -75,6 +87,7 @@ def export(
     title: str | None = None,
     elements: int | None = None,
     modes: int | None = None,
+    fidelity: str | None = None,
     data: Dataset | None = None,
     commands: str | None = None,
     step: float | None = None,
@@ -83,23 +96,22 @@ def export(
 ) -> Exported:
     """The robot as a file for other programs; a file that exists is replaced.
 
-    Options belong to formats: one that the format does not take is refused. Those that are left out are as the format
-    wants them.
+    Options belong to formats: one that the format does not take is refused.
 
     Parameters
     ----------
     study : Study, Robot or path
-        A study, its file, or a robot, which stays at home.
+        A robot stays at home.
     format : str
         A name of `FORMATS`.
     out : path
         The file, with an ending of the format, or the folder.
     pose, load : optional
         As for `flexapod.modes`.
-    title : str, optional
-        First line of a deck.
-    elements, modes : int, optional
-        Solid elements along the free part of a piston, and frequencies, of a deck.
+    title, elements, modes : optional
+        Of a deck: first line, solid elements along the free part of a piston, frequencies.
+    fidelity : str, optional
+        In place of that of [simulation]; "rigid": nothing gives way.
     data : Dataset, optional
         Result of `flexapod.simulate` of this study, where a format shows a motion; simulated if left out.
     commands : str, optional
@@ -120,8 +132,8 @@ def export(
         An unknown format or ending, an option of another format, a part of the robot that must not be left out.
     """
     given = {
-        "pose": pose, "load": load, "title": title, "elements": elements, "modes": modes, "data": data,
-        "commands": commands, "step": step, "inputs": inputs, "outputs": outputs,
+        "pose": pose, "load": load, "title": title, "elements": elements, "modes": modes,
+        "fidelity": fidelity, "data": data, "commands": commands, "step": step, "inputs": inputs, "outputs": outputs,
     }  # fmt: skip
     return written(at_pose(study), format, Path(out), {k: value for k, value in given.items() if value is not None})
 
