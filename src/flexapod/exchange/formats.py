@@ -55,6 +55,15 @@ FORMATS: Mapping[str, Format] = {
         named="FILE.xml or FILE.mjcf",
         options=("fidelity",),
     ),
+    "gltf": Format(
+        module="gltf",
+        function="gltf",
+        endings=(".glb",),
+        noun="a GLB file",
+        words="the motion for viewers of glTF, with pistons that bend",
+        named="FILE.glb",
+        options=("data", "magnify"),
+    ),
 }
 
 
@@ -89,6 +98,7 @@ def export(
     modes: int | None = None,
     fidelity: str | None = None,
     data: Dataset | None = None,
+    magnify: float | None = None,
     commands: str | None = None,
     step: float | None = None,
     inputs: Sequence[str] | None = None,
@@ -106,18 +116,14 @@ def export(
         A name of `FORMATS`.
     out : path
         The file, with an ending of the format, or the folder.
-    pose, load : optional
-        As for `flexapod.modes`.
-    title, elements, modes : optional
-        Of a deck: first line, solid elements along the free part of a piston, frequencies.
+    pose, load, title, elements, modes : optional
+        Of a deck: pose and load as for `flexapod.modes`, first line, solid elements along a piston, frequencies.
     fidelity : str, optional
         In place of that of [simulation]; "rigid": nothing gives way.
-    data : Dataset, optional
-        Result of `flexapod.simulate` of this study, where a format shows a motion; simulated if left out.
-    commands : str, optional
-        "inputs": the drives' commands come from outside; "motion": the study's own motion is built in.
-    step : float, optional
-        Length of the fixed steps inside [s].
+    data, magnify : optional
+        Of a motion: its result, of `flexapod.simulate`, which is made if left out; a factor on deflections.
+    commands, step : optional
+        Of a program: "inputs", commands come from outside, or "motion", that of the study; fixed steps inside [s].
     inputs, outputs : sequence of str, optional
         Channels of a linear model, as of `flexapod.linearize`.
 
@@ -132,8 +138,8 @@ def export(
         An unknown format or ending, an option of another format, a part of the robot that must not be left out.
     """
     given = {
-        "pose": pose, "load": load, "title": title, "elements": elements, "modes": modes,
-        "fidelity": fidelity, "data": data, "commands": commands, "step": step, "inputs": inputs, "outputs": outputs,
+        "pose": pose, "load": load, "title": title, "elements": elements, "modes": modes, "fidelity": fidelity,
+        "data": data, "magnify": magnify, "commands": commands, "step": step, "inputs": inputs, "outputs": outputs,
     }  # fmt: skip
     return written(at_pose(study), format, Path(out), {k: value for k, value in given.items() if value is not None})
 
