@@ -1,7 +1,9 @@
 """Readers of exported files that share no code with their writers."""
 
+import base64
 import json
 import struct
+from xml.etree import ElementTree
 
 import numpy as np
 
@@ -78,3 +80,34 @@ class GlbReader:
 def z_up(points):
     """From axes with y up to those with z up."""
     return np.stack([points[..., 0], -points[..., 2], points[..., 1]], axis=-1)
+
+
+class VtuReader:
+    """A .vtu file with base64 arrays: `arrays` by section and name, `cells` as (kind, points)."""
+
+    def __init__(self, path):
+        root = ElementTree.parse(path).getroot()
+        assert root.attrib == {
+            "type": "UnstructuredGrid", "version": "1.0", "byte_order": "LittleEndian", "header_type": "UInt64",
+        }  # fmt: skip
+        self.arrays = {}
+        for section in ("FieldData", "PointData", "CellData", "Points", "Cells"):
+            for entry in root.find(f".//{section}"):
+                self.arrays[section, entry.get("Name")] = self._array(entry)
+        piece = root.find(".//Piece")
+        points, kinds = self.arrays["Points", "points"], self.arrays["Cells", "types"]
+        assert (len(points), len(kinds)) == (int(piece.get("NumberOfPoints")), int(piece.get("NumberOfCells")))
+        ends = self.arrays["Cells", "offsets"]
+        order = self.arrays["Cells", "connectivity"]
+        assert ends[-1] == len(order) and order.min() == 0 and order.max() == len(points) - 1
+        self.cells = [(int(k), order[a:b]) for k, a, b in zip(kinds, [0, *ends[:-1]], ends, strict=True)]
+
+    @staticmethod
+    def _array(entry):
+        content = base64.b64decode(entry.text)
+        (size,) = struct.unpack_from("<Q", content)
+        assert size == len(content) - 8 and entry.get("format") == "binary"
+        found = np.frombuffer(content[8:], {"Float64": "<f8", "Int64": "<i8", "UInt8": "u1"}[entry.get("type")])
+        width = int(entry.get("NumberOfComponents"))
+        assert int(entry.get("NumberOfTuples", len(found) // width)) * width == len(found)
+        return found if width == 1 else found.reshape(-1, width)

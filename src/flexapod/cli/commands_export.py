@@ -19,16 +19,23 @@ if TYPE_CHECKING:
     from flexapod.exchange.formats import Exported
 
 OPTIONS = {"modes": "--count"} | {
-    name: f"--{name}" for name in ("format", "out", "pose", "elements", "commands", "step", "inputs", "outputs")
+    name: f"--{name}" for name in ("format", "out", "pose", "elements", "fidelity", "magnify", "commands", "step")
 }
 NAMES = frozenset(string.ascii_letters + string.digits + "-_")
 
-Kind = Annotated[str, typer.Option("--format", metavar="FORMAT", help="abaqus, which CalculiX reads as well.")]
+Kind = Annotated[
+    str, typer.Option("--format", metavar="FORMAT", help="abaqus, which CalculiX reads as well; mjcf, gltf, vtk.")
+]
 Elements = Annotated[
     int | None,
     typer.Option("--elements", help="abaqus: solid elements along the free part of each piston; default: 20."),
 ]
 Wanted = Annotated[int | None, typer.Option("--count", help="abaqus: how many frequencies are asked for; default: 24.")]
+Fidelity = Annotated[
+    str | None,
+    typer.Option("--fidelity", metavar="NAME", help="mjcf: in place of the study's; rigid: nothing gives way."),
+]
+Magnify = Annotated[float | None, typer.Option("--magnify", metavar="FACTOR", help="gltf: factor on deflections.")]
 Commands = Annotated[
     str | None,
     typer.Option("--commands", metavar="KIND", help="inputs, commands of the drives come from outside, or motion."),
@@ -46,13 +53,15 @@ def export(
     pose: Pose = None,
     elements: Elements = None,
     count: Wanted = None,
+    fidelity: Fidelity = None,
+    magnify: Magnify = None,
     commands: Commands = None,
     step: Step = None,
     out: Place = None,
     force: Force = False,
     json: Json = False,
 ) -> None:
-    """Write the robot for other programs: a deck with locked drives for Abaqus and CalculiX."""
+    """Write the robot for other programs: a deck with locked drives, a model for MuJoCo, its motion to look at."""
     from flexapod.cli.map_options import parse_pose
     from flexapod.exchange.formats import FORMATS, check_options, check_place, format_of, written
     from flexapod.units import to_si
@@ -61,6 +70,8 @@ def export(
         "pose": parse_pose(pose),
         "elements": elements,
         "modes": count,
+        "fidelity": fidelity,
+        "magnify": magnify,
         "commands": commands,
         "step": None if step is None else to_si(step, "time", key="step"),
     }

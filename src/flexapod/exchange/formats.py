@@ -24,7 +24,8 @@ class Format:
     """A format: `module` below `flexapod.exchange` and `function` there, which returns what is `Written`.
 
     The function takes the study, and of the `options` of `export` those that are given, by their names. `endings` of
-    the file, none: it is a folder; `noun`, `words`: what it is; `named`: how it has to be named.
+    the file, none: it is a folder; `noun`, `words`: what it is; `named`: how it has to be named; `beside`: other files
+    stand beside it, whose names begin with its own: the function takes that as `name`.
     """
 
     module: str
@@ -33,6 +34,7 @@ class Format:
     noun: str
     words: str
     named: str
+    beside: bool = False
     options: tuple[str, ...] = ()
 
 
@@ -63,6 +65,16 @@ FORMATS: Mapping[str, Format] = {
         words="the motion for viewers of glTF, with pistons that bend",
         named="FILE.glb",
         options=("data", "magnify"),
+    ),
+    "vtk": Format(
+        module="vtk",
+        function="vtk",
+        endings=(".pvd",),
+        noun="a time series for ParaView",
+        words="the motion as a time series for ParaView",
+        named="FILE.pvd",
+        options=("data",),
+        beside=True,
     ),
 }
 
@@ -149,7 +161,8 @@ def written(study: model.Study, format: str, path: Path, given: Mapping[str, obj
     kind = format_of(format)
     check_options(format, given)
     check_place(format, path)
-    found: Written = getattr(loaded(f"flexapod.exchange.{kind.module}"), kind.function)(study, **given)
+    named = {"name": path.stem} if kind.beside else {}
+    found: Written = getattr(loaded(f"flexapod.exchange.{kind.module}"), kind.function)(study, **named, **given)
     beside = path.parent if kind.endings else path
     places = {beside / name if name else path: content for name, content in found.files.items()}
     for place, content in places.items():
