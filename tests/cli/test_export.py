@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 from tests.cli.conftest import SHORT
 
@@ -86,6 +87,12 @@ def test_options_of_formats_reach_them(flexapod, study, folder):
     rigid = flexapod("export", file, "--format", "mjcf", "--fidelity", "rigid")
     assert rigid.exit_code == 0 and "bend_1" not in (folder / "study.xml").read_text()
     assert flexapod("export", file, "--format", "gltf", "--magnify", 100).exit_code == 0
+    named = ("--inputs", "wrench:fx, force:(0, 0, 0.1):x, command", "--outputs", "tool:z", "--pose", "roll=1deg")
+    assert flexapod("export", file, "--format", "mat", *named, "--out", "robot.npz").exit_code == 0
+    with np.load(folder / "robot.npz") as read:
+        assert (read["B"].shape[1], read["C"].shape[0]) == (8, 1)
+    unknown = flexapod("export", file, "--format", "mat", "--inputs", "wrnch")
+    assert unknown.exit_code == 2 and "--inputs" in unknown.stderr and "wrench" in unknown.stderr
     for wrong, option in ((("--format", "gltf", "--elements", 4), "--elements"), (("--step", "1ms"), "--step")):
         run = flexapod("export", file, *wrong)
         assert run.exit_code == 2 and option in run.stderr and "is not an option of" in run.stderr

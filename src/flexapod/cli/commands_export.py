@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import string
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,12 +20,14 @@ if TYPE_CHECKING:
     from flexapod.exchange.formats import Exported
 
 OPTIONS = {"modes": "--count"} | {
-    name: f"--{name}" for name in ("format", "out", "pose", "elements", "fidelity", "magnify", "commands", "step")
+    name: f"--{name}"
+    for name in ("format", "out", "pose", "elements", "fidelity", "magnify", "commands", "step", "inputs", "outputs")
 }
+COMMA = re.compile(r",(?![^(\[]*[)\]])")  # none of a place, (0, 0, 0.1), or of a sensor's numbers
 NAMES = frozenset(string.ascii_letters + string.digits + "-_")
 
 Kind = Annotated[
-    str, typer.Option("--format", metavar="FORMAT", help="abaqus, which CalculiX reads as well; mjcf, gltf, vtk.")
+    str, typer.Option("--format", metavar="FORMAT", help="abaqus, which CalculiX reads as well; mjcf, gltf, vtk, mat.")
 ]
 Elements = Annotated[
     int | None,
@@ -41,6 +44,12 @@ Commands = Annotated[
     typer.Option("--commands", metavar="KIND", help="inputs, commands of the drives come from outside, or motion."),
 ]
 Step = Annotated[str | None, typer.Option("--step", metavar="TIME", help="Length of the fixed steps inside, 0.2ms.")]
+Inputs = Annotated[
+    str | None, typer.Option("--inputs", metavar="NAMES", help="mat: channels with commas, wrench,command,floor.")
+]
+Outputs = Annotated[
+    str | None, typer.Option("--outputs", metavar="NAMES", help="mat: channels with commas, tool,stroke,drive-force.")
+]
 Place = Annotated[
     Path | None, typer.Option("--out", metavar="FILE", help="File to write; default: beside the study, named after it.")
 ]
@@ -57,11 +66,13 @@ def export(
     magnify: Magnify = None,
     commands: Commands = None,
     step: Step = None,
+    inputs: Inputs = None,
+    outputs: Outputs = None,
     out: Place = None,
     force: Force = False,
     json: Json = False,
 ) -> None:
-    """Write the robot for other programs: a deck with locked drives, a model for MuJoCo, its motion to look at."""
+    """Write the robot for other programs: a deck, a model for MuJoCo, its motion to look at, matrices about rest."""
     from flexapod.cli.map_options import parse_pose
     from flexapod.exchange.formats import FORMATS, check_options, check_place, format_of, written
     from flexapod.units import to_si
@@ -75,6 +86,8 @@ def export(
         "commands": commands,
         "step": None if step is None else to_si(step, "time", key="step"),
     }
+    channels = {"inputs": inputs, "outputs": outputs}
+    given |= {name: [x.strip() for x in COMMA.split(text)] for name, text in channels.items() if text is not None}
     given = {name: value for name, value in given.items() if value is not None}
     with as_options(**OPTIONS):
         kind = format_of(format)

@@ -24,8 +24,8 @@ class Format:
     """A format: `module` below `flexapod.exchange` and `function` there, which returns what is `Written`.
 
     The function takes the study, and of the `options` of `export` those that are given, by their names. `endings` of
-    the file, none: it is a folder; `noun`, `words`: what it is; `named`: how it has to be named; `beside`: other files
-    stand beside it, whose names begin with its own: the function takes that as `name`.
+    the file, none: it is a folder; `noun`, `words`: what it is; `named`: how it has to be named; `by_name`: what is
+    written depends on that, which the function takes as `name`.
     """
 
     module: str
@@ -34,7 +34,7 @@ class Format:
     noun: str
     words: str
     named: str
-    beside: bool = False
+    by_name: bool = False
     options: tuple[str, ...] = ()
 
 
@@ -74,7 +74,17 @@ FORMATS: Mapping[str, Format] = {
         words="the motion as a time series for ParaView",
         named="FILE.pvd",
         options=("data",),
-        beside=True,
+        by_name=True,
+    ),
+    "mat": Format(
+        module="state_space",
+        function="state_space",
+        endings=(".mat", ".npz", ".nc"),
+        noun="a file of matrices",
+        words="matrices A, B, C, D about rest, of MATLAB, NumPy or NetCDF",
+        named="FILE.mat, FILE.npz or FILE.nc",
+        options=("pose", "load", "inputs", "outputs"),
+        by_name=True,
     ),
 }
 
@@ -161,7 +171,7 @@ def written(study: model.Study, format: str, path: Path, given: Mapping[str, obj
     kind = format_of(format)
     check_options(format, given)
     check_place(format, path)
-    named = {"name": path.stem} if kind.beside else {}
+    named = {"name": path.name} if kind.by_name else {}
     found: Written = getattr(loaded(f"flexapod.exchange.{kind.module}"), kind.function)(study, **named, **given)
     beside = path.parent if kind.endings else path
     places = {beside / name if name else path: content for name, content in found.files.items()}

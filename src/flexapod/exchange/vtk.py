@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,17 +28,19 @@ HEAD = '<?xml version="1.0"?>\n<VTKFile type="{}" version="1.0" byte_order="Litt
 
 
 def vtk(study: model.Study, *, name: str, data: Dataset | None = None) -> Written:
-    """The motion of a result of the study, which is simulated where none is given; files `name`/`name`_000000.vtu.
+    """The motion of a result of the study, which is simulated where none is given, as file `name`.
 
-    Points stand where the rigid robot is; `displacement` brings them to the flexible one. Results of legs are data of
-    cells, those of the whole robot of the field, under their names.
+    It lists those of all instants in a folder beside it. Points stand where the rigid robot is; `displacement` brings
+    them to the flexible one. Results of legs are data of cells, those of the whole robot of the field, under their
+    names.
     """
     data = simulate(study) if data is None else data
     if "com_position_rigid" not in data:
         raise InputError("is not a motion", key="data", allowed="a result of flexapod.simulate")
     motion = RobotMotion(study, data)
     cells, field, legs = _Cells(motion.skeleton), _series(data, _WHOLE), _series(data, _LEGS)
-    places = [f"{name}/{name}_{k:06d}.vtu" for k in range(len(motion.time))]
+    stem = Path(name).stem
+    places = [f"{stem}/{stem}_{k:06d}.vtu" for k in range(len(motion.time))]
     rows = (f'<DataSet timestep="{float(t)!r}" file="{x}"/>' for t, x in zip(motion.time, places, strict=True))
     listed = HEAD.format("Collection") + "<Collection>\n" + "\n".join(rows) + "\n</Collection>\n</VTKFile>\n"
     files = {"": listed}
