@@ -30,7 +30,7 @@ typedef struct {
   Vector last_A[STAGES]; Forces last_F[STAGES];         /* of the last step */
   lanes *gap[STAGES][GROUPS];
   lanes *bristles[STAGES + 1][GROUPS];                  /* the last: at the start */
-  double pose[7], *row[STAGES], powers[STAGES][WORKS];
+  double pose[7], *row[STAGES], powers[STAGES][WORKS], held[STAGES];      /* held: power of the controller's forces */
   lanes *M[GROUPS], *D[GROUPS], *K[GROUPS];
   double *hub_M, *hub_K;
   ComplexArrow complex;
@@ -616,21 +616,25 @@ static void state_at(const Settings *s, double theta, double h, const Radau *r, 
   turned_pose(r->pose, moved, w->payload.pose);
 }
 
-/* Energies up to theta of a step, over its length: integrals of the polynomial of the powers */
-static void powers_until(double theta, double h, const Radau *r, double *sums) {
+/* Energies up to theta of a step, over its length: integrals of the polynomial of the powers. `work`: of a controller, or 0 */
+static void powers_until(double theta, double h, const Radau *r, double *sums, double *work) {
   static const double at[3] = {0.11270166537925831148, 0.5, 0.88729833462074168852}, weight[3] = {5.0/18, 8.0/18, 5.0/18};
   for (int i = 0; i < 3; i++) {
     double c[4];
     through(at[i]*theta, 0, c);
     for (int j = 0; j < WORKS; j++) sums[j] += h*theta*weight[i]*(c[0]*r->powers[0][j] + c[1]*r->powers[1][j] + c[2]*r->powers[2][j]);
+    if (!work) continue;
+    double done = h*theta*weight[i]*(c[0]*r->held[0] + c[1]*r->held[1] + c[2]*r->held[2]);
+    *work += done; sums[1] -= done;
   }
 }
 
 /* Record of an instant within a step */
-static void record_within(const Settings *s, State *x, const Control *c, double t, double theta, double h, Radau *r, Work *w) {
-  double row[WIDTH], sums[WORKS];
+static void record_within(const Settings *s, State *x, const Control *c, double t, double theta, double h, Loop *loop, Radau *r, Work *w) {
+  double row[WIDTH], sums[WORKS], work = loop ? split(loop).work[0] : 0;
   long width = s->legs*s->ports*COLUMNS;
   evaluate_series(c, width + load_size(s), t, row);
+  if (loop) hold(s, loop, split(loop).u, row);
   state_at(s, theta, h, r, row, w);
   w->closure = 0;
   if (s->of->rows) close_record(s, row + width, r, w);
@@ -639,8 +643,9 @@ static void record_within(const Settings *s, State *x, const Control *c, double 
   for (int j = 0; j < 6; j++) more |= s->hub_held[j] != 0;
   if (more) residual(s, row + width, w);
   memcpy(sums, x->sums, sizeof sums);
-  powers_until(theta, h, r, x->sums);
+  powers_until(theta, h, r, x->sums, loop ? &work : 0);
   write_record(s, x, w);
+  if (loop) record_loop(loop, work);
   memcpy(x->sums, sums, sizeof sums);
 }
 
@@ -660,11 +665,44 @@ long radau_memory(const Settings *s) {
   return room.used;
 }
 
+/* The sample that is due at the start of a step: what its outputs jump by moves accelerations and forces there, (T26.5), and
+   those of the last step, which the next one starts from. `row`: of the table, with what was held */
+static int take_sample_within(const Settings *s, const Loop *c, double h, double *row, Radau *r, Work *w) {
+  SIZES(s);
+  double change[c->actions + 1], dy[6], c_a = REAL*REAL/(h*h);
+  int fault = sample(s, c, w, change);
+  if (fault) return fault;
+  hold(s, c, change, row);
+  follow_table(s, row, w);
+  jump(s, c, change, w, dy);
+  for (int i = 0; i < groups(s); i++) {
+    LegState *leg = &w->leg[i];
+    for (long j = 0; j < N; j++) {
+      leg->v_dot[j] += c_a*w->dq[i][j];
+      for (int k = 0; k < STAGES; k++) r->last_A[k].leg[i][j] += c_a*w->dq[i][j];
+    }
+    for (long j = 0; j < ROWS; j++) {
+      leg->lam[j] += w->dlam[i][j];
+      for (int k = 0; k < STAGES; k++) r->last_F[k].lam[i][j] += w->dlam[i][j];
+    }
+    for (long j = 0; j < s->ports; j++) {
+      leg->drive[j] += w->df[i][j];
+      for (int k = 0; k < STAGES; k++) r->last_F[k].drive[i][j] += w->df[i][j];
+    }
+  }
+  for (int j = 0; j < 6 && s->hub; j++) {
+    w->payload.u_dot[j] += c_a*dy[j];
+    for (int k = 0; k < STAGES; k++) r->last_A[k].hub[j] += c_a*dy[j];
+  }
+  start_step(s, w, r);
+  return OK;
+}
+
 enum { OUT_OF_REACH = 4, OLDEST = 16 }; /* steps for which the matrices at rest are kept */
 
 /* Advance to the last stop with steps of their own, recording the instants asked for. The memory is the caller's; zero but for the
-   present time and the step to try, it begins anew. */
-int radau(const Settings *s, State *x, const Control *c, char *memory) {
+   present time and the step to try, it begins anew. `loop`: a controller, at whose samples steps end, or 0. */
+int radau(const Settings *s, State *x, const Control *c, char *memory, Loop *loop) {
   SIZES(s);
   Room room = {memory, 0};
   Memory *m;
@@ -677,11 +715,14 @@ int radau(const Settings *s, State *x, const Control *c, char *memory) {
   load(s, x, w);
   w->h = w->stored = 0;
   evaluate_series(c, width, m->time, row);
+  if (loop) { hold(s, loop, split(loop).u, row); follow_table(s, row, w); }
   start_step(s, w, r);
   while (status == OK) {
     while (stop < c->stops && c->stop[stop] <= m->time) stop++;
     if (stop == c->stops) break;
-    double left = c->stop[stop] - m->time, h = fmin(m->h, c->longest), rest_of_it = fmax(c->tolerance - m->spent, 0.1*c->tolerance);
+    int due = loop && is_due(loop, m->time);
+    double end = loop ? end_of_step(loop, c->stop[stop], due) : c->stop[stop];
+    double left = end - m->time, h = fmin(m->h, c->longest), rest_of_it = fmax(c->tolerance - m->spent, 0.1*c->tolerance);
     double allowed = fmin(rest_of_it/fmax(c->horizon - m->time, left), 3*c->tolerance/c->horizon), rounding = 1e-15*unit;
     if (h >= left*(1 - 1e-9)) h = left; else if (h > 0.5*left) h = 0.5*left;
     int renewed = age >= OLDEST;
@@ -692,8 +733,12 @@ int radau(const Settings *s, State *x, const Control *c, char *memory) {
       if ((renewed && factor_soft(s, r, w)) || factor_stages(s, h, r, w)) { x->bad_leg = s->legs; status = SINGULAR; break; }
       factored = h;
     }
-    double until = h < left ? m->time + h : c->stop[stop];
-    for (int k = 0; k < STAGES; k++) evaluate_series(c, width, k < 2 ? m->time + NODE[k]*h : until, r->row[k]);
+    if (due && (status = take_sample_within(s, loop, h, row, r, w))) { x->bad_leg = s->legs; break; }
+    double until = h < left ? m->time + h : end;
+    for (int k = 0; k < STAGES; k++) {
+      evaluate_series(c, width, k < 2 ? m->time + NODE[k]*h : until, r->row[k]);
+      if (loop) hold(s, loop, split(loop).u, r->row[k]);
+    }
     predict_stages(s, m, h, r);
     double goal = c->unsolved*allowed*h/(1 + REAL/(h*sqrt(FREE)));          /* rates are off by REAL/h of it, for 1/sqrt(FREE) */
     int fault = iterate_stages(s, x, c, h, goal, rounding, &m->rate, r, w);
@@ -715,16 +760,17 @@ int radau(const Settings *s, State *x, const Control *c, char *memory) {
       if (m->h < c->shortest) { x->bad_leg = s->legs; status = OUT_OF_REACH; }
       continue;
     }
+    for (int k = 0; k < STAGES && loop; k++) r->held[k] = power_of_loop(s, loop, r->V[k].leg, split(loop).u);
     for (; next < c->outputs; next++) {
       double t = c->output_first + (double)next*c->output_step;
       if (t > until + 1e-6*c->output_step) break;
-      record_within(s, x, c, fmin(t, until), fmin((t - m->time)/h, 1), h, r, w);
+      record_within(s, x, c, fmin(t, until), fmin((t - m->time)/h, 1), h, loop, r, w);
     }
     memcpy(row, r->row[2], sizeof row);
     place(s, r, &r->Z[2], &r->V[2], &r->A[2], &r->F[2], row, w);
     copy_bristles(s, r->bristles[2], w->bristles);
     if (ROWS) { closing(s, row + tables, w, r->open, r->rate); close_places(s, r->open, r, w); }
-    powers_until(1, h, r, x->sums);
+    powers_until(1, h, r, x->sums, loop ? split(loop).work : 0);
     memcpy(x->powers, r->powers[2], sizeof r->powers[2]);
     for (int k = 0; k < STAGES; k++) { copy_vector(s, &r->A[k], &r->last_A[k]); copy_forces(s, &r->F[k], &r->last_F[k]); }
     m->stages = 1; m->last_h = h; m->time = until; m->spent += error + rubbed;
