@@ -52,7 +52,6 @@ class Called(Protocol):
 Controller = Reads | Called | Linear
 
 
-
 def sampled_controller(
     controller: Controller | None,
     sample: float | None,

@@ -19,7 +19,8 @@ from flexapod.symbolic.compiler import lanes, written_library
 
 NATIVE = Path(__file__).parent / "native"
 SOURCES = tuple(
-    NATIVE / name for name in ("system.h", "lu.c", "legs.c", "arrow.c", "state.c", "loop.c", "march.c", "complex.c", "radau.c")
+    NATIVE / name
+    for name in ("system.h", "lu.c", "legs.c", "arrow.c", "state.c", "loop.c", "march.c", "complex.c", "radau.c")
 )
 PORTS = 24  # as in system.h
 LINE = 64  # bytes of the processor's cache, and of its longest vectors

@@ -286,5 +286,3 @@ def _action(name: str, system: System, robot: Robot) -> _Action:
             next_step=f"Move its force: 'drive:{number}'",
         )
     return _Action(leg, _port(system, at), VALUE, stiffness)
-
-
