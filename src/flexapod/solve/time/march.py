@@ -48,7 +48,7 @@ def march(problem: Problem, start: Flow, first_step: float, counters: Counters) 
         yield from adaptive_march(problem, start, counters)
         return
     table, wrench = problem.tables(np.zeros(1))
-    flow, row = _first_record(problem.system, start, table, wrench)
+    flow, row = first_record(problem.system, start, table, wrench)
     first = unpack(problem.system, np.zeros(1), row, problem.loop and np.zeros((1, problem.loop.width)))
     yield Chunk(recording=first, error=0.0, step=first_step)
     control = _Control(problem, counters, first_step, [np.abs(x).max(initial=0.0) for x in problem.measure(first)])
@@ -286,11 +286,12 @@ def _restarted(problem: Problem, flow: Flow, t: float, stop: Stop, h: float) -> 
     """Flow after a jump at time t, prepared for steps h, with the new powers; and what is recorded of it."""
     now = after(max(t, stop.last))
     table, wrench = problem.tables_under(flow)(np.array([now]))
-    flow, row = _first_record(problem.system, problem.restart(flow, now, h), table, wrench)
+    flow, row = first_record(problem.system, problem.restart(flow, now, h), table, wrench)
     return flow, unpack(problem.system, np.array([t]), row)
 
 
-def _first_record(system: System, flow: Flow, table: Array, wrench: Array) -> tuple[Flow, Array]:
+def first_record(system: System, flow: Flow, table: Array, wrench: Array) -> tuple[Flow, Array]:
+    """Flow with its powers set, and the record of it, (1, record_width)."""
     return _loop(system).first_record(system, flow, table, wrench)
 
 

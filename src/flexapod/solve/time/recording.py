@@ -56,7 +56,7 @@ class Recording:
         return replace(self, **ends)
 
 
-def _shapes(system: System) -> dict[str, tuple[int, ...]]:
+def record_shapes(system: System) -> dict[str, tuple[int, ...]]:
     """Names and shapes of the parts of an output row, in their order."""
     legs, every = system.legs, (system.size,)
     return {
@@ -76,13 +76,13 @@ def _shapes(system: System) -> dict[str, tuple[int, ...]]:
 
 def record_width(system: System) -> int:
     """Numbers in one output row."""
-    return sum(map(math.prod, _shapes(system).values()))
+    return sum(map(math.prod, record_shapes(system).values()))
 
 
 def unpack(system: System, time: Array, rows: Array, control: Array | None = None) -> Recording:
     """Name the columns of output rows (T, record_width); `control`: rows of a controller's record."""
     parts, end = {}, 0
-    for name, shape in _shapes(system).items():
+    for name, shape in record_shapes(system).items():
         begin, end = end, end + math.prod(shape)
         parts[name] = rows[:, begin:end].reshape(len(rows), *shape)
     return Recording(time=time, control=np.zeros((len(rows), 0)) if control is None else control, **parts)

@@ -159,7 +159,7 @@ static int sample(const Settings *s, const Loop *c, Work *w, double *change) {
   } else {
     affine(c->actions, c->states, c->C, m.x, c->readings, c->D, late, u);
     affine(c->states, c->states, c->A, m.x, c->readings, c->B, late, m.ahead);
-    memcpy(m.x, m.ahead, sizeof(double)*c->states);
+    memcpy(m.x, m.ahead, BYTES(double, c->states));
   }
   for (long k = 0; k < c->actions; k++) {
     double most = c->most[k];
@@ -177,8 +177,8 @@ static int sample(const Settings *s, const Loop *c, Work *w, double *change) {
 /* How a jump of the outputs changes accelerations and forces, by the factored matrix of the iteration, (T26.5) */
 static void jump(const Settings *s, const Loop *c, const double *change, Work *w, double *dy) {
   SIZES(s);
-  for (int i = 0; i < groups(s); i++) { memset(w->r[i], 0, sizeof(lanes)*N); memset(w->g[i], 0, sizeof(lanes)*ROWS); }
-  memset(w->rp, 0, sizeof(double)*HUB);
+  for (int i = 0; i < groups(s); i++) { memset(w->r[i], 0, BYTES(lanes, N)); memset(w->g[i], 0, BYTES(lanes, ROWS)); }
+  memset(w->rp, 0, BYTES(double, HUB));
   for (long k = 0; k < c->actions; k++) {
     const Action *a = &c->action[k];
     w->r[a->leg/LANES][s->port[a->port]][a->leg%LANES] -= a->gain*change[k];
@@ -190,7 +190,7 @@ static void jump(const Settings *s, const Loop *c, const double *change, Work *w
 static void record_loop(Loop *c, double work) {
   Remembered m = split(c);
   if (!c->record) return;
-  memcpy(c->record, m.y, sizeof(double)*c->readings); c->record += c->readings;
-  memcpy(c->record, m.u, sizeof(double)*c->actions); c->record += c->actions;
+  memcpy(c->record, m.y, BYTES(double, c->readings)); c->record += c->readings;
+  memcpy(c->record, m.u, BYTES(double, c->actions)); c->record += c->actions;
   *c->record++ = work;
 }

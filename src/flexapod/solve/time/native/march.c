@@ -105,7 +105,7 @@ static void residual(const Settings *s, const double *wrench, Work *w) {
   if (!s->hub) return;
   double shared[3*COMMON + 1];
   shared_state(s, w, shared);
-  memset(w->rp + 6, 0, sizeof(double)*COMMON);
+  memset(w->rp + 6, 0, BYTES(double, COMMON));
   const double *in[] = {w->payload.pose, w->payload.u, w->payload.u_dot, net, wrench, s->payload_p, shared, shared + COMMON, shared + 2*COMMON};
   double *out[] = {w->rp, w->powers + 2};
   s->of->payload_residual(in, out);
@@ -148,7 +148,7 @@ static int factor(const Settings *s, const double *wrench, double c_v, double c_
   SIZES(s);
   double mass[BODY*BODY], stiffness[BODY*BODY], Ap[HUB*HUB], shared[3*COMMON + 1], c[3] = {c_a, c_v, c_q};
   lanes around[OUTSIDE];
-  memset(Ap, 0, sizeof(double)*HUB*HUB);
+  memset(Ap, 0, BYTES(double, HUB*HUB));
   outside(s, w, wrench, around);
   for (int i = 0; i < groups(s); i++) matrices_of_legs(s, i, around, c, w, Ap);
   if (s->hub) {
@@ -248,7 +248,7 @@ static void write_record(const Settings *s, State *x, const Work *w) {
   memcpy(o, w->reaction, sizeof w->reaction); o += 6;
   e[2] += w->stored;
   memcpy(o, e, sizeof e); o += 3;
-  memcpy(o, x->sums, sizeof(double)*WORKS); o[0] -= w->stored; o += WORKS;
+  memcpy(o, x->sums, BYTES(double, WORKS)); o[0] -= w->stored; o += WORKS;
   *o++ = w->closure;
   for (int i = 0; i < groups(s); i++) scatter(s, i, w->rubs[i], BRISTLES, BRISTLES, o);
   o += BRISTLES*s->legs;
@@ -256,14 +256,14 @@ static void write_record(const Settings *s, State *x, const Work *w) {
 }
 
 /* Memory of a run with fixed steps [bytes], all zero before its first call; it begins where a cache line does */
-long march_memory(const Settings *s) {
+EXPORTED long march_memory(const Settings *s) {
   Room m = {0, 0};
   work(&m, s);
   return m.used;
 }
 
 /* Record of the present state (used once, at the start); returns the largest closure through x->closure. */
-void record_state(const Settings *s, State *x, const double *row, const double *wrench, char *memory) {
+EXPORTED void record_state(const Settings *s, State *x, const double *row, const double *wrench, char *memory) {
   Room m = {memory, 0};
   Work *w = work(&m, s);
   SIZES(s);
@@ -414,7 +414,7 @@ static int take_sample(const Settings *s, State *x, const Loop *c, const double 
 /* A row of the table with what the controller holds: in `held`, or as it is */
 static const double *held_row(const Settings *s, const Loop *c, const double *row, double *held) {
   if (!c) return row;
-  memcpy(held, row, sizeof(double)*s->legs*s->ports*COLUMNS);
+  memcpy(held, row, BYTES(double, s->legs*s->ports*COLUMNS));
   hold(s, c, split(c).u, held);
   return held;
 }
@@ -430,7 +430,7 @@ static void work_of_loop(const Settings *s, State *x, const Loop *c, const Work 
 
 /* Advance `steps` steps; tables have steps + 1 rows (row 0 is the present time). `resumed`: the call before with
    this memory ended there: all goes on from what it left, as if it were one. `loop`: a controller, or 0. */
-int march(const Settings *s, State *x, const double *table, const double *wrench, long steps, long resumed, char *memory, Loop *loop) {
+EXPORTED int march(const Settings *s, State *x, const double *table, const double *wrench, long steps, long resumed, char *memory, Loop *loop) {
   Room m = {memory, 0};
   Work *w = work(&m, s);
   const Past *past = &w->past;
@@ -442,12 +442,12 @@ int march(const Settings *s, State *x, const double *table, const double *wrench
     load(s, x, w);
     w->h = s->h;
     for (int i = 0; i < groups(s); i++) {
-      memcpy(past->v_dot[i], w->leg[i].v_dot, sizeof(lanes)*N);
-      memcpy(past->lam[i], w->leg[i].lam, sizeof(lanes)*ROWS);
-      memcpy(past->drive[i], w->leg[i].drive, sizeof(lanes)*PORTS);
+      memcpy(past->v_dot[i], w->leg[i].v_dot, BYTES(lanes, N));
+      memcpy(past->lam[i], w->leg[i].lam, BYTES(lanes, ROWS));
+      memcpy(past->drive[i], w->leg[i].drive, BYTES(lanes, PORTS));
     }
     memcpy(past->u_dot, w->payload.u_dot, sizeof w->payload.u_dot);
-    for (int k = 1; k < PAST && LARGE; k++) memcpy(past->u_dot + k*w->gap, past->u_dot, sizeof(double)*w->gap);
+    for (int k = 1; k < PAST && LARGE; k++) memcpy(past->u_dot + k*w->gap, past->u_dot, BYTES(double, w->gap));
   }
   if (loop) {
     follow_table(s, held_row(s, loop, table, held), w);
@@ -464,7 +464,7 @@ int march(const Settings *s, State *x, const double *table, const double *wrench
     }
     if (fault) { x->steps += t; x->bad_leg = worst_leg(s, w); return fault; }
     w->age++;
-    memcpy(w->bristles[0], w->bent[0], sizeof(lanes)*groups(s)*2*BRISTLES);
+    memcpy(w->bristles[0], w->bent[0], BYTES(lanes, groups(s)*2*BRISTLES));
     for (int j = 0; j < WORKS; j++) { x->sums[j] += 0.5*s->h*(x->powers[j] + w->powers[j]); x->powers[j] = w->powers[j]; }
     if (loop) work_of_loop(s, x, loop, w);
     if (t % s->output_every == 0) {
@@ -479,18 +479,18 @@ int march(const Settings *s, State *x, const double *table, const double *wrench
 
 /* Add `share` times the part of the velocities that is normal to the closures in the mass metric, Eq. (T6.14):
    M n + J^T pi = 0, J n - P n_p = J v - P u, held coordinates apart. */
-int scale_normal_velocity(const Settings *s, State *x, const double *wrench, double share, char *memory) {
+EXPORTED int scale_normal_velocity(const Settings *s, State *x, const double *wrench, double share, char *memory) {
   Room m = {memory, 0};
   Work *w = work(&m, s);
   SIZES(s);
   lanes v[N];
   double still[HUB], dy[6];
-  memset(still, 0, sizeof(double)*HUB);
+  memset(still, 0, BYTES(double, HUB));
   load(s, x, w);
   if (factor(s, wrench, 0, 1, 0, w)) return SINGULAR;
   for (int i = 0; i < groups(s); i++) {
     const LegBlock *b = &w->arrow.leg[i];
-    memset(w->r[i], 0, sizeof(lanes)*N); memset(w->g[i], 0, sizeof(lanes)*ROWS);
+    memset(w->r[i], 0, BYTES(lanes, N)); memset(w->g[i], 0, BYTES(lanes, ROWS));
     for (long j = 0; j < N; j++) v[j] = w->leg[i].v[ORDER[j]];
     lanes_gemv(ROWS, N, -1, b->J, v, w->g[i]);
     for (int j = 0; j < 6; j++) for (int a = 0; a < ROWS; a++) w->g[i][a] += b->P[a + ROWS*j] * w->payload.u[j];

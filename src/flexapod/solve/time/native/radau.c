@@ -93,7 +93,7 @@ static void evaluate_series(const Control *c, long width, double t, double *row)
   while (k < c->pieces - 1 && t >= c->edges[k + 1]) k++;
   double a = c->edges[k], b = c->edges[k + 1], x = (2*t - a - b)/(b - a), before = 1, now = x;
   const double *term = c->series + k*c->terms*width;
-  memcpy(row, term, sizeof(double)*width);
+  memcpy(row, term, BYTES(double, width));
   for (long j = 1; j < c->terms; j++) {
     term += width;
     for (long i = 0; i < width; i++) row[i] += now*term[i];
@@ -184,8 +184,8 @@ static void place(const Settings *s, const Radau *r, const Vector *Z, const Vect
     const lanes *q = r->q.leg[i], *moved = Z->leg[i];
     lanes *to = leg->q;
     for (long j = 0; j < N; j++) to[j] = q[j] + moved[j];
-    memcpy(leg->v, V->leg[i], sizeof(lanes)*N); memcpy(leg->v_dot, A->leg[i], sizeof(lanes)*N);
-    memcpy(leg->lam, F->lam[i], sizeof(lanes)*ROWS); memcpy(leg->drive, F->drive[i], sizeof(lanes)*s->ports);
+    memcpy(leg->v, V->leg[i], BYTES(lanes, N)); memcpy(leg->v_dot, A->leg[i], BYTES(lanes, N));
+    memcpy(leg->lam, F->lam[i], BYTES(lanes, ROWS)); memcpy(leg->drive, F->drive[i], BYTES(lanes, s->ports));
   }
   follow_table(s, row, w);
   if (!s->hub) return;
@@ -224,7 +224,7 @@ static void bend(const Settings *s, double h, Radau *r, Work *w) {
       const lanes *in[] = {w->leg[i].q, w->leg[i].v, w->p[i]};
       lanes *out[] = {r->slide[k][i], r->lose[k][i]};
       s->of->leg_sliding(in, out);
-      memcpy(r->bristles[k][i] + BRISTLES, r->slide[k][i], sizeof(lanes)*BRISTLES);
+      memcpy(r->bristles[k][i] + BRISTLES, r->slide[k][i], BYTES(lanes, BRISTLES));
     }
   }
   for (int i = 0; i < groups(s); i++) for (int b = 0; b < BRISTLES; b++) {
@@ -259,7 +259,7 @@ static void rest(const Settings *s, const double *load, double h, Radau *r, Work
   SIZES(s);
   lanes around[OUTSIDE], H[36], *const *A = w->at_rest;
   outside(s, w, load, around);
-  memset(r->hub_K, 0, sizeof(double)*BODY*BODY);
+  memset(r->hub_K, 0, BYTES(double, BODY*BODY));
   for (int g = 0; g < groups(s); g++) {
     legs_at_rest(s, g, around, w, H);
     for (int j = 0; j < N; j++) for (int k = 0; k < N; k++) {
@@ -284,12 +284,12 @@ static int factor_soft(const Settings *s, Radau *r, Work *w) {
   SIZES(s);
   if (!BRISTLES) return OK;
   double hub[HUB*HUB];
-  memset(hub, 0, sizeof(double)*HUB*HUB);
+  memset(hub, 0, BYTES(double, HUB*HUB));
   r->soft.size = w->arrow.size;
   for (int g = 0; g < groups(s); g++) {
     const LegBlock *from = &w->arrow.leg[g];
     LegBlock *to = &r->soft.leg[g];
-    memcpy(to->J, from->J, sizeof(lanes)*ROWS*N); memcpy(to->P, from->P, sizeof(lanes)*ROWS*6); memcpy(to->held, from->held, sizeof(lanes)*N);
+    memcpy(to->J, from->J, BYTES(lanes, ROWS*N)); memcpy(to->P, from->P, BYTES(lanes, ROWS*6)); memcpy(to->held, from->held, BYTES(lanes, N));
     memcpy(to->unknown, from->unknown, sizeof to->unknown); memcpy(to->any, from->any, sizeof to->any);
     for (int j = 0; j < N*N; j++) to->A[j] = FREE*r->M[g][j] + r->K[g][j];
   }
@@ -302,7 +302,7 @@ static int factor_stages(const Settings *s, double h, Radau *r, Work *w) {
   double c[3][3] = {{REAL*REAL/(h*h), REAL/h, 1}, {(PAIR[0]*PAIR[0] - PAIR[1]*PAIR[1])/(h*h), PAIR[0]/h, 1}, {2*PAIR[0]*PAIR[1]/(h*h), PAIR[1]/h, 0}};
   double hub[3][HUB*HUB];
   const double *pair[2] = {hub[1], hub[2]};
-  for (int k = 0; k < 3; k++) memset(hub[k], 0, sizeof(double)*HUB*HUB);
+  for (int k = 0; k < 3; k++) memset(hub[k], 0, BYTES(double, HUB*HUB));
   for (int g = 0; g < groups(s); g++) {
     lanes *to[3] = {w->arrow.leg[g].A, r->complex.leg[g].A[0], r->complex.leg[g].A[1]};
     for (int k = 0; k < 3; k++) for (int j = 0; j < N*N; j++) to[k][j] = c[k][0]*r->M[g][j] + c[k][1]*r->D[g][j] + c[k][2]*r->K[g][j];
@@ -364,7 +364,7 @@ static void arrow_solve_vector(const Settings *s, const Arrow *a, const Vector *
 }
 
 static void copy_bristles(const Settings *s, lanes *const *from, lanes *const *to) {
-  for (int i = 0; i < groups(s); i++) memcpy(to[i], from[i], sizeof(lanes)*2*s->of->bristles);
+  for (int i = 0; i < groups(s); i++) memcpy(to[i], from[i], BYTES(lanes, 2*s->of->bristles));
 }
 
 /* Residuals of a stage */
@@ -375,8 +375,8 @@ static void evaluate_stage(const Settings *s, int k, Radau *r, Work *w) {
   copy_bristles(s, r->bristles[k], w->bristles);
   residual(s, load, w);
   closing(s, load, w, r->open, r->gap[k]);
-  for (int i = 0; i < groups(s); i++) memcpy(r->R[k].leg[i], w->r[i], sizeof(lanes)*N);
-  memcpy(r->R[k].hub, w->rp, sizeof(double)*HUB);
+  for (int i = 0; i < groups(s); i++) memcpy(r->R[k].leg[i], w->r[i], BYTES(lanes, N));
+  memcpy(r->R[k].hub, w->rp, BYTES(double, HUB));
   memcpy(r->powers[k], w->powers, sizeof w->powers);
 }
 
@@ -421,18 +421,18 @@ static void through(double theta, int start, double *c) {
 
 static void copy_vector(const Settings *s, const Vector *from, Vector *to) {
   SIZES(s);
-  for (int i = 0; i < groups(s); i++) memcpy(to->leg[i], from->leg[i], sizeof(lanes)*N);
-  memcpy(to->hub, from->hub, sizeof(double)*HUB);
+  for (int i = 0; i < groups(s); i++) memcpy(to->leg[i], from->leg[i], BYTES(lanes, N));
+  memcpy(to->hub, from->hub, BYTES(double, HUB));
 }
 static void copy_forces(const Settings *s, const Forces *from, Forces *to) {
   for (int i = 0; i < groups(s); i++) {
-    memcpy(to->lam[i], from->lam[i], sizeof(lanes)*s->of->rows); memcpy(to->drive[i], from->drive[i], sizeof(lanes)*s->ports);
+    memcpy(to->lam[i], from->lam[i], BYTES(lanes, s->of->rows)); memcpy(to->drive[i], from->drive[i], BYTES(lanes, s->ports));
   }
 }
 static void clear_vector(const Settings *s, Vector *x) {
   SIZES(s);
-  for (int i = 0; i < groups(s); i++) memset(x->leg[i], 0, sizeof(lanes)*N);
-  memset(x->hub, 0, sizeof(double)*HUB);
+  for (int i = 0; i < groups(s); i++) memset(x->leg[i], 0, BYTES(lanes, N));
+  memset(x->hub, 0, BYTES(double, HUB));
 }
 
 /* Accelerations and forces of the stages extrapolated from those of the last step (none: as at the start), and what follows */
@@ -492,7 +492,7 @@ static double estimate(const Settings *s, const Control *c, double h, Radau *r, 
   multiply(s, -1, r->K, s->hub ? r->hub_K : 0, error, rhs);
   multiply(s, -FREE, r->M, s->hub ? r->hub_M : 0, error, rhs);
   arrow_solve_vector(s, &w->arrow, rhs, r->closed, second, 0);
-  memset(r->thrust, 0, sizeof(lanes)*groups(s));
+  memset(r->thrust, 0, BYTES(lanes, groups(s)));
   add_thrust(s, c, second, 1, r);
   return norm(s, c, second);
 }
@@ -507,7 +507,7 @@ static double estimate_bristles(const Settings *s, const Control *c, double h, R
   for (int i = 0; i < groups(s); i++) {
     LegState *leg = &w->leg[i];
     lanes bent[2*BRISTLES], wrong[N], state[2*BRISTLES], force[BRISTLES], rate[BRISTLES], energies[2], still = {0};
-    memcpy(bent, r->bristles[2][i], sizeof(lanes)*2*BRISTLES);
+    memcpy(bent, r->bristles[2][i], BYTES(lanes, 2*BRISTLES));
     const lanes *in[] = {leg->q, leg->v, leg->lam, bent, &still, w->p[i]};
     lanes *out[] = {wrong, state, force, rate, energies};
     s->of->leg_friction(in, out);
@@ -563,9 +563,9 @@ static void start_step(const Settings *s, const Work *w, Radau *r) {
     s->of->leg_sliding(in, out);
   }
   for (int i = 0; i < groups(s); i++) {
-    memcpy(r->q.leg[i], w->leg[i].q, sizeof(lanes)*N); memcpy(r->v0.leg[i], w->leg[i].v, sizeof(lanes)*N);
-    memcpy(r->a0.leg[i], w->leg[i].v_dot, sizeof(lanes)*N);
-    memcpy(r->f0.lam[i], w->leg[i].lam, sizeof(lanes)*ROWS); memcpy(r->f0.drive[i], w->leg[i].drive, sizeof(lanes)*s->ports);
+    memcpy(r->q.leg[i], w->leg[i].q, BYTES(lanes, N)); memcpy(r->v0.leg[i], w->leg[i].v, BYTES(lanes, N));
+    memcpy(r->a0.leg[i], w->leg[i].v_dot, BYTES(lanes, N));
+    memcpy(r->f0.lam[i], w->leg[i].lam, BYTES(lanes, ROWS)); memcpy(r->f0.drive[i], w->leg[i].drive, BYTES(lanes, s->ports));
   }
   copy_bristles(s, w->bristles, r->bristles[STAGES]);
   memcpy(r->pose, w->payload.pose, sizeof r->pose);
