@@ -1,4 +1,4 @@
-"""Sampled controllers in the march against a payload on six springs, written by hand and exact from sample to sample."""
+"""Sampled controllers in the march against a payload on six springs by hand, exact from sample to sample."""
 
 from dataclasses import dataclass
 
@@ -141,9 +141,9 @@ LAWS = {
 
 @pytest.mark.parametrize("name", LAWS)
 def test_the_payload_moves_as_the_exact_recursion_says(study, name):
-    """Fixed steps of h are late by (w h)^2 / 12 of the phase: w = 1080 rad/s and 12.5 us make 1.5e-5 of 108 rad, 1.6e-3 of
-    an oscillation that is half of the largest displacement and damped; a leg's 0.5 um adds geometry of 1e-6. A reading
-    next to the middle of two steps is rounded to either."""
+    """Fixed steps of h are late by (w h)^2 / 12 of the phase: w = 1080 rad/s and 12.5 us make 1.5e-5 of 108 rad, 1.6e-3
+    of an oscillation that is half of the largest displacement and damped; a leg's 0.5 um adds geometry of 1e-6. A
+    reading next to the middle of two steps is rounded to either."""
     law, given, own = LAWS[name]
     data = fx.simulate(study, controller=law, step=T / 40, **given)
     z, _, _ = Heave().run(law, len(data.time), **own)

@@ -63,7 +63,8 @@ def c(study: model.Study, commands: str = "inputs", step: float | None = None) -
 
 def texts(found: Marched) -> dict[str, str]:
     """`robot.h` and `robot.c` of a march."""
-    header = (HERE / "robot.h").read_text().replace("enum { ROBOT_ALIGNMENT", f"{_public(found)}\nenum {{ ROBOT_ALIGNMENT")
+    before = "enum { ROBOT_ALIGNMENT"
+    header = (HERE / "robot.h").read_text().replace(before, f"{_public(found)}\n{before}")
     loops = [(native.NATIVE / name).read_text() for name in LOOPS]
     parts = [
         '#include "robot.h"', "#define EXPORTED static", PRELUDE.read_text(),
@@ -120,7 +121,6 @@ def _constants(found: Marched) -> Mapping[str, int]:
     system, firsts = found.march.system, {x.name: x.first for x in (*found.inputs, *found.outputs)}
     ends = np.cumsum([0, *(int(np.prod(x)) for x in record_shapes(system).values())])
     at = dict(zip(record_shapes(system), ends.tolist(), strict=False))
-    table, load = found.law(np.zeros(1))
     used = found.matrix != 0
     tool, quaternion, velocity = (firsts.get(name, 0) for name in list(OF_PAYLOAD)[1:])
     return {
@@ -180,13 +180,13 @@ def _equations(found: Marched) -> str:
 
 
 def _settings(found: Marched) -> str:
-    system, h = found.march.system, found.march.step
-    method = found.march.problem.method
+    system, method = found.march.system, found.march.problem.method
+    weights = {name: repr(float(getattr(method, name))) for name in ("alpha_m", "alpha_f", "beta", "gamma")}
     fields = {
         "of": "&EQUATIONS", "legs": system.legs, "hub": int(system.hub), "ports": system.ports.size,
         "port": "{" + ", ".join(map(str, system.ports.tolist())) + "}",
         "held": "HELD", "hub_held": "HUB_HELD", "leg_p": "LEG_P", "joint_p": "JOINT_P", "payload_p": "PAYLOAD_P",
-        "h": repr(float(h)), **{name: repr(float(getattr(method, name))) for name in ("alpha_m", "alpha_f", "beta", "gamma")},
+        "h": repr(float(found.march.step)), **weights,
         "tol_closure": native.TOL_CLOSURE, "tol_force": native.TOL_FORCE, "force_floor": repr(system.force_floor),
         "max_iterations": native.MAX_ITERATIONS, "max_age": native.MAX_AGE * (8 if system.n > native.LARGE else 1),
         "output_every": 1,

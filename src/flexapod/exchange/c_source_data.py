@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -33,7 +33,7 @@ ROUNDING = 1e-9  # of an output that is linear in the state
 
 @dataclass(frozen=True, kw_only=True)
 class Channel:
-    """A variable of inputs or outputs: name and unit as in the Dataset, shape, where its numbers begin, start values."""
+    """A variable of inputs or outputs: name and unit as in results, shape, where its numbers begin, start values."""
 
     name: str
     units: str
@@ -44,6 +44,7 @@ class Channel:
 
     @property
     def size(self) -> int:
+        """Its numbers."""
         return int(np.prod(self.shape))
 
 
@@ -51,9 +52,10 @@ class Channel:
 class Marched:
     """A prepared march and all that its C has to know beside the equations.
 
-    ``drive_port``, ``force_port`` (legs,): ports that commands and forces of the drives go to, -1 for none; ``keeps``:
-    legs whose drive keeps its command; ``turns``, ``zero``: of the drives' units; ``edges``, ``series``: of the built-in
-    commands, if there are; ``matrix`` (outputs, row), ``offset`` (outputs,): of the outputs that are linear in a row.
+    ``row``: record of the start; ``drive_port``, ``force_port`` (legs,): ports that commands and forces of the drives
+    go to, -1 for none; ``keeps``: legs whose drive keeps its command; ``turns``, ``zero``: of the drives' units;
+    ``edges``, ``series``: of the built-in commands, if there are; ``matrix`` (outputs, row), ``offset`` (outputs,): of
+    the outputs that are linear in a row.
     """
 
     study: model.Study
@@ -76,6 +78,7 @@ class Marched:
 
     @property
     def start(self) -> Flow:
+        """Where it begins."""
         return self.march.start
 
 
@@ -146,10 +149,11 @@ def _inputs(study: model.Study, march: RobotMarch, parts: dict[str, Array], comm
             start = np.where(parts["drive_port"] >= 0, given[:, k] + parts["zero"] * (k == 0), 0.0)
             found.append((f"drive_command{ending}", unit, f"commanded {words} of the drive", start))
     force = drive_forms(study.robot).get("drive_force", VARIABLES["drive_force"]).units
-    found.append(("control_input", force, "force of the drive beside its own; of no effect where it keeps its command",
-                  np.zeros(len(legs))))  # fmt: skip
+    words = "force of the drive beside its own; of no effect where it keeps its command"
+    found.append(("control_input", force, words, np.zeros(len(legs))))
     if march.system.hub:
-        found.append(("wrench", "mixed", "force [N] and moment [N m] at the tool beside the load, world axes", np.zeros(6)))
+        words = "force [N] and moment [N m] at the tool beside the load, world axes"
+        found.append(("wrench", "mixed", words, np.zeros(6)))
     channels, first = [], 0
     for name, unit, words, start in found:
         channels.append(Channel(name=name, units=unit, words=words, shape=start.shape, first=first, start=start))

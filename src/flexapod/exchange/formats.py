@@ -46,6 +46,24 @@ FORMATS: Mapping[str, Format] = {
         named="FILE.inp: both programs ask for it",
         options=("pose", "load", "title", "elements", "modes"),
     ),
+    "fmu": Format(
+        module="fmu",
+        function="fmu",
+        endings=(".fmu",),
+        noun="a functional mock-up unit",
+        words="a unit for co-simulation, FMI 3.0, with its sources",
+        named="FILE.fmu",
+        options=("commands", "step"),
+    ),
+    "c": Format(
+        module="c_source",
+        function="c",
+        endings=(),
+        noun="a folder of C",
+        words="a folder with the robot's steps in C",
+        named="a folder",
+        options=("commands", "step"),
+    ),
 }
 
 

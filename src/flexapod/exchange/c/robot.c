@@ -72,12 +72,13 @@ static void with_inputs(const double *inputs, double since, double *table, doubl
   for (int k = 0; k < 6 && HAS_HUB; k++) load[k] += inputs[FIRST_WRENCH + k];
 }
 
-/* Whether the command of a drive that keeps it has moved, and nothing said that it moves */
-static int jumps(const double *before, const double *inputs) {
+/* Whether the command of a drive that keeps it has moved, and nothing said that it moves; at the start, whether it is elsewhere */
+static int jumps(const double *before, const double *inputs, int starts) {
   if (!COMMANDED) return 0;
   for (int leg = 0; leg < LEG_COUNT; leg++) {
     const double *was = before + leg, *is = inputs + leg;
-    if (!KEEPS[leg] || was[LEG_COUNT] != 0 || was[2*LEG_COUNT] != 0 || is[LEG_COUNT] != 0 || is[2*LEG_COUNT] != 0) continue;
+    if (!KEEPS[leg]) continue;
+    if (!starts && (was[LEG_COUNT] != 0 || was[2*LEG_COUNT] != 0 || is[LEG_COUNT] != 0 || is[2*LEG_COUNT] != 0)) continue;
     if (!(fabs(is[0] - was[0]) <= JUMPED)) return 1;
   }
   return 0;
@@ -106,7 +107,7 @@ int robot_init(void *memory) {
 int robot_step(void *memory, const double *inputs, long steps) {
   Instance x = instance(memory);
   Settings s = settings();
-  if (jumps(x.inputs, inputs)) return ROBOT_JUMPS;
+  if (jumps(x.inputs, inputs, !(x.head[STEPS_DONE] > 0))) return ROBOT_JUMPS;
   memcpy(x.inputs, inputs, sizeof(double)*ROBOT_INPUTS);
   for (long k = 1; k <= steps; k++) {
     State state = state_of(&x);

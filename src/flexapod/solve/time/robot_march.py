@@ -118,7 +118,9 @@ def prepare(study: Study, state: State | None = None, sampled: Sampled | None = 
     chunks = march(problem, start, step, counters)
     if system.slack is not None:
         chunks = (replace(x, recording=shared(system, x.recording, law(x.recording.time)[0])) for x in chunks)
-    return RobotMarch(system=system, start=start, impact=impact, step=step, chunks=chunks, problem=problem, counters=counters)
+    return RobotMarch(
+        system=system, start=start, impact=impact, step=step, chunks=chunks, problem=problem, counters=counters
+    )
 
 
 def _around(sampled: Sampled | None, system: System, study: Study, path: "_Path") -> SampledLoop | None:
