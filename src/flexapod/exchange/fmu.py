@@ -75,8 +75,8 @@ def fmu(study: model.Study, commands: str = "inputs", step: float | None = None)
         "sources/buildDescription.xml": _build_description(),
     }
     remarks = (
-        f"Steps inside are {found.march.step:g} s long: communication steps are multiples. Inputs at a communication point "
-        "hold until the next; commands of drives go on by their rates and accelerations.",
+        f"Steps inside are {found.march.step:g} s long: communication steps are multiples. Inputs at a communication "
+        "point hold until the next; commands of drives go on by their rates and accelerations.",
     )
     return Written(files={"": _zipped(files)}, left_out=found.left_out, remarks=remarks)
 

@@ -39,7 +39,10 @@ class _Control(Structure):
 
 @dataclass(frozen=True, kw_only=True)
 class Advanced:
-    """Outcome of a call: new flow, output rows so far, status (0: done), where it failed and when; a controller's record."""
+    """Outcome of a call: new flow, output rows so far, status (0: done), where it failed and when.
+
+    ``control``: rows of a controller's record.
+    """
 
     flow: Flow
     rows: Array
