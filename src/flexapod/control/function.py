@@ -1,4 +1,4 @@
-"""A function of Python in place of a linear law."""
+"""A controller that is a function of an instant and readings, in place of a linear law."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ __all__ = ["Function"]
 
 @dataclass(frozen=True, kw_only=True)
 class Function:
-    """A controller that is called at each sample of `flexapod.simulate`.
+    """What a simulation asks once a sample: ``function(t, readings) -> values``, t [s].
 
     Parameters
     ----------
     function : callable
-        Of the instant [s] and the readings (p,): the outputs (m,). Samples come in their order; after a step of the
-        time integration that fails some come again.
+        Of an instant and the readings (p,), in the order of `inputs`; returns the values (m,) of `outputs`. Called in
+        the order of samples; after a step that fails some come again with the same instants.
     inputs, outputs : tuples of str
-        Channels that it reads (``stroke:1``, ``tool:z``) and that it moves (``drive:3``).
+        Single channels that it reads, as ``stroke:1``, and that it moves, as ``drive:1``.
     """
 
     function: Callable[[float, Array], object]
