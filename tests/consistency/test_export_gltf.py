@@ -122,7 +122,9 @@ def test_deflections_can_be_magnified_and_rigid_robots_do_not_bend(tmp_path):
     assert many == pytest.approx(100 * one, rel=1e-6)
 
 
-def test_a_result_of_something_else_is_refused(tmp_path):
+def test_a_result_of_something_else_is_refused_and_a_wrong_factor(tmp_path):
+    with pytest.raises(fx.InputError, match=r"magnify = 0.*above 0"):
+        fx.export(study_of("tripod"), "gltf", tmp_path / "a.glb", magnify=0)
     with pytest.raises(fx.InputError, match=r"data.*a result of flexapod\.simulate"):
         fx.export(study_of("tripod"), "gltf", tmp_path / "a.glb", data=fx.modes(study_of("tripod")))
 

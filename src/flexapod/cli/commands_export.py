@@ -27,7 +27,10 @@ COMMA = re.compile(r",(?![^(\[]*[)\]])")  # none of a place, (0, 0, 0.1), or of 
 NAMES = frozenset(string.ascii_letters + string.digits + "-_")
 
 Kind = Annotated[
-    str, typer.Option("--format", metavar="FORMAT", help="abaqus, which CalculiX reads as well; mjcf, gltf, vtk, mat.")
+    str,
+    typer.Option(
+        "--format", metavar="FORMAT", help="abaqus, which CalculiX reads as well; fmu, c, mjcf, gltf, vtk, mat."
+    ),
 ]
 Elements = Annotated[
     int | None,
@@ -41,9 +44,11 @@ Fidelity = Annotated[
 Magnify = Annotated[float | None, typer.Option("--magnify", metavar="FACTOR", help="gltf: factor on deflections.")]
 Commands = Annotated[
     str | None,
-    typer.Option("--commands", metavar="KIND", help="inputs, commands of the drives come from outside, or motion."),
+    typer.Option(
+        "--commands", metavar="KIND", help="fmu, c: inputs, commands of the drives come from outside, or motion."
+    ),
 ]
-Step = Annotated[str | None, typer.Option("--step", metavar="TIME", help="Length of the fixed steps inside, 0.2ms.")]
+Step = Annotated[str | None, typer.Option("--step", metavar="TIME", help="fmu, c: length of the fixed steps, 0.2ms.")]
 Inputs = Annotated[
     str | None, typer.Option("--inputs", metavar="NAMES", help="mat: channels with commas, wrench,command,floor.")
 ]
@@ -51,7 +56,8 @@ Outputs = Annotated[
     str | None, typer.Option("--outputs", metavar="NAMES", help="mat: channels with commas, tool,stroke,drive-force.")
 ]
 Place = Annotated[
-    Path | None, typer.Option("--out", metavar="FILE", help="File to write; default: beside the study, named after it.")
+    Path | None,
+    typer.Option("--out", metavar="FILE", help="File or folder to write; default: beside the study, named after it."),
 ]
 
 
@@ -72,7 +78,7 @@ def export(
     force: Force = False,
     json: Json = False,
 ) -> None:
-    """Write the robot for other programs: a deck, a model for MuJoCo, its motion to look at, matrices about rest."""
+    """Write the robot for other programs: a deck, a unit that runs, a model, its motion to look at, matrices."""
     from flexapod.cli.map_options import parse_pose
     from flexapod.exchange.formats import FORMATS, check_options, check_place, format_of, written
     from flexapod.units import to_si
@@ -97,8 +103,7 @@ def export(
         check_place(format, path)
         if format == "abaqus":
             _check_name(path)
-        if kind.endings:
-            refuse_existing(path, force)
+        refuse_existing(path, force)
         if "title" in FORMATS[format].options:
             given["title"] = f"{file.stem}: robot with locked drives"
         found = written(study, format, path, given)

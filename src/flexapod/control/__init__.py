@@ -12,6 +12,14 @@ from flexapod.runtime.loading import loaded
 if TYPE_CHECKING:
     from flexapod.control.closing import DelayedLoop
     from flexapod.control.controllers import DVF, IFF, PID, Controller, Decentralised, Decoupled, Fused, Together
+    from flexapod.control.decoupling import (
+        Matrices,
+        by_jacobian,
+        by_modes,
+        by_singular_vectors,
+        centre_of_stiffness,
+        robot_jacobian,
+    )
     from flexapod.control.function import Function
     from flexapod.control.laws import (
         Law,
@@ -32,6 +40,14 @@ if TYPE_CHECKING:
 _HOMES = {
     "closing": ("DelayedLoop",),
     "controllers": ("DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together"),
+    "decoupling": (
+        "Matrices",
+        "by_jacobian",
+        "by_modes",
+        "by_singular_vectors",
+        "centre_of_stiffness",
+        "robot_jacobian",
+    ),
     "function": ("Function",),
     "laws": (
         "Law",
@@ -62,9 +78,14 @@ __all__ = [
     "Function",
     "Fused",
     "Law",
+    "Matrices",
     "StateSpace",
     "Together",
     "best_gain",
+    "by_jacobian",
+    "by_modes",
+    "by_singular_vectors",
+    "centre_of_stiffness",
     "complementary",
     "gain",
     "high_pass",
@@ -76,6 +97,7 @@ __all__ = [
     "pid",
     "positive_feedback",
     "rate",
+    "robot_jacobian",
     "root_locus",
 ]
 

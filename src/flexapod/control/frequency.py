@@ -18,6 +18,7 @@ CHECKED = 12  # frequencies at which poles and residues are compared with solvin
 ALIKE = 1e5  # condition of the shapes of poles above which residues cancel
 AGREES = 1e-9  # of the response, or a tenth of
 CANCELS = 0.1  # what its poles could add up to
+SHIFTED = 2**0.5  # from the middle of the points, which may lie upon a pole
 BLOCK = 64  # frequencies solved for side by side
 
 
@@ -42,7 +43,9 @@ def _regular(A: Array, B: Array, C: Array, s: Complex) -> Complex:
     """C (s - A)^-1 B."""
     if A.shape[0] == 0 or s.size == 0 or B.shape[1] == 0 or C.shape[0] == 0:
         return np.zeros((len(C), B.shape[1], s.size), dtype=complex)
-    values, shapes = np.linalg.eig(A)
+    middle = SHIFTED * np.exp(np.log(np.abs(s[s != 0])).mean()) if s.any() else 1.0
+    inverse, shapes = np.linalg.eig(np.linalg.inv(A - middle * np.eye(len(A))))
+    values = middle + 1.0 / inverse  # (T21.35): those amid the points to rounding, however fast others are
     _refuse_poles(values, s)
     sizes = np.linalg.norm(shapes, axis=1, keepdims=True)  # of states: their units are no matter
     if np.linalg.cond(shapes / np.where(sizes > 0, sizes, 1.0)) > ALIKE:

@@ -54,6 +54,8 @@ def drawn_robot(study: model.Study, data: Dataset, scale: float = 1.0) -> DrawnR
     """The robot of a result of `study`, deflections `scale` times larger."""
     if "com_position_rigid" not in data:
         raise InputError("is not a motion", key="data", allowed="a result of flexapod.simulate")
+    if not 0 < scale < np.inf:
+        raise InputError("is not a factor", key="magnify", value=scale, allowed="above 0")
     motion = RobotMotion(study, data)
     scenes = [motion.at(t, scale).flexible for t in motion.time]
     base, tip = (np.array([getattr(x, name) for x in scenes]) for name in ("base", "platform"))
