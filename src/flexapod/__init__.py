@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from flexapod.elements.element import Contribution, Element, Output
     from flexapod.elements.frame import Energies
     from flexapod.errors import ComputationError, FlexapodError, InputError
+    from flexapod.exchange.formats import export
     from flexapod.model import ActuatorStudy, Study, load, loads, open_values, preset
     from flexapod.paper.study import replicate
     from flexapod.schema.base import Key, Quantity
@@ -50,6 +51,7 @@ _HOMES = {
     "flexapod.schema.base": ("Key", "Quantity"),
     "flexapod.errors": ("ComputationError", "FlexapodError", "InputError"),
     "flexapod.citations": ("cite",),
+    "flexapod.exchange.formats": ("export",),
     "flexapod.model": ("ActuatorStudy", "Study", "load", "loads", "open_values", "preset"),
     "flexapod.paper.study": ("replicate",),
     "flexapod.study": (
@@ -101,6 +103,7 @@ __all__ = [
     "compliance",
     "control",
     "converge",
+    "export",
     "forward_kinematics",
     "inverse_dynamics",
     "inverse_kinematics",
