@@ -16,9 +16,10 @@ from flexapod.control.state_space import StateSpace
 from flexapod.errors import InputError
 from flexapod.kinematics import Poses
 from flexapod.kinematics.rotations import matrix
-from flexapod.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
+from flexapod.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose, read
 from flexapod.results.poses import as_many, batches, coordinates_of, is_many
 from flexapod.runtime.threads import one_thread
+from flexapod.solve.linear.actuator import actuator_states
 from flexapod.solve.linear.channels import asked
 from flexapod.solve.linear.grid import grid_of
 from flexapod.solve.linear.plant import Drives, Plant, plant_at
@@ -64,7 +65,7 @@ class LinearModel(StateSpace):
 
 @one_thread()
 def linearize(
-    study: RobotLike,
+    study: RobotLike | model.ActuatorStudy,
     pose: PoseLike = None,
     *,
     inputs: str | Sequence[str],
@@ -72,16 +73,21 @@ def linearize(
     drives: Drives = "given",
     friction: Friction | None = None,
     load: LoadLike = None,
-) -> LinearModel | Dataset:
+) -> LinearModel | StateSpace | Dataset:
     """A robot about its equilibrium under gravity and load as a linear system with named channels, Eq. (T20.1).
 
     Closures are eliminated, so that states are motions by name ("payload x", "leg 3 a2", turns of the payload about
     platform axes) and their rates; they are chosen at home, and mean the same at every pose. What has no mass is
     condensed with the damper that it may have; loops that sum or lag are states. Unstable loops are no error.
 
+    A single actuator is linearised about the place in which it stands at t = 0, or with pose {"rate": 20.0} [rad/s]
+    about the steady rotation of its hub: inputs ``command:rotation``, ``:extension``, ``:elevation`` where these are
+    held, ``drive:...`` where a torque or a force drives them, ``force:tip``; outputs ``tip:along``, ``tip:rotation``,
+    ``tip:elevation`` [m], ``stroke``, ``drive-force``.
+
     Parameters
     ----------
-    study : Study, Robot or path
+    study : Study, Robot, ActuatorStudy or path
     pose : pose, optional
         As for `modes`; default home. Many poses at once: names with arrays, or (P, 6).
     inputs : str or sequence of str
@@ -121,6 +127,8 @@ def linearize(
     ComputationError
         No equilibrium at this pose, or one so far from home that the motions chosen there say nothing of it.
     """
+    if isinstance(study := read(study), model.ActuatorStudy):
+        return _of_actuator(study, pose, inputs, outputs, drives)
     if is_many(pose):
         return _grid(study, pose, inputs, outputs, drives, friction, load)
     found, plant = _plant(study, pose, load, drives, friction)
@@ -150,6 +158,29 @@ def _at(study: model.Study, path: Poses, drives: Drives) -> Plant:
             error.what, key=error.key, value=error.value, allowed=error.allowed,
             next_step='linearize(..., drives="force") releases the drives where they are',
         ) from None  # fmt: skip
+
+
+def _of_actuator(
+    study: model.ActuatorStudy,
+    pose: PoseLike,
+    inputs: str | Sequence[str],
+    outputs: str | Sequence[str],
+    drives: Drives,
+) -> StateSpace:
+    """A single actuator at rest, or in steady rotation."""
+    given = dict(pose) if isinstance(pose, Mapping) else {}
+    if (pose is not None and not isinstance(pose, Mapping)) or set(given) - {"rate", "free_length"}:
+        raise InputError(
+            "is no place of a single actuator", key="pose", value=pose,
+            allowed='{"rate": 20.0}, rate of its hub [rad/s], and "free_length" [m]',
+        )  # fmt: skip
+    actuator = study.actuator
+    if "free_length" in given:
+        actuator = actuator.replace(free_length=float(given["free_length"]))
+    names = ("rotation", "extension", "elevation")
+    free = [name for name in names if drives == "force" or getattr(study.motion, name) is None]
+    states = actuator_states(actuator, study.simulation, inputs, outputs, rate=float(given.get("rate", 0.0)), free=free)
+    return StateSpace(**{f.name: getattr(states, f.name) for f in fields(states)})
 
 
 def _grid(
