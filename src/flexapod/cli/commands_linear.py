@@ -7,7 +7,6 @@ from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
 
 from flexapod.cli.commands_export import COMMA
@@ -30,6 +29,7 @@ from flexapod.runtime.files import write_text
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from flexapod.arrays import Array
     from flexapod.study.linear import LinearModel
 
 OPTIONS = {"pose": "--pose", "drives": "--drives", "friction": "--friction", "inputs": "--input", "outputs": "--output"}
@@ -102,7 +102,9 @@ def _model(file: Path, pose: str | None, drives: str, friction: str | None, inpu
         )  # type: ignore[arg-type]
 
 
-def _frequencies(lowest: str, highest: str, points: int) -> np.ndarray:
+def _frequencies(lowest: str, highest: str, points: int) -> Array:
+    import numpy as np
+
     from flexapod.units import to_si
 
     low, high = (to_si(text, "frequency", key=key) for text, key in ((lowest, "--from"), (highest, "--to")))
