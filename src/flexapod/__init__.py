@@ -10,20 +10,24 @@ from typing import TYPE_CHECKING
 from flexapod.runtime.loading import loaded
 
 if TYPE_CHECKING:
-    from flexapod import kinematics, model, plot, study
+    from flexapod import control, kinematics, model, plot, study
     from flexapod.citations import cite
+    from flexapod.control.measured import read_frf
     from flexapod.elements.element import Contribution, Element, Output
     from flexapod.elements.frame import Energies
     from flexapod.errors import ComputationError, FlexapodError, InputError
+    from flexapod.exchange.formats import export
     from flexapod.model import ActuatorStudy, Study, load, loads, open_values, preset
     from flexapod.paper.study import replicate
     from flexapod.schema.base import Key, Quantity
     from flexapod.study import (
         accuracy,
         budget,
+        compliance,
         forward_kinematics,
         inverse_dynamics,
         inverse_kinematics,
+        linearize,
         mobility,
         modes,
         parts,
@@ -33,6 +37,7 @@ if TYPE_CHECKING:
         simulate_actuator,
         simulate_solid,
         stiffness,
+        transmissibility,
         vibration,
     )
     from flexapod.surveys.convergence import converge
@@ -47,14 +52,18 @@ _HOMES = {
     "flexapod.schema.base": ("Key", "Quantity"),
     "flexapod.errors": ("ComputationError", "FlexapodError", "InputError"),
     "flexapod.citations": ("cite",),
+    "flexapod.control.measured": ("read_frf",),
+    "flexapod.exchange.formats": ("export",),
     "flexapod.model": ("ActuatorStudy", "Study", "load", "loads", "open_values", "preset"),
     "flexapod.paper.study": ("replicate",),
     "flexapod.study": (
         "accuracy",
         "budget",
+        "compliance",
         "forward_kinematics",
         "inverse_dynamics",
         "inverse_kinematics",
+        "linearize",
         "mobility",
         "modes",
         "parts",
@@ -64,6 +73,7 @@ _HOMES = {
         "simulate_actuator",
         "simulate_solid",
         "stiffness",
+        "transmissibility",
         "vibration",
     ),
     "flexapod.surveys.convergence": ("converge",),
@@ -74,7 +84,7 @@ _HOMES = {
 }
 _NAMES = {name: module for module, names in _HOMES.items() for name in names}
 _FORMER = {"rigid": "kinematics"}  # names of the release before
-_PACKAGES = ("kinematics", "model", "plot", "study")
+_PACKAGES = ("control", "kinematics", "model", "plot", "study")
 
 __all__ = [
     "ActuatorStudy",
@@ -92,12 +102,16 @@ __all__ = [
     "accuracy",
     "budget",
     "cite",
+    "compliance",
+    "control",
     "converge",
+    "export",
     "forward_kinematics",
     "inverse_dynamics",
     "inverse_kinematics",
     "kinematics",
     "ladder",
+    "linearize",
     "load",
     "loads",
     "mobility",
@@ -108,6 +122,7 @@ __all__ = [
     "play",
     "plot",
     "preset",
+    "read_frf",
     "replicate",
     "run",
     "simulate",
@@ -116,6 +131,7 @@ __all__ = [
     "stiffness",
     "study",
     "sweep",
+    "transmissibility",
     "vibration",
     "workspace_map",
 ]

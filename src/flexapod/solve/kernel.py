@@ -69,7 +69,7 @@ NAMES = tuple(
 def kernel(shapes: Shapes) -> Kernel:
     """Kernel of legs with the given shapes and joints, see `shapes`."""
     if command := compiler():
-        return loaded_kernel(shapes, command, _fingerprint(shapes), lambda: _functions(shapes))
+        return loaded_kernel(shapes, command, fingerprint(shapes), lambda: _functions(shapes))
     _warn_interpreted()
     return interpreted_kernel(shapes)
 
@@ -136,6 +136,13 @@ def generated_text(shapes: Shapes) -> dict[str, str]:
     return {function.name: c_source(function) for function in _functions(shapes)}
 
 
+def text_of_one_unit(shapes: Shapes) -> str:
+    """C text of all functions that time loops call, for one unit with these."""
+    from flexapod.symbolic.c_source import of_one_unit
+
+    return "\n".join(of_one_unit(function) for function in _functions(shapes) if function.name in FOR_LOOPS)
+
+
 def _functions(shapes: Shapes) -> "list[NamedFunction]":
     from flexapod.mechanics.assembly import joint_functions, leg_functions, payload_functions
     from flexapod.mechanics.sliding import friction_functions
@@ -143,7 +150,7 @@ def _functions(shapes: Shapes) -> "list[NamedFunction]":
     return [*leg_functions(shapes), *friction_functions(shapes), *joint_functions(), *payload_functions(shapes)]
 
 
-def _fingerprint(shapes: Shapes) -> list[object]:
+def fingerprint(shapes: Shapes) -> list[object]:
     """Everything the generated code depends on: the text of the equations and the numbers of the bases."""
     texts = [
         path.read_bytes()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -25,7 +26,15 @@ from flexapod.review.plausibility import robot_warnings
 from flexapod.review.unstable_loops import loop_remarks
 from flexapod.runtime.threads import one_thread
 from flexapod.solve.time.robot_march import RobotMarch, prepare
+from flexapod.solve.time.sampled import Sampled
 from flexapod.study.actuator import simulate_actuator
+from flexapod.study.controlled import (
+    Controller,
+    PerChannel,
+    control_coords,
+    control_results,
+    sampled_controller,
+)
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -40,11 +49,13 @@ class Simulated:
     march: RobotMarch
     record: Record
     remarks: list[str]
+    sampled: Sampled | None = None
 
     def values(self) -> Asked:
         """The variables of the Dataset as plain arrays, each made when it is asked for."""
         path = self.path.at(self.record.time)
-        return Asked(robot_results(self.study, self.march.system, self.record, path) | rigid_force_results(path))
+        found = robot_results(self.study, self.march.system, self.record, path) | rigid_force_results(path)
+        return Asked(found | control_results(self.sampled, self.record))
 
     @cached_property
     def force_error(self) -> float | None:
@@ -74,14 +85,13 @@ class Simulated:
         if (error := self.force_error) is not None:
             attrs["estimated_force_error"] = error
         robot = self.study.robot
-        return dataset(
-            self.values(), robot_coords(robot, system, self.record), attrs, drive_forms(robot) | element_forms(robot)
-        )
+        coords = robot_coords(robot, system, self.record) | control_coords(self.sampled)
+        return dataset(self.values(), coords, attrs, drive_forms(robot) | element_forms(robot))
 
 
 @one_thread()
-def simulated(study: model.Study, progress: Progress | None = None) -> Simulated:
-    """Check and integrate a robot study; what `simulate` does, without a Dataset.
+def simulated(study: model.Study, progress: Progress | None = None, sampled: Sampled | None = None) -> Simulated:
+    """Check and integrate a robot study, with a controller or without; what `simulate` does, without a Dataset.
 
     A record that stopped early says so: ``record.failure``, ``record.interrupted``.
 
@@ -91,9 +101,9 @@ def simulated(study: model.Study, progress: Progress | None = None) -> Simulated
         As `simulate`.
     """
     path = RigidPath(study)
-    remarks, march = [*check_path(study, path), *loop_remarks(study)], prepare(study)
+    remarks, march = [*check_path(study, path), *loop_remarks(study)], prepare(study, sampled=sampled)
     record = collect(march.chunks, damped_angles(march.system), study.duration, progress)
-    return Simulated(study=study, path=path, march=march, record=record, remarks=remarks)
+    return Simulated(study=study, path=path, march=march, record=record, remarks=remarks, sampled=sampled)
 
 
 @one_thread()
@@ -112,6 +122,13 @@ def simulate(
     duration: float | None = None,
     output_step: float | None = None,
     rho_inf: float | None = None,
+    controller: Controller | None = None,
+    sample: float | None = None,
+    delay_samples: int = 0,
+    quantise: PerChannel = None,
+    saturate: PerChannel = None,
+    noise: PerChannel | Mapping[str, Mapping[str, float]] = None,
+    seed: int = 0,
     progress: Progress | None = None,
 ) -> Dataset:
     """Motion of a robot with elastic legs against the rigid one.
@@ -128,6 +145,19 @@ def simulate(
         "equilibrium", "straight" or "moving"; in place of the study's.
     fidelity, modes, axial_modes, basis, tolerance, step, duration, output_step, rho_inf : optional
         In place of those of [simulation]; times in s.
+    controller : Controller, optional
+        One of `flexapod.control`, a StateSpace with a sample time, or a `flexapod.control.Function`. It reads each
+        sample what sensors show from what they showed at the start, kinematic ones against the commanded path, and
+        holds its outputs until the next; Eqs. (T26.1)-(T26.7).
+    sample : float, optional
+        Time between samples [s]; of fixed steps a multiple.
+    delay_samples : int
+        Samples from a reading to what is made of it.
+    quantise, saturate, noise : float or mapping, optional
+        Steps of the readings, largest magnitude of the outputs, standard deviation of the readings' noise: one
+        number, or numbers by channel or group. ``{"psd": S}`` in place of a deviation: one-sided [unit^2/Hz].
+    seed : int
+        Of the noise: the same seed, the same bits.
     progress : callable, optional
         Called with simulated and whole time [s].
 
@@ -151,7 +181,10 @@ def simulate(
         "step": step, "duration": duration, "output_step": output_step, "rho_inf": rho_inf,
     }  # fmt: skip
     study = model.override(as_study(robot, motion, load, initial), **settings)  # type: ignore[arg-type]
-    found = simulated(study, progress)
+    sampled = sampled_controller(
+        controller, sample, delay_samples=delay_samples, quantise=quantise, saturate=saturate, noise=noise, seed=seed
+    )
+    found = simulated(study, progress, sampled)
     return finished(found.dataset, found.record)
 
 

@@ -1,0 +1,194 @@
+"""What of a leg gives way in MuJoCo, and what its drive is there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from flexapod import kinematics, model
+from flexapod.elements.springs import Place, in_series, springs_along
+from flexapod.errors import InputError
+from flexapod.exchange.decks_legs import LegAtPose, drive_stiffness, legs_at_pose
+from flexapod.exchange.mjcf_trees import Gives, Spring
+from flexapod.model.damping import damping_parts
+from flexapod.results.arguments import as_pose
+
+STEP = {"rigid": 2e-5, "shortest": 1e-6, "longest": 1e-4}  # s
+SHARE = 0.2  # of a leg's own time sqrt(m / k) that a step may have
+LAG = 5  # steps in which a spring swings what is given some inertia only for its sake
+STIFF = 1e4  # of a prescribed carriage, in its leg's stiffness: adds 1e-4 of the leg's compliance
+LIGHT = 1e-6  # of the payload's inertia: what turns between piston and platform without mass of its own
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drive:
+    """A drive on the coordinate `on` of a leg: a `servo` that holds its command, a `push` that is a force, or both.
+
+    `home`: the command at home [m, rad].
+    """
+
+    on: Literal["l", "chi"]
+    servo: Spring | None
+    push: bool
+    home: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Springs:
+    """Of all legs what gives way, their drives (None: passive), and the step [s] for which they are made."""
+
+    gives: list[Gives]
+    drives: list[Drive | None]
+    step: float
+
+
+def rigid_springs(robot: model.Robot) -> Springs:
+    """Nothing gives way but servos; a prescribed drive is one as stiff as the steps and its own mass let it be."""
+    limbs, step = kinematics.rigid_limbs(robot), STEP["rigid"]
+    light = {f"gamma{k}": Spring(armature=LIGHT * _turning(robot)) for k in (1, 2, 3)}
+    drives = []
+    for i, leg in enumerate(robot.legs):
+        mass = max(_moved(leg, _arm(limbs, i)), LIGHT * _carried(robot))
+        stiffness = drive_stiffness(leg, _length(limbs, i))
+        hard = Spring(stiffness=mass * (SHARE / step) ** 2, damping=SHARE * mass / step)
+        own = Spring(stiffness=stiffness, damping=max(_damping(leg), stiffness * step))
+        drives.append(_drive(limbs, i, leg, own if np.isfinite(stiffness) else hard))
+    gives = [Gives(joints=light, begin=float(zero)) for zero in limbs.carriage_zero]
+    return Springs(gives=gives, drives=drives, step=step)
+
+
+def flexible_springs(robot: model.Robot, bends: bool) -> Springs:
+    """Legs stretch, with all springs along them, and where they bend (`bends`) do so in the middle of their free part.
+
+    What is in series with a driven stroke is the servo of its drive: between them stands no mass.
+
+    InputError: a leg that these springs cannot stand for.
+    """
+    limbs, legs = kinematics.robot_limbs(robot), _legs(robot)
+    along = [_along(leg, at) for leg, at in zip(robot.legs, legs, strict=True)]
+    times = [np.sqrt(leg.piston.mass / k) for leg, k in zip(robot.legs, along, strict=True)]
+    step = float(np.clip(SHARE * min(times), STEP["shortest"], STEP["longest"]))
+    gives, drives = [], []
+    for i, (leg, at, k) in enumerate(zip(robot.legs, legs, along, strict=True)):
+        stretch = Spring(stiffness=k, damping=k * max(damping_parts(leg.damping)[1], step))
+        held = k
+        if leg.driven == "carriage":
+            own = drive_stiffness(leg, 0.0)
+            held = own if np.isfinite(own) else STIFF * k * _arm(limbs, i) ** 2
+        servo = Spring(stiffness=held, damping=max(_damping(leg), held * max(damping_parts(leg.damping)[1], step)))
+        drives.append(_drive(limbs, i, leg, servo))
+        joints = _joints(leg, step, at) | ({"l": stretch} if leg.strut is not None else {})
+        bending = _bending(leg, at, step, bool(limbs.pose_closure[i])) if bends else {}
+        base = _base(leg, step)
+        gives.append(Gives(joints=joints, base=base, begin=float(limbs.carriage_zero[i]), **bending))
+    return Springs(gives=gives, drives=drives, step=step)
+
+
+def _legs(robot: model.Robot) -> list[LegAtPose]:
+    try:
+        return legs_at_pose(robot, as_pose(robot, None), np.zeros(robot.count))
+    except InputError as error:
+        raise InputError(
+            "is not written to MJCF", key=error.key, value=error.value, allowed=error.allowed,
+            next_step='Write the rigid robot, fidelity = "rigid", or leave it out',
+        ) from None  # fmt: skip
+
+
+def _along(leg: model.Leg, at: LegAtPose) -> float:
+    """Stiffness along a leg [N/m] above the mass of its cylinder: drive, piston and platform joint in series."""
+    softness = at.piston_length / at.EA + _softness(leg, "platform")
+    if not leg.cylinder.mass:
+        softness += _softness(leg, "base")
+    if leg.driven == "stroke" and at.drive and np.isfinite(at.drive):
+        softness += 1 / at.drive
+    return 1 / softness
+
+
+def _bending(leg: model.Leg, at: LegAtPose, step: float, twists: bool) -> dict[str, Spring | float]:
+    """A cantilever's springs at the middle of its free part, where force and moment do not couple."""
+    s, tip = at.free_length, leg.platform_joint.across_and_along
+    softness = s**3 / (12 * at.EI) + (1 / tip[0] if tip else 0.0)
+    found: dict[str, Spring | float] = {"across": _damped(1 / softness, step), "turn": _damped(at.EI / s, step)}
+    if twists:
+        twist = leg.piston.torsional_stiffness / leg.piston.length
+        found["twist"] = Spring(stiffness=twist, damping=twist * step, armature=twist * (LAG * step) ** 2)
+    return found | {"free": s}
+
+
+def _joints(leg: model.Leg, step: float, at: LegAtPose) -> dict[str, Spring]:
+    """Springs of joints that hold their angles, and what parts without mass need to turn with."""
+    below, above = leg.base_joint, leg.platform_joint
+    of = dict.fromkeys(("alpha", "beta"), below.bending) | {"spin": below.torsion}
+    of |= dict.fromkeys(("gamma1", "gamma2"), above.bending) | {"gamma3": above.torsion}
+    light = LAG * (LAG * step) ** 2 * at.EI / at.free_length
+    dampers = dict.fromkeys(("alpha", "beta", "spin"), below.damping)
+    found = {}
+    for name, stiffness in of.items():
+        k, c = stiffness or 0.0, dampers.get(name, above.damping) or 0.0
+        armature = light if name not in ("alpha", "beta") else 0.0
+        found[name] = Spring(stiffness=k, damping=max(c, k * step), armature=armature)
+    return found
+
+
+def _base(leg: model.Leg, step: float) -> dict[str, Spring]:
+    """Springs of the base joint by leg axis; along it only where a mass stands above them."""
+    across, along = leg.base_joint.across_and_along, _softness(leg, "base")
+    found = {} if across is None else dict.fromkeys("xy", _damped(across[0], step))
+    return found | ({"z": _damped(1 / along, step)} if along and leg.cylinder.mass else {})
+
+
+def _softness(leg: model.Leg, at: Place) -> float:
+    """Of the springs along a leg at its base or platform joint [m/N], 0 without any."""
+    stiffness = in_series((spring for spring in springs_along(leg) if spring.at == at), 0.0, 0.0)[0]
+    return 1 / stiffness if stiffness else 0.0
+
+
+def _damped(stiffness: float, step: float) -> Spring:
+    """A spring that steps of this length do not excite: a damper that takes one to bring it to rest."""
+    return Spring(stiffness=stiffness, damping=stiffness * step)
+
+
+def _drive(limbs: kinematics.Limbs, i: int, leg: model.Leg, servo: Spring) -> Drive | None:
+    if not leg.driven:
+        return None
+    push = isinstance(leg.drive, model.ForceDrive)
+    carried = leg.driven == "carriage"
+    home = float(limbs.carriage_zero[i]) if carried else _length(limbs, i)
+    return Drive(on="chi" if carried else "l", servo=None if push and leg.drive.pushes else servo, push=push, home=home)
+
+
+def _damping(leg: model.Leg) -> float:
+    """Of a servo or a feedback [N s/m, N m s/rad]; 0 of other drives."""
+    drive = leg.drive
+    if isinstance(drive, model.ForceDrive):
+        return drive.feedback.damping if drive.feedback else 0.0
+    return drive.damping if isinstance(drive, model.ServoDrive) else 0.0
+
+
+def _length(limbs: kinematics.Limbs, i: int) -> float:
+    return float(limbs.home[i, kinematics.COORDINATES.index("l")])
+
+
+def _arm(limbs: kinematics.Limbs, i: int) -> float:
+    """Of a crank [m]; 1 of what slides."""
+    return float(np.linalg.norm(limbs.carriage_arm[i])) or 1.0
+
+
+def _moved(leg: model.Leg, arm: float) -> float:
+    """Mass of what the drive of a leg moves itself [kg], of a crank its inertia [kg m^2]."""
+    carriage = leg.carriage
+    own = 0.0 if carriage is None else carriage.mass * arm**2 + carriage.inertia
+    return own + leg.piston.mass * arm**2
+
+
+def _carried(robot: model.Robot) -> float:
+    """Mass of all that moves [kg]."""
+    load = 0.0 if robot.payload is None else robot.payload.mass
+    return load + sum(leg.piston.mass + leg.cylinder.mass for leg in robot.legs)
+
+
+def _turning(robot: model.Robot) -> float:
+    """Mean moment of inertia of the payload [kg m^2]."""
+    return 1.0 if robot.payload is None else float(np.trace(robot.payload.inertia)) / 3

@@ -1,0 +1,177 @@
+"""Robots written for MuJoCo: their loops are closed, their stiffness and the forces of their drives are ours.
+
+MuJoCo alone loads the file and finds equilibria and forces; of the product come the file and the numbers compared.
+"""
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+import flexapod as fx
+from flexapod.kinematics import rigid_limbs
+from flexapod.model import AxisMotion, ConstantWrench, ForceDrive, Guide, Load
+from flexapod.results.names import VARIABLES
+
+mujoco = pytest.importorskip("mujoco")
+
+SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
+PRESETS = ("paper-robot", "machine-hexapod", "tripod", "flight-simulator", "nano-hexapod", "small-hexapod")
+FILES = ("delta", "eight-legs", "flexures", "hexaglide", "planar", "tricept")
+GUIDE = Guide(gland=2e8, head=2e8)
+LEAST = 1e-14  # m, rad: a step of Newton's that is rounding
+
+
+def study_of(name):
+    return fx.preset(name) if name in PRESETS else fx.load(SAMPLES / f"{name}.toml")
+
+
+class Model:
+    """A file in MuJoCo at its keyframe: `rest` is where all accelerations vanish, by Newton on differences."""
+
+    def __init__(self, path):
+        self.model = mujoco.MjModel.from_xml_path(str(path))
+        self.model.opt.tolerance, self.model.opt.iterations = 0, 50
+        self.data = mujoco.MjData(self.model)
+        mujoco.mj_resetDataKeyframe(self.model, self.data, 0)
+        self.payload, self.home = self.model.body("payload").id, self.data.qpos.copy()
+
+    def needed(self, q, wrench):
+        """Forces on all coordinates at rest, with a wrench (6,) at the tool."""
+        model, data = self.model, self.data
+        data.qpos[:], data.qvel[:], data.qacc_warmstart[:] = q, 0.0, 0.0
+        mujoco.mj_kinematics(model, data)
+        arm = data.site("tool").xpos - data.xipos[self.payload]
+        data.xfrc_applied[self.payload] = np.r_[wrench[:3], wrench[3:] + np.cross(arm, wrench[:3])]
+        mujoco.mj_forward(model, data)
+        found = np.zeros(model.nv)
+        mujoco.mj_mulM(model, data, found, data.qacc)
+        return found
+
+    def moved(self, q, step):
+        q = q.copy()
+        mujoco.mj_integratePos(self.model, q, step, 1.0)
+        return q
+
+    def slopes(self, q):
+        still, size, e = np.zeros(6), self.model.nv, 1e-7
+        rows = [self.needed(self.moved(q, s * e * x), still) for x in np.eye(size) for s in (1, -1)]
+        return np.array([(a - b) / (2 * e) for a, b in zip(rows[::2], rows[1::2], strict=True)]).T
+
+    def rest(self, q, wrench, slopes):
+        for _ in range(40):
+            step = np.linalg.solve(slopes, -self.needed(q, wrench))
+            q = self.moved(q, step)
+            if np.abs(step).max() < LEAST:
+                break
+        return q
+
+    def tool(self, q):
+        self.data.qpos[:] = q
+        mujoco.mj_kinematics(self.model, self.data)
+        return self.data.site("tool").xpos.copy(), self.data.site("tool").xmat.reshape(3, 3).copy()
+
+    def compliance(self, expected):
+        """Motions of the tool under small wrenches, (6, n), n: those that move it, by the compliances expected (6,)."""
+        start = self.slopes(self.home)
+        middle = self.rest(self.home, np.zeros(6), start)
+        slopes = self.slopes(middle)
+        columns = []
+        for k in np.flatnonzero(expected):
+            force = 1e-6 / expected[k] * np.eye(6)[k]  # moves it by a micrometre or microradian
+            (p, R), (o, S) = (self.tool(self.rest(middle, sign * force, slopes)) for sign in (1, -1))
+            turn = (R @ S.T - S @ R.T) / 2
+            columns.append(np.r_[p - o, turn[2, 1], turn[0, 2], turn[1, 0]] / (2 * force[k]))
+        return np.array(columns).T
+
+
+@pytest.mark.parametrize("name", [*PRESETS, *FILES])
+def test_static_stiffness_is_that_of_the_study(name, tmp_path):
+    """Each entry to 1e-3 of the geometric mean of its diagonal ones; without load, gravity included.
+
+    Loops are springs in MuJoCo, 2 steps fast, 1e-4 of them lost (its hardest): parts in 1e5 of a leg; a prescribed
+    carriage adds 1e-4 of a strut's. Springs stand at home, the equilibrium is micrometres away: 1e-5 of a free part.
+    """
+    study = study_of(name)
+    free = ~rigid_limbs(study.robot).hub_held
+    ours = fx.stiffness(study, load=np.zeros(6)).stiffness.values[np.ix_(free, free)]
+    expected = np.zeros(6)
+    expected[free] = np.diag(np.linalg.inv(ours))
+    model = Model(fx.export(study, "mjcf", tmp_path / "robot.xml"))
+    theirs = np.linalg.inv(model.compliance(expected)[free])
+    scale = np.sqrt(np.diag(ours))
+    assert np.abs((theirs - ours) / np.outer(scale, scale)).max() < 1e-3
+
+
+@pytest.mark.parametrize("name", ["paper-robot", "tripod", "flight-simulator", "delta", "hexaglide", "tricept"])
+def test_rigid_robots_come_to_rest_on_the_forces_of_inverse_dynamics(name, tmp_path):
+    """MuJoCo's equilibrium, which its own steps then keep, with commands that bring the sag back; forces to 1e-6.
+
+    Without that servos give by micrometres of a metre, which turns legs and moves forces by as much.
+    """
+    study = study_of(name)
+    model = Model(fx.export(study, "mjcf", tmp_path / "robot.xml", fidelity="rigid"))
+    data, slopes, q = model.data, model.slopes(model.home), model.home
+    joints = model.model.jnt_qposadr[model.model.actuator_trnid[:, 0]]
+    for _ in range(2):
+        q = model.rest(q, np.zeros(6), slopes)
+        data.ctrl += model.home[joints] - q[joints]
+    data.qpos[:], data.qvel[:] = model.rest(q, np.zeros(6), slopes), 0.0
+    for _ in range(50):
+        mujoco.mj_step(model.model, data)
+    driven = np.array([bool(leg.driven) for leg in study.robot.legs])
+    found = fx.inverse_dynamics(study.robot, AxisMotion(type="heave", amplitude=0.0, duration=1.0))
+    ours = (found.drive_force_rigid if "drive_force_rigid" in found else found.actuator_force_rigid).values[0, driven]
+    stroke = {True: "actuator_force", False: "drive_force"}
+    theirs = [
+        data.sensor(f"{stroke[leg.driven == 'stroke']}_{i}").data[0]
+        for i, leg in enumerate(study.robot.legs, start=1)
+        if leg.driven
+    ]
+    assert theirs == pytest.approx(ours, abs=1e-6 * np.abs(ours).max())
+    assert np.abs(data.efc_pos).max() < 1e-9 and np.abs(data.qvel).max() < 1e-6
+
+
+def test_a_run_of_steps_stays_closed_and_sags_as_the_study_does(tmp_path):
+    """Half a second of steps, the payload in syrup: the sag of `modes` to 1 %, loops closed to 10 nm.
+
+    The weight of a piston, here 3 kg of 20 that a leg carries, stretches it in MuJoCo as if all of it stood at the tip.
+    """
+    study = fx.preset("paper-robot")
+    model = Model(fx.export(study, "mjcf", tmp_path / "robot.xml"))
+    model.model.opt.tolerance = 1e-10
+    mujoco.mj_forward(model.model, model.data)
+    start = model.data.site("com").xpos.copy()
+    model.model.dof_damping[-6:] = 3e4  # N s/m, N m s/rad
+    for _ in range(int(0.5 / model.model.opt.timestep)):
+        mujoco.mj_step(model.model, model.data)
+    sag = fx.modes(study, load=np.zeros(6)).com_sag.values
+    assert model.data.site("com").xpos - start == pytest.approx(sag, abs=1e-2 * np.abs(sag).max())
+    assert np.abs(model.data.efc_pos).max() < 1e-8
+
+
+def test_names_are_those_of_results_and_nothing_else_is_told(tmp_path):
+    found = fx.export(fx.preset("paper-robot"), "mjcf", tmp_path / "robot.xml")
+    text = found.path.read_text(encoding="ascii")
+    tree = ElementTree.fromstring(text)
+    named = [part.get("name") for part in (*tree.find("sensor"), *tree.find("actuator"))]
+    assert {name.rstrip("0123456789").rstrip("_") for name in named} <= set(VARIABLES)
+    assert "leg_length_command_6" in named and "com_position" in named
+    assert str(tmp_path) not in text and "/" not in text.replace("</", "").replace("/>", "")
+
+
+def test_what_is_lost_is_said(tmp_path):
+    robot = fx.preset("paper-robot").robot
+    lost = fx.export(robot, "mjcf", tmp_path / "a.xml").left_out
+    assert any("motion" in words for words in lost) and not any("[load]" in words for words in lost)
+    loaded = fx.preset("paper-robot").replace(load=Load(wrench=ConstantWrench(value=[1, 0, 0, 0, 0, 0])))
+    assert any("[load]" in words for words in fx.export(loaded, "mjcf", tmp_path / "m.xml").left_out)
+    guided = robot.replace(legs=tuple(leg.replace(guide=GUIDE) for leg in robot.legs))
+    with pytest.raises(fx.InputError, match=r"leg.guide.*not written to MJCF.*rigid"):
+        fx.export(guided, "mjcf", tmp_path / "g.xml")
+    assert "all that gives way" in fx.export(guided, "mjcf", tmp_path / "g.xml", fidelity="rigid").left_out[1]
+    pushed = robot.replace(legs=tuple(leg.replace(drive=ForceDrive(law="rigid")) for leg in robot.legs))
+    model = Model(fx.export(pushed, "mjcf", tmp_path / "b.xml"))
+    ours = fx.inverse_dynamics(robot, AxisMotion(type="heave", amplitude=0.0, duration=1.0)).actuator_force_rigid
+    assert model.data.ctrl == pytest.approx(ours.values[0], rel=1e-12)  # motors hold the robot at home
