@@ -276,8 +276,10 @@ def test_samples_off_the_outputs_and_beside_jumps(study):
         ({"quantise": {"strike": 1.0}}, "no channel of this controller"),
         ({"delay_samples": -1}, "no number of samples"),
         ({"controller": None, "sample": T}, "there is none"),
-        ({"controller": Function(function=len, inputs=("strok:1",), outputs=("drive:1",))}, "'stroke:1'"),
-        ({"controller": Function(function=len, inputs=("stroke:1",), outputs=("motor:1",))}, "controller moves"),
+        ({"controller": Function(function=len, inputs=("strok:1",), outputs=("drive:1",))}, "'stroke'"),
+        ({"controller": Function(function=len, inputs=("stroke:1",), outputs=("motor:1",))}, "not a channel"),
+        ({"controller": Function(function=len, inputs=("geophone:tool:z",), outputs=("drive:1",))}, "not read in time"),
+        ({"controller": Function(function=len, inputs=("stroke",), outputs=("drive:1",))}, "not one channel"),
         ({"saturate": -1.0}, "below 0"),
     ],
 )
