@@ -84,7 +84,11 @@ class Sampled:
 
 
 class _Reading(Structure):
-    _fields_ = [*[(name, c_long) for name in ("of", "leg", "port", "axis")], ("arm", c_double * 3), ("along", c_double * 3)]
+    _fields_ = [
+        *[(name, c_long) for name in ("of", "leg", "port", "axis")],
+        ("arm", c_double * 3),
+        ("along", c_double * 3),
+    ]
 
 
 class _Action(Structure):
@@ -273,7 +277,10 @@ def _action(name: str, system: System, robot: Robot) -> _Action:
     channel, shapes = _single(name, robot, "inputs"), system.kernel.shapes
     if channel.group not in ("drive", "command"):
         raise InputError(
-            "is not moved in time", key="controller.outputs", value=name, allowed="drive, command; a single one as drive:1"
+            "is not moved in time",
+            key="controller.outputs",
+            value=name,
+            allowed="drive, command; a single one as drive:1",
         )
     leg = channel.leg
     at = push_ports(system, robot)[leg]
