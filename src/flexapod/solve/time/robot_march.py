@@ -81,13 +81,7 @@ def prepare(study: Study, state: State | None = None, sampled: Sampled | None = 
     path = _Path(study)
     law = robot_law(system, robot, study.load, path.poses, path.knots)
     method = GeneralizedAlpha(simulation.rho_inf)
-    if state is None:
-        state = _configuration(study, system)
-        if system.kernel.shapes.has("j"):
-            rests = study.initial.start == "equilibrium"
-            table, wrench = (part[0] for part in law(np.zeros(1)))
-            table[..., 1:3] *= not rests
-            state = settled(system, state, table, wrench, rests=rests)
+    state = _begun(study, system, law) if state is None else state
     refuse_flipped(system, robot, RestStates.of(state))
     system = independent(system, state)
     counters, output_step = Counters(), simulation.stored_step
@@ -199,6 +193,17 @@ def refuse_growing_plates(study: Study) -> None:
                 allowed="over time the temperatures of pistons, cylinders and screws",
                 next_step=f"Give heat.{plate} a number here; flexapod.accuracy follows the whole table",
             )
+
+
+def _begun(study: Study, system: System, law: Law) -> State:
+    """State before the impact projection, with what motors that lag ask for."""
+    state = _configuration(study, system)
+    if not system.kernel.shapes.has("j"):
+        return state
+    rests = study.initial.start == "equilibrium"
+    table, wrench = (part[0] for part in law(np.zeros(1)))
+    table[..., 1:3] *= not rests
+    return settled(system, state, table, wrench, rests=rests)
 
 
 def _configuration(study: Study, system: System) -> State:
