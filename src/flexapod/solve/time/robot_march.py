@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -30,10 +31,12 @@ from flexapod.solve.time.pieces import Pieces
 from flexapod.solve.time.problem import Chunk, Problem, Weight
 from flexapod.solve.time.recording import Counters, Recording
 from flexapod.solve.time.redundant import independent, shared
-from flexapod.solve.time.sampled import Sampled, SampledLoop
 from flexapod.solve.time.start import consistent_start
 from flexapod.solve.time.stops import Stops
 from flexapod.solve.time.tables import Law, robot_law
+
+if TYPE_CHECKING:
+    from flexapod.solve.time.sampled import Sampled, SampledLoop
 
 AHEAD = 2000  # outputs whose rigid places are made at once
 ROUNDING = 1e-12  # of the sum of what rounding makes along the legs [m]
@@ -55,7 +58,7 @@ class RobotMarch:
     counters: Counters = field(default_factory=Counters)
 
 
-def prepare(study: Study, state: State | None = None, sampled: Sampled | None = None) -> RobotMarch:
+def prepare(study: Study, state: State | None = None, sampled: "Sampled | None" = None) -> RobotMarch:
     """Start and time integration of a robot study.
 
     Parameters
@@ -107,7 +110,7 @@ def prepare(study: Study, state: State | None = None, sampled: Sampled | None = 
     step = initial_step(problem, simulation.step)
     start, impact = consistent_start(system, state, law, 0.0, method, step)
     if loop is not None:
-        refuse_off_the_steps(loop.sampled, step)
+        loop.refuse_off(step)
         start = replace(start, loop=loop.start())
     chunks = march(problem, start, step, counters)
     if system.slack is not None:
@@ -117,10 +120,12 @@ def prepare(study: Study, state: State | None = None, sampled: Sampled | None = 
     )
 
 
-def _around(sampled: Sampled | None, system: System, study: Study, path: "_Path") -> SampledLoop | None:
+def _around(sampled: "Sampled | None", system: System, study: Study, path: "_Path") -> "SampledLoop | None":
     """A controller around a robot, which compiled equations alone have."""
     if sampled is None:
         return None
+    from flexapod.solve.time.sampled import SampledLoop
+
     if system.kernel.library is None:
         raise InputError(
             "needs compiled equations",
@@ -128,22 +133,6 @@ def _around(sampled: Sampled | None, system: System, study: Study, path: "_Path"
             next_step="Install gcc or clang, or `pip install ziglang`",
         )
     return SampledLoop(sampled, system, study.robot, lambda t: path.exact(np.minimum(t, study.duration)))
-
-
-def refuse_off_the_steps(sampled: Sampled, step: float) -> None:
-    """Raise InputError if a controller's period is no multiple of a fixed step [s]; of steps of their own it is 0."""
-    if not step:
-        return
-    many = sampled.period / step
-    if abs(many - round(many)) > 1e-6 * max(many, 1.0) or round(many) < 1:
-        nearest = max(1, round(many))
-        raise InputError(
-            "is no multiple of the fixed step",
-            key="sample",
-            value=f"{sampled.period:.6g} s",
-            allowed=f"multiples of {step:.6g} s; the nearest is {nearest * step:.6g} s",
-            next_step=f"Give the nearest, step = {sampled.period / max(1, np.ceil(many)):.6g} s, or a tolerance",
-        )
 
 
 def refuse_massless(study: Study) -> None:
