@@ -19,7 +19,7 @@ STEP = {"rigid": 2e-5, "shortest": 1e-6, "longest": 1e-4}  # s
 SHARE = 0.2  # of a leg's own time sqrt(m / k) that a step may have
 LAG = 5  # steps in which a spring swings what is given some inertia only for its sake
 STIFF = 1e4  # of a prescribed carriage, in its leg's stiffness: adds 1e-4 of the leg's compliance
-LIGHT = 1e-6  # of the payload's inertia: what turns between piston and platform without mass of its own
+LIGHT = 1e-7  # of the payload's inertia: what turns between piston and platform without mass of its own
 
 
 @dataclass(frozen=True, kw_only=True)
