@@ -1,11 +1,11 @@
 /* A sampled controller around the march: what it reads, the one linear law that it computes, what it moves, Eqs. (T26.1)-(T26.7).
    Between two samples its outputs are held. */
-enum { AT_COORDINATE, AT_FORCE, AT_PLACE, AT_TURN, AT_ACCELERATION };  /* what is read */
+enum { AT_COORDINATE, AT_FORCE, AT_CLOSURE, AT_JOINT, AT_PLACE, AT_TURN, AT_ACCELERATION };  /* what is read */
 enum { ASKED = 5 };                     /* status: who was asked for outputs failed */
 
 /* axis: the coordinate, of the leg or of a point on the payload; arm: to that from the centre of mass; port: whose command is
-   what a coordinate is read against */
-typedef struct { long of, leg, port, axis; double arm[3]; } Reading;
+   what a coordinate is read against; along: a direction in platform axes, or where the base joint is */
+typedef struct { long of, leg, port, axis; double arm[3], along[3]; } Reading;
 typedef struct { long leg, port, column; double gain; } Action;        /* gain: force by a unit of it */
 typedef int (*Asked)(double t, const double *readings, double *outputs);
 
@@ -88,7 +88,20 @@ static double of_payload(const Loop *c, const Reading *r, const Work *w, const d
   for (int i = 0; i < 3; i++) b[i] = w->payload.u_dot[i] - c->gravity[i];      /* as a body feels it, in its own axes */
   rotate(pose + 3, -1, b, d);
   cross(u, r->arm, a); cross(u, a, b); cross(turn, r->arm, a);
-  return d[r->axis] + a[r->axis] + b[r->axis];
+  double felt = 0;
+  for (int i = 0; i < 3; i++) felt += r->along[i]*(d[i] + a[i] + b[i]);
+  return felt;
+}
+
+/* Force of a leg on the platform, along the line between its joints */
+static double along_leg(const Reading *r, const Work *w) {
+  double arm[3], length = 0, force = 0;
+  rotate(w->payload.pose + 3, 1, r->arm, arm);
+  for (int i = 0; i < 3; i++) {
+    double way = w->payload.pose[i] + arm[i] - r->along[i];
+    length += way*way; force += way*w->leg[r->leg/LANES].lam[i][r->leg%LANES];
+  }
+  return force/sqrt(length);
 }
 
 /* All readings as they are, against the commanded path */
@@ -115,6 +128,8 @@ static void read_all(const Settings *s, const Loop *c, const double *path, const
       }
     }
     else if (r->of == AT_FORCE) y[k] = force[group][r->port][lane];
+    else if (r->of == AT_CLOSURE) y[k] = w->leg[group].lam[r->axis][lane];
+    else if (r->of == AT_JOINT) y[k] = along_leg(r, w);
     else y[k] = of_payload(c, r, w, path);
   }
 }
