@@ -68,7 +68,9 @@ def left_out(study: model.Study, rigid: bool) -> list[str]:
         x.friction for leg in robot.legs for x in (leg.base_joint, leg.platform_joint, leg.drive)
     )
     found += ["play"] * any(leg.half_play for leg in robot.legs)
+    found += ["oil that leaks"] * any(leg.cylinder_of_oil is not None for leg in robot.legs)
     found += ["limits of strokes and joints"]
+    found += ["[control]: the loop of a controller"] * (study.control is not None)
     found += ["[load]: forces come from outside, as xfrc_applied"] * (study.load.wrench is not None)
     found += ["robot.base_motion: the base is at rest"] * (robot.base_motion is not None)
     mounts = [f"robot.{name}: its frame does not move" for name in ("base_mount", "platform_mount")
