@@ -95,9 +95,9 @@ def test_rigid_trees_need_the_forces_of_inverse_dynamics_in_motion(name, tmp_pat
 
 
 def test_a_run_of_steps_stays_closed_and_sags_as_the_study_does(tmp_path):
-    """Half a second of steps, the payload in syrup: the sag of `modes` to 1 %, loops closed to 10 nm.
+    """Half a second of steps, the payload in syrup: the sag of `modes` to 1e-3, loops closed to 10 nm.
 
-    The weight of a piston, here 3 kg of 20 that a leg carries, stretches it in MuJoCo as if all of it stood at the tip.
+    The weight of a piston stretches it by half of what it would at the tip: the cut in its middle is made for that.
     """
     study = fx.preset("paper-robot")
     model = model_of(fx.export(study, "mjcf", tmp_path / "robot.xml"))
@@ -108,8 +108,24 @@ def test_a_run_of_steps_stays_closed_and_sags_as_the_study_does(tmp_path):
     for _ in range(int(0.5 / model.model.opt.timestep)):
         mujoco.mj_step(model.model, model.data)
     sag = fx.modes(study, load=np.zeros(6)).com_sag.values
-    assert model.data.site("com").xpos - start == pytest.approx(sag, abs=1e-2 * np.abs(sag).max())
+    assert model.data.site("com").xpos - start == pytest.approx(sag, abs=1e-3 * np.abs(sag).max())
     assert np.abs(model.data.efc_pos).max() < 1e-8
+
+
+@pytest.mark.parametrize("name", ["paper-robot", "tripod", "nano-hexapod", "flexures", "delta", "hexaglide"])
+def test_lowest_mode_is_that_of_the_study(name, tmp_path):
+    """Of MuJoCo's masses and slopes at rest; the lowest mode, of payload on legs, to 2e-3.
+
+    A piston's mass, some per cent of what a leg carries, stands in two pieces in place of a beam.
+    """
+    study = study_of(name)
+    model = model_of(fx.export(study, "mjcf", tmp_path / "robot.xml"))
+    q = model.rest(model.home, np.zeros(6), model.slopes(model.home))
+    slopes, M = model.slopes(q), np.zeros((model.model.nv, model.model.nv))
+    mujoco.mj_fullM(model.model, model.data, M)
+    squared = np.linalg.eigvals(np.linalg.solve(M, -slopes)).real
+    lowest = np.sqrt(squared[squared > 1.0].min()) / (2 * np.pi)
+    assert lowest == pytest.approx(fx.modes(study, load=np.zeros(6)).frequency.values[0], rel=2e-3)
 
 
 def test_names_are_those_of_results_and_nothing_else_is_told(tmp_path):

@@ -61,7 +61,6 @@ def left_out(study: model.Study, rigid: bool) -> list[str]:
     else:
         found += ["how stiffness changes with the stroke: springs are those at home"]
         found += ["modes of the pistons: each bends in one place, statically exact at home"]
-        found += ["stretch by its own weight that a piston does not have at its end: it stretches as if it were there"]
         found += ["inertia of rotors"] * any(leg.screw is not None for leg in robot.legs)
         found += ["damping ratios of the pistons"]
     found += ["friction"] * any(
