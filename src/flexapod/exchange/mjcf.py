@@ -61,14 +61,15 @@ def left_out(study: model.Study, rigid: bool) -> list[str]:
     else:
         found += ["how stiffness changes with the stroke: springs are those at home"]
         found += ["modes of the pistons: each bends in one place, statically exact at home"]
-        found += ["stretch by its own weight that a piston does not have at its end: it stretches as if it were there"]
         found += ["inertia of rotors"] * any(leg.screw is not None for leg in robot.legs)
         found += ["damping ratios of the pistons"]
     found += ["friction"] * any(
         x.friction for leg in robot.legs for x in (leg.base_joint, leg.platform_joint, leg.drive)
     )
     found += ["play"] * any(leg.half_play for leg in robot.legs)
+    found += ["oil that leaks"] * any(leg.cylinder_of_oil is not None for leg in robot.legs)
     found += ["limits of strokes and joints"]
+    found += ["[control]: the loop of a controller"] * (study.control is not None)
     found += ["[load]: forces come from outside, as xfrc_applied"] * (study.load.wrench is not None)
     found += ["robot.base_motion: the base is at rest"] * (robot.base_motion is not None)
     mounts = [f"robot.{name}: its frame does not move" for name in ("base_mount", "platform_mount")

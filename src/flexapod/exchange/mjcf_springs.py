@@ -16,10 +16,11 @@ from flexapod.model.damping import damping_parts
 from flexapod.results.arguments import as_pose
 
 STEP = {"rigid": 2e-5, "shortest": 1e-6, "longest": 1e-4}  # s
-SHARE = 0.2  # of a leg's own time sqrt(m / k) that a step may have
+SHARE = 0.3  # of a leg's own time sqrt(m / k) that a step may have
+MOST = 0.9  # of a piston's stretch that is between its parts: the rest keeps the inner one from being held
 LAG = 5  # steps in which a spring swings what is given some inertia only for its sake
 STIFF = 1e4  # of a prescribed carriage, in its leg's stiffness: adds 1e-4 of the leg's compliance
-LIGHT = 1e-6  # of the payload's inertia: what turns between piston and platform without mass of its own
+LIGHT = 1e-7  # of the payload's inertia: what turns between piston and platform without mass of its own
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,28 +63,41 @@ def rigid_springs(robot: model.Robot) -> Springs:
 def flexible_springs(robot: model.Robot, bends: bool) -> Springs:
     """Legs stretch, with all springs along them, and where they bend (`bends`) do so in the middle of their free part.
 
-    What is in series with a driven stroke is the servo of its drive: between them stands no mass.
+    What is before the mass of a piston is the servo of its drive: between them stands no mass.
 
     InputError: a leg that these springs cannot stand for.
     """
     limbs, legs = kinematics.robot_limbs(robot), _legs(robot)
-    along = [_along(leg, at) for leg, at in zip(robot.legs, legs, strict=True)]
-    times = [np.sqrt(leg.piston.mass / k) for leg, k in zip(robot.legs, along, strict=True)]
-    step = float(np.clip(SHARE * min(times), STEP["shortest"], STEP["longest"]))
+    along = [_along(leg, at, bends) for leg, at in zip(robot.legs, legs, strict=True)]
+    step = _step(robot, along, legs)
     gives, drives = [], []
-    for i, (leg, at, k) in enumerate(zip(robot.legs, legs, along, strict=True)):
-        stretch = Spring(stiffness=k, damping=k * max(damping_parts(leg.damping)[1], step))
+    for i, (leg, at, (k, outer)) in enumerate(zip(robot.legs, legs, along, strict=True)):
+        delay = max(damping_parts(leg.damping)[1], step)
         held = k
         if leg.driven == "carriage":
             own = drive_stiffness(leg, 0.0)
             held = own if np.isfinite(own) else STIFF * k * _arm(limbs, i) ** 2
-        servo = Spring(stiffness=held, damping=max(_damping(leg), held * max(damping_parts(leg.damping)[1], step)))
-        drives.append(_drive(limbs, i, leg, servo))
-        joints = _joints(leg, step, at) | ({"l": stretch} if leg.strut is not None else {})
+        drives.append(_drive(limbs, i, leg, Spring(stiffness=held, damping=max(_damping(leg), held * delay))))
+        joints = _joints(leg, step, at)
+        joints |= {"l": Spring(stiffness=k, damping=k * delay)} if leg.strut is not None else {}
         bending = _bending(leg, at, step, bool(limbs.pose_closure[i])) if bends else {}
-        base = _base(leg, step)
-        gives.append(Gives(joints=joints, base=base, begin=float(limbs.carriage_zero[i]), **bending))
+        bending |= {"along": Spring(stiffness=outer, damping=outer * delay)} if bends else {}
+        gives.append(Gives(joints=joints, base=_base(leg, step), begin=float(limbs.carriage_zero[i]), **bending))
     return Springs(gives=gives, drives=drives, step=step)
+
+
+def _step(robot: model.Robot, along: list[tuple[float, float]], legs: list[LegAtPose]) -> float:
+    """A share of the shortest time in which a part of a piston swings on what is along it [s]."""
+    times = []
+    for leg, at, stiffness in zip(robot.legs, legs, along, strict=True):
+        outer = _outer(at) * leg.piston.mass
+        times += [np.sqrt(m / k) for m, k in zip((leg.piston.mass - outer, outer), stiffness, strict=True)]
+    return float(np.clip(SHARE * min(times), STEP["shortest"], STEP["longest"]))
+
+
+def _outer(at: LegAtPose) -> float:
+    """Share of the outer part in a piston that is cut in the middle of its free part."""
+    return at.free_length / (2 * at.piston_length)
 
 
 def _legs(robot: model.Robot) -> list[LegAtPose]:
@@ -96,14 +110,20 @@ def _legs(robot: model.Robot) -> list[LegAtPose]:
         ) from None  # fmt: skip
 
 
-def _along(leg: model.Leg, at: LegAtPose) -> float:
-    """Stiffness along a leg [N/m] above the mass of its cylinder: drive, piston and platform joint in series."""
-    softness = at.piston_length / at.EA + _softness(leg, "platform")
+def _along(leg: model.Leg, at: LegAtPose, bends: bool) -> tuple[float, float]:
+    """Stiffness along a leg [N/m] above the mass of its cylinder, before the inner part of its piston and between both.
+
+    In series they are the whole. The piston's own is shared so that its weight stretches it as it should, by half of
+    what it would at the tip: ``c_inner + share c_outer = c / 2``; inf: all stands before one piece.
+    """
+    piston, tip = at.piston_length / at.EA, _softness(leg, "platform")
+    between = min(0.5 / (1 - _outer(at)), MOST) * piston + tip if bends else 0.0
+    before = piston + tip - between
     if not leg.cylinder.mass:
-        softness += _softness(leg, "base")
+        before += _softness(leg, "base")
     if leg.driven == "stroke" and at.drive and np.isfinite(at.drive):
-        softness += 1 / at.drive
-    return 1 / softness
+        before += 1 / at.drive
+    return 1 / before, 1 / between if between else np.inf
 
 
 def _bending(leg: model.Leg, at: LegAtPose, step: float, twists: bool) -> dict[str, Spring | float]:
@@ -127,7 +147,8 @@ def _joints(leg: model.Leg, step: float, at: LegAtPose) -> dict[str, Spring]:
     found = {}
     for name, stiffness in of.items():
         k, c = stiffness or 0.0, dampers.get(name, above.damping) or 0.0
-        armature = light if name not in ("alpha", "beta") else 0.0
+        own = k * (LAG * step) ** 2 if k else light
+        armature = own if name not in ("alpha", "beta") else 0.0
         found[name] = Spring(stiffness=k, damping=max(c, k * step), armature=armature)
     return found
 

@@ -36,14 +36,15 @@ class Spring:
 class Gives:
     """What gives way in a leg beside the coordinates of the rigid one.
 
-    `joints`: springs by coordinate; `base`: at the base joint by leg axis, x, y, z; `across`, `turn`, `twist`: of the
-    piston in the middle of its `free` part [m], where force and moment do not couple. None: that does not give way.
-    `begin`: what the coordinate of the carriage is at home [m, rad].
+    `joints`: springs by coordinate; `base`: at the base joint by leg axis, x, y, z; `across`, `along`, `turn`,
+    `twist`: of the piston in the middle of its `free` part [m], where force and moment do not couple. None: that does
+    not give way. `begin`: what the coordinate of the carriage is at home [m, rad].
     """
 
     joints: Mapping[str, Spring] = field(default_factory=dict)
     base: Mapping[str, Spring] = field(default_factory=dict)
     across: Spring | None = None
+    along: Spring | None = None
     turn: Spring | None = None
     twist: Spring | None = None
     free: float = 0.0
@@ -153,6 +154,7 @@ def _piston(
     middle, half = -0.5 * gives.free * ALONG, 0.5 * gives.free
     seen = [_capsule(-half, half, _radius(leg))] * looks
     bends = [joint(f"bend_{name}_{number}", "slide", way, gives.across) for name, way in zip("xy", ACROSS, strict=True)]
+    bends += [joint(f"bend_z_{number}", "slide", ALONG, gives.along)] * (gives.along is not None)
     bends += [joint(f"turn_{name}_{number}", "hinge", way, gives.turn) for name, way in zip("xy", ACROSS, strict=True)]
     bends += [joint(f"twist_{number}", "hinge", ALONG, gives.twist)] * (gives.twist is not None)
     outer = Body(
