@@ -7,8 +7,8 @@ import pytest
 from tests.whole import entries
 
 TESTS = Path(__file__).parents[1]
-WHOLE = [name for name, _ in entries()]
-FILES = sorted({name.partition("::")[0] for name in WHOLE})
+WHOLE = list(entries())
+FILES = sorted({name.partition("::")[0] for name, _ in WHOLE})
 
 
 def names(file):
@@ -21,6 +21,6 @@ def names(file):
 
 @pytest.mark.parametrize("file", FILES)
 def test_entries_name_tests(file):
-    named = [name.partition("::")[2] for name in WHOLE if name.startswith(f"{file}::")]
+    named = [(name.partition("::")[2], cases) for name, cases in WHOLE if name.startswith(f"{file}::")]
     assert len(named) == len(set(named))
-    assert set(named) <= names(file)
+    assert {name for name, _ in named} <= names(file)
