@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from tests.texts import replaced
+from tests.web.guests import until
 from xarray import Dataset
 
 from flexapod.cli.commands_proof import _write
@@ -148,13 +149,20 @@ def desk(browser, tmp_path_factory) -> Iterator[tuple[View, Callable[..., object
     server.stop()
 
 
-@pytest.fixture(scope="session")
-def table(desk) -> tuple[object, Session]:
-    """A page that stays open from test to test, and its session: a page takes longer to load than most tests."""
-    page = desk[1]()
+@pytest.fixture(scope="module")
+def table(desk) -> Iterator[tuple[object, Session]]:
+    """A page that stays open from test to test, and its session: a page takes longer to load than most tests.
+
+    No longer than for a file: as long as it is open it draws, on half a core where software does.
+    """
+    server, visit, _ = desk
+    until(lambda: not server.sessions)
+    page = visit()
     page.get_by_text("misses its rigid path by up to").wait_for()
     page.wait_for_timeout(300)  # as where people look: they see a page before they ask for another
-    return page, desk[0].sessions[0]
+    yield page, server.sessions[0]
+    page.context.close()
+    until(lambda: not server.sessions)
 
 
 @pytest.fixture
