@@ -10,11 +10,13 @@ COMPILER ?= $(shell command -v cc || command -v gcc || command -v clang)
 COMMA := ,
 PARTS = page,verify,control$(if $(COMPILER),,$(COMMA)compiler)
 
+PYTEST = $(BIN)/python -m pytest -n 2 --dist loadgroup
+
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint format bench clean
+.PHONY: help setup demo check test test-all style lint format bench clean
 
 help:  ## list the targets
-	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## ?/  make \1\t/' | expand -t 18
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## ?/  make \1\t/' | expand -t 18
 
 setup: $(DEV)  ## own virtual environment with everything in it
 
@@ -33,13 +35,21 @@ demo: $(RUN)  ## the paper's whole study: figures, data and report in build/demo
 	rm -rf build/demo
 	$(BIN)/flexapod replicate --out build/demo
 
-test: lint  ## lint, then all tests
-	$(BIN)/python -m pytest -n 2 --dist loadgroup
+check: style  ## style, types, import layers, tests of functions and contracts: within 90 s
+	$(PYTEST) -m "not whole" tests/unit tests/contract tests/meta/test_types.py
 
-lint: $(DEV)  ## style, types and import layers
+test: style  ## the same and all kinds of tests, one case of each family: within 6 minutes
+	$(PYTEST) -m "not whole"
+
+test-all: style  ## all tests: within 12 minutes
+	$(PYTEST)
+
+lint: style  ## style, types and import layers, no tests
+	$(BIN)/pyright src
+
+style: $(DEV)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/pyright src
 	$(BIN)/lint-imports
 
 format: $(DEV)  ## rewrite the code in the project's style

@@ -1,9 +1,10 @@
-"""Folder = marker: a test carries the name of its folder as its marker."""
+"""Folder = marker: a test carries the name of its folder as its marker; `whole.toml` says which are whole, too."""
 
 import os
 from pathlib import Path
 
 import pytest
+from tests.whole import mark_whole
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # small matrices: threads of BLAS only cost
 HERE = Path(__file__).parent
@@ -13,9 +14,19 @@ KINDS = (
 )  # fmt: skip
 
 
+@pytest.hookimpl(tryfirst=True)  # cases are counted in the order in which they are collected
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         kind = item.path.relative_to(HERE).parts[0]
         if kind not in KINDS:
             raise pytest.UsageError(f"{item.path}: tests live in tests/<kind>/, kind one of {', '.join(KINDS)}")
         item.add_marker(kind)
+    mark_whole(items)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
+    """With `--dist loadgroup`: files stay together, and what takes long comes first."""
+    from tests.durations import LongestFirst
+
+    return LongestFirst(config, log) if config.getvalue("dist") == "loadgroup" else None

@@ -5,41 +5,53 @@ import os
 from pathlib import Path
 
 import pytest
-from tests.pack_outcomes import outcomes
+from tests.pack_outcomes import outcome
 
 from flexapod.errors import ComputationError
 from flexapod.verify import pack
 from flexapod.verify.case import Case, Check, checks
+from flexapod.verify.cases import CASES
 from flexapod.verify.engines.engine import CALCULIX, EXUDYN, MUJOCO, Engine
 from flexapod.verify.page import markdown, notes
 
-pytestmark = pytest.mark.xdist_group("pack")  # one process computes the pack
-PAGE = Path(__file__).parents[2] / "docs" / "verification.md"
+PAGE = (Path(__file__).parents[2] / "docs" / "verification.md").read_text(encoding="utf-8")
+ROWS = {row[0]: row for line in PAGE.splitlines() if len(row := line.strip("| ").split(" | ")) == 6}
+SECTIONS = {name: text for name, _, text in (part.partition("\n") for part in PAGE.split("\n### ")[1:])}
+FAST = [case for case in CASES if not case.slow]
 
 
-def test_every_case_passes_and_says_why():
-    found = outcomes()
-    assert len(found) == len({outcome.case.name for outcome in found}) >= 11
-    for outcome in found:
-        assert outcome.passed or (outcome.not_run and outcome.not_run == outcome.case.obstacle), outcome
-        assert all((outcome.case.statement, outcome.case.source, outcome.case.argument))
+def subject(case):
+    """The file that a case stands in."""
+    return getattr(case.compute, "func", case.compute).__module__.rpartition(".")[2]
 
 
-def test_the_page_is_what_the_program_writes():
-    """Made by `flexapod verify --markdown docs/verification.md`.
+def shared(case):
+    """What cases of a subject have in common is computed once, by one process; another subject may be by another."""
+    return pytest.param(case.name, id=case.name, marks=pytest.mark.xdist_group(f"pack of {subject(case)}"))
+
+
+@pytest.mark.parametrize("name", [shared(case) for case in FAST])
+def test_a_case_passes_says_why_and_is_what_the_page_shows(name):
+    """The page is made by `flexapod verify --markdown docs/verification.md`.
 
     What varies from machine to machine is left out: which number of a case lies nearest to its tolerance, our own
     numbers, and references that an engine computes.
     """
-    page, written = PAGE.read_text(encoding="utf-8"), markdown(outcomes())
-    assert page.partition("\n## Cases")[2] == written.partition("\n## Cases")[2]
-    shown = [line.strip("| ").split(" | ") for line in page.splitlines() if line.startswith("| ")][2:]
-    assert [row[0] for row in shown] == [o.case.name for o in outcomes()]
-    for row, found in zip(shown, outcomes(), strict=True):
-        assert row[-1] == found.verdict
-        if found.checks and found.case.engine is None:
-            references = {c.what: f"{c.reference:.8g}" for c in found.checks}
-            assert row[2].split(" ")[0] == references[row[1]]
+    found = outcome(name)
+    assert found.passed or (found.not_run and found.not_run == found.case.obstacle), found
+    assert all((found.case.statement, found.case.source, found.case.argument))
+    assert SECTIONS[name].strip() == markdown([found]).partition(f"\n### {name}\n")[2].strip()
+    row = ROWS[name]
+    assert row[-1] == found.verdict
+    if found.checks and found.case.engine is None:
+        references = {c.what: f"{c.reference:.8g}" for c in found.checks}
+        assert row[2].split(" ")[0] == references[row[1]]
+
+
+def test_the_page_has_every_case_in_its_place():
+    names = [case.name for case in FAST]
+    assert len(names) == len(set(names)) >= 11
+    assert [name for name in ROWS if name not in ("Case", "---")] == list(SECTIONS) == names
 
 
 def test_json_of_one_case(flexapod):
@@ -89,7 +101,7 @@ def test_a_failed_case_leaves_the_others(flexapod, monkeypatch):
     assert "no engine here" in found["broken"]["failure"]
 
 
-def outcome(*found):
+def outcome_of(*found):
     return pack.Outcome(case=case("x", refuse), checks=found, seconds=0.0)
 
 
@@ -97,12 +109,12 @@ def test_nan_does_not_pass_and_is_the_worst():
     good = Check(what="good", reference=1.0, ours=1.0, tolerance=1.0)
     nan = Check(what="nan", reference=1.0, ours=float("nan"), tolerance=1.0)
     assert not nan.passed
-    assert outcome(good, nan).worst is nan
-    assert not outcome(good, nan).passed
+    assert outcome_of(good, nan).worst is nan
+    assert not outcome_of(good, nan).passed
 
 
 def test_a_case_that_compares_nothing_does_not_pass():
-    assert not outcome().passed
+    assert not outcome_of().passed
 
 
 def test_a_reference_of_zero_has_no_relative_error():
@@ -154,8 +166,8 @@ def test_slow_cases_come_with_all_or_by_name(flexapod, monkeypatch):
 
 def test_a_reference_at_fault_is_told_and_does_not_count():
     wrong = Check(what="x", reference=1.0, ours=1.1, tolerance=1e-3, fault="It is not converged.")
-    assert not outcome(wrong).passed  # nothing else was compared
-    both = outcome(wrong, *right())
+    assert not outcome_of(wrong).passed  # nothing else was compared
+    both = outcome_of(wrong, *right())
     assert both.passed
     assert "x: the reference gives 1, we 1.1. It is not converged." in notes(both)
 

@@ -12,7 +12,7 @@ from flexapod.verify.engines import mujoco_forces
 from flexapod.verify.engines.mujoco_model import mjcf
 from flexapod.verify.robots import unlike_legs, without_cylinders
 
-pytestmark = pytest.mark.xdist_group("pack")  # one process computes its cases
+pytestmark = pytest.mark.xdist_group("pack of mujoco_forces")  # one process computes its cases
 mujoco = pytest.importorskip("mujoco")
 ROBOT = preset("paper-robot").robot
 ROLL = AxisMotion(type="roll", amplitude=0.3, duration=0.4, pivot=[0.02, 0.01, 0.1])

@@ -7,7 +7,7 @@ from tests.pack_outcomes import outcome
 from flexapod import model
 from flexapod.verify.cases import sliding as beam_fem
 
-pytestmark = pytest.mark.xdist_group("pack")  # one process computes its cases
+pytestmark = pytest.mark.xdist_group("pack of sliding")  # one process computes its cases
 
 
 def test_the_gap_of_six_elements_is_that_of_modes_that_run_ahead():

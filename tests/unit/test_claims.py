@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from tests.paper_parts import study_parts, whole_study
+from tests.paper_parts import part, study_parts, whole_study
 
 from flexapod.paper import claims_actuator
 from flexapod.paper.claim import BREAKS, HOLDS, IN_PART, NOT, OPEN
@@ -66,7 +66,7 @@ def test_page_says_what_the_program_says():
 def test_words_of_page_and_readme_have_the_numbers_of_the_run():
     """Largest deviations, sag, vibration, stiffness, price of the welded joints: as they are rounded in the words."""
     page, readme = (" ".join(path.read_text(encoding="utf-8").split()) for path in (PAGE, README))
-    robot, welded = study_parts()["robot"], study_parts()["welded"].sel(reading="radii", arm=0.373, roll=17.0)
+    robot, welded = part("robot"), part("welded").sel(reading="radii", arm=0.373, roll=17.0)
     deviation = 1e6 * robot.com_deviation.values
     _, y, z = np.abs(deviation).max(axis=0)
     rest = robot.time >= 1.0
@@ -91,7 +91,7 @@ def test_words_of_page_and_readme_have_the_numbers_of_the_run():
 def test_headline_is_micrometres(table):
     assert table["Fig. 9, section 4.1"].verdict == NOT
     # Values of an independent estimate by rigid statics: 16 um of sag and a few of inertia.
-    peak = np.abs(study_parts()["robot"].com_deviation).max("time").values
+    peak = np.abs(part("robot").com_deviation).max("time").values
     assert np.all(peak < [1e-5, 2e-5, 4e-5])
 
 
@@ -105,7 +105,7 @@ def test_road_to_the_singularity(table):
 
 @pytest.mark.parametrize("name", ["half-angles", "half-angles-radii"])
 def test_deviation_grows_towards_the_singularity(name):
-    data = study_parts()[name]
+    data = part(name)
     whole = data.deviation_peak.max("axis").values
     good = np.isfinite(whole)
     assert np.all(np.diff(whole[good][1:]) > 0)
@@ -163,7 +163,7 @@ def test_shapes_of_equation_2_have_the_norm_that_the_row_prints(table):
 
 def test_leg_errors_for_the_papers_deviation():
     # A turn by 0.030 rad moves the joints of a circle of 0.15 m by at most 4.5 mm: the legs by less.
-    errors = study_parts()["assumptions"].length_error.values
+    errors = part("assumptions").length_error.values
     assert 1e-3 < np.abs(errors).max() < 4.5e-3
 
 

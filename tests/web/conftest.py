@@ -3,13 +3,16 @@
 import os
 import shutil
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
 from tests.texts import replaced
+from tests.web.guests import until
+from xarray import Dataset
 
 from flexapod.cli.commands_proof import _write
-from flexapod.model import loads, preset_text
+from flexapod.model import Study, loads, preset_text
 from flexapod.page.document import Document
 from flexapod.page.network import free_port
 from flexapod.page.opening import StudySource, open_source
@@ -146,13 +149,20 @@ def desk(browser, tmp_path_factory) -> Iterator[tuple[View, Callable[..., object
     server.stop()
 
 
-@pytest.fixture(scope="session")
-def table(desk) -> tuple[object, Session]:
-    """A page that stays open from test to test, and its session: a page takes longer to load than most tests."""
-    page = desk[1]()
+@pytest.fixture(scope="module")
+def table(desk) -> Iterator[tuple[object, Session]]:
+    """A page that stays open from test to test, and its session: a page takes longer to load than most tests.
+
+    No longer than for a file: as long as it is open it draws, on half a core where software does.
+    """
+    server, visit, _ = desk
+    until(lambda: not server.sessions)
+    page = visit()
     page.get_by_text("misses its rigid path by up to").wait_for()
     page.wait_for_timeout(300)  # as where people look: they see a page before they ask for another
-    return page, desk[0].sessions[0]
+    yield page, server.sessions[0]
+    page.context.close()
+    until(lambda: not server.sessions)
 
 
 @pytest.fixture
@@ -178,33 +188,51 @@ def show(table, desk, tmp_path) -> Iterator[Callable[..., tuple[object, Session]
     assert found in desk[0].sessions
 
 
+class Reports(dict):
+    """Files of every kind of page that is written, each when it is asked for: of runs, replication, verification."""
+
+    def __init__(self, place: Path) -> None:
+        super().__init__()
+        self.place = place
+
+    def __missing__(self, name: str) -> Path:
+        file = self.place / f"{name}.html"
+        if name == "verification":
+            _write(list(verify(["cubic-hexapod", "not-modelled"])), file, None)
+        elif name == "replication":
+            file.write_text(self._replication(), encoding="utf-8")
+        else:
+            file.write_text(robot_report(*result(name)), encoding="utf-8")
+        self[name] = file
+        return file
+
+    def _replication(self) -> str:
+        """The page of `flexapod replicate` with short runs in place of the paper's, and a claim of every verdict."""
+        (study, robot), (_, actuator) = result("paper-robot"), result("paper-actuator")
+        parts = {name: robot for name in ("robot", "robot-rigid", "jump")}
+        parts |= {"actuator-3": actuator, "modes": modes(study)}
+        verdicts = (HOLDS, IN_PART, NOT, REACHES, BREAKS, OPEN, MISPRINT)
+        claims = [
+            Claim(where="Fig. 9", says="5 mm", ours="3 µm", verdict=v, reason="Legs are stiff.") for v in verdicts
+        ]
+        return paper_page(PaperStudy(parts=parts), claims, {"Robot": draw(robot, self.place / "figures", ("png",))})
+
+
+@cache
+def result(name: str) -> tuple[Study, Dataset]:
+    """A short run of a preset or of the actuator in space."""
+    texts = {
+        "paper-robot": study_text(*SHORT),
+        "paper-actuator": study_text(('duration = "10 s"', 'duration = "1 s"'), preset="paper-actuator"),
+        "actuator-in-space": SPACE,
+    }
+    study = loads(texts[name])
+    return study, run(study)
+
+
 @pytest.fixture(scope="session")
-def reports(tmp_path_factory):
-    """Files of every kind of page that is written: a run's report, the replication, the verification; short runs."""
-    place = tmp_path_factory.mktemp("reports")
-    short = (('duration = "10 s"', 'duration = "1 s"'),)
-    found, results = {}, {}
-    studies = {"paper-robot": study_text(*SHORT), "paper-actuator": study_text(*short, preset="paper-actuator")}
-    for preset, text in (studies | {"actuator-in-space": SPACE}).items():
-        study = loads(text)
-        results[preset] = run(study)
-        found[preset] = place / f"{preset}.html"
-        found[preset].write_text(robot_report(study, results[preset]), encoding="utf-8")
-    found["replication"] = place / "replication.html"
-    found["replication"].write_text(replication(results, place), encoding="utf-8")
-    found["verification"] = place / "verification.html"
-    _write(list(verify(["cubic-hexapod", "not-modelled"])), found["verification"], None)
-    return found
-
-
-def replication(results, place):
-    """The page of `flexapod replicate` with short runs in place of the paper's, and a claim of every verdict."""
-    robot = results["paper-robot"]
-    parts = {name: robot for name in ("robot", "robot-rigid", "jump")}
-    parts |= {"actuator-3": results["paper-actuator"], "modes": modes(loads(robot.attrs["study"]))}
-    verdicts = (HOLDS, IN_PART, NOT, REACHES, BREAKS, OPEN, MISPRINT)
-    claims = [Claim(where="Fig. 9", says="5 mm", ours="3 µm", verdict=v, reason="Legs are stiff.") for v in verdicts]
-    return paper_page(PaperStudy(parts=parts), claims, {"Robot": draw(robot, place / "figures", ("png",))})
+def reports(tmp_path_factory) -> Reports:
+    return Reports(tmp_path_factory.mktemp("reports"))
 
 
 @pytest.fixture

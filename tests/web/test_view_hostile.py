@@ -5,6 +5,7 @@ import gc
 import math
 import subprocess
 import sys
+import threading
 import time
 import weakref
 
@@ -73,7 +74,8 @@ def settled(session) -> None:
     until(lambda: session.guest.socket.ping().wait(30))
     connection = session.guest.server._visitor(session.client.client_id)
     until(lambda: not connection.work)
-    time.sleep(0.6)  # texts are read 0.4 s after the last letter
+    # Texts are read 0.4 s after the last letter, by a thread that ends then; what it does may begin others.
+    until(lambda: not [t for t in threading.enumerate() if t.name == "flexapod-latest"])
     until(lambda: not connection.work and not session.busy)
 
 
