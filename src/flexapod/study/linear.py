@@ -76,35 +76,24 @@ def linearize(
 ) -> LinearModel | StateSpace | Dataset:
     """A robot about its equilibrium under gravity and load as a linear system with named channels, Eq. (T20.1).
 
-    Closures are eliminated, so that states are motions by name ("payload x", "leg 3 a2", turns of the payload about
-    platform axes) and their rates; they are chosen at home, and mean the same at every pose. What has no mass is
-    condensed with the damper that it may have; loops that sum or lag are states. Unstable loops are no error.
-
-    A single actuator is linearised about the place in which it stands at t = 0, or with pose {"rate": 20.0} [rad/s]
-    about the steady rotation of its hub: inputs ``command:rotation``, ``:extension``, ``:elevation`` where these are
-    held, ``drive:...`` where a torque or a force drives them, ``force:tip``; outputs ``tip:along``, ``tip:rotation``,
-    ``tip:elevation`` [m], ``stroke``, ``drive-force``.
+    Closures are eliminated: states are motions by name ("payload x", "leg 3 a2", turns of the payload about platform
+    axes) and their rates, chosen at home, the same at every pose. What has no mass is condensed with its damper; loops
+    that sum or lag are states; unstable ones are no error. `docs/linear-model.md` says what each channel is.
 
     Parameters
     ----------
     study : Study, Robot, ActuatorStudy or path
+        A single actuator stands as at t = 0; with pose {"rate": 20.0} [rad/s] its hub turns steadily.
     pose : pose, optional
         As for `modes`; default home. Many poses at once: names with arrays, or (P, 6).
     inputs : str or sequence of str
-        ``wrench`` [N, N m] at the tool along world axes; ``drive`` [N, of cranks N m], force of each drive;
-        ``command`` [m/s^2, rad/s^2], second derivative of what each drive is told: place and rate are states;
-        ``floor`` [m/s^2, rad/s^2], acceleration and angular acceleration of the base about the point at which
-        `base_motion` of the study turns it, else the origin; ``force:POINT`` [N] along world axes. Single channels:
-        ``wrench:fx``, ``drive:3``, ``floor:rz``, ``force:tool:x``.
+        ``wrench`` [N, N m] at the tool, ``drive`` [N, N m], ``command`` [m/s^2, rad/s^2], second derivative of what a
+        drive is told, ``floor`` [m/s^2, rad/s^2] about the point of `base_motion` or the origin, ``force:POINT`` [N].
     outputs : str or sequence of str
-        ``tool`` [m, rad] and ``com`` [m] against the floor, along and about world axes; ``stroke`` [m, rad] of what a
-        drive moves; ``drive-force`` [N, N m] on that, behind a rotor's inertia and before the mass that it moves;
-        ``joint-force`` [N] of each leg on the platform, world axes; ``force-sensor:base``, ``:drive``, ``:platform``
-        [N] along the leg, pressing is positive: between the base and all masses of the leg, at the drive, between all
-        masses of the leg and the platform; ``encoder`` [m, rad], what a drive measures; ``accelerometer:POINT``
-        [m/s^2], absolute acceleration less gravity along axes that turn with the platform; ``geophone:POINT`` [m/s]
-        or ``geophone:POINT[4.5 Hz, 0.7, 28.8]`` [V] by its corner, damping ratio and sensitivity.
-        POINT: ``tool``, ``com``, ``platform``, ``joint-3``, or a place in platform axes as ``(0.1, 0, 0.05)`` [m].
+        ``tool`` [m, rad], ``com`` [m], ``stroke`` and ``encoder`` [m, rad], ``drive-force`` [N, N m], ``joint-force``,
+        ``force-sensor:base``, ``:drive``, ``:platform`` [N], ``accelerometer:POINT`` [m/s^2], ``geophone:POINT`` [m/s].
+        POINT: ``tool``, ``com``, ``platform``, ``joint-3``, or in platform axes ``(0.1, 0, 0.05)`` [m]. Single
+        channels: ``wrench:fx``, ``drive:3``, ``tool:rz``, ``force:tool:x``.
     drives : {"given", "force"}
         "force" releases the drives at the equilibrium that they hold, with the force that holds them: neither springs
         nor loops of theirs are left. Pure force drives are linearised so.
