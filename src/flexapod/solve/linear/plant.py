@@ -10,7 +10,7 @@ from typing import Literal, cast
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.arrays import Array
+from flexapod.arrays import Array, Mask
 from flexapod.errors import ComputationError, InputError
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Drive, Encoder, ForceDrive, Load, PrescribedDrive, Robot, ScrewDrive, Simulation
@@ -137,7 +137,7 @@ def _at_rotors(robot: Robot) -> Robot:
     return robot.replace(legs=legs)
 
 
-def _released(system: System, held: Array, robot: Robot) -> System:
+def _released(system: System, held: Mask, robot: Robot) -> System:
     """The system whose drives are forces: nothing holds their ports, neither springs nor loops, Eq. (T20.2)."""
     shapes, leg_p, held = system.kernel.shapes, system.leg_p.copy(), held.copy()
     layout = leg_parameters(shapes)

@@ -67,10 +67,7 @@ def _circle(radius: float, degrees: list[float], height: float) -> Array:
 
 
 def _plant() -> LinearModel:
-    found = linearize(stewart(), inputs=["drive", "wrench"], outputs=["drive-force", "stroke", "tool"])
-    if not isinstance(found, LinearModel):
-        raise TypeError
-    return found
+    return linearize(stewart(), inputs=["drive", "wrench"], outputs=["drive-force", "stroke", "tool"])
 
 
 @case(
@@ -107,7 +104,7 @@ def _stewart_modes() -> list[Check]:
     argument="five digits are printed: half of the last one is 4e-5",
 )
 def _gravimeter() -> list[Check]:
-    found = linearize(gravimeter(), inputs="drive", outputs="tool").poles()  # type: ignore[union-attr]
+    found = linearize(gravimeter(), inputs="drive", outputs="tool").poles()
     upper = sorted(found[found.imag > 0], key=lambda s: -s.imag)
     known = [-0.12243 + 13.551j, -0.05 + 8.6601j, -0.0088785 + 3.6493j]
     names = [f"{part} of pole {k}" for part in ("real part", "imaginary part") for k in (1, 2, 3)]
@@ -152,7 +149,7 @@ def _tip_zeros() -> list[Check]:
     found, scale = [], float(np.sqrt(200.0 / (1.2 * 2.0**4)))
     for hub in (0.05, 20.0):
         lin = linearize(hinged_beam(hub), inputs="drive:rotation", outputs="tip:rotation", drives="force")
-        zeros = lin.zeros()  # type: ignore[union-attr]
+        zeros = lin.zeros()
         real = np.sort(zeros.real[(np.abs(zeros.imag) < 1e-6 * np.abs(zeros)) & (zeros.real > 0)])
         for a, tolerance, ours, name in ((FIRST, 1e-5, real[0], "first"), (SECOND, 1e-3, real[1], "second")):
             found.append(Check(f"{name} zero, hub of {hub:g} kg m^2", 2 * a**2 * scale, float(ours), tolerance, "1/s"))
@@ -167,7 +164,7 @@ def _tip_zeros() -> list[Check]:
 def _told_rotation() -> list[Check]:
     names = ["tip:rotation", "drive-force:rotation", "stroke:rotation"]
     lin = linearize(hinged_beam(0.5), inputs="command:rotation", outputs=names)
-    H = lin.at([1e-3])[:, 0, 0]  # type: ignore[union-attr]
+    H = lin.at([1e-3])[:, 0, 0]
     return [
         Check(
             "lag of the tip by 1 rad/s^2", 11 * 1.2 * 2.0**5 / (120 * 200.0), float((2.0 * H[2] - H[0]).real), 1e-5, "m"
