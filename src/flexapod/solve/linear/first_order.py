@@ -51,8 +51,7 @@ def with_mass(U: Array) -> tuple[Index, Index, Array]:
     if plain:
         rest = np.setdiff1d(np.arange(d), moving)
         return moving, rest, np.zeros((moving.size, rest.size))
-    found = qr(V, mode="r", pivoting=True)
-    R, order = np.asarray(found[0]), np.asarray(found[1])
+    R, order = (np.asarray(x) for x in qr(V, mode="r", pivoting=True))
     rank = int((np.abs(R.diagonal()) > LIGHTEST).sum())
     second, loose = moving[order[:rank]], moving[order[rank:]]
     taken = solve_triangular(R[:rank, :rank], R[:rank, rank:]) * size[loose] / size[second][:, None]

@@ -57,6 +57,12 @@ class Plant:
         """The robot, pure force drives holding their places, on a base at rest."""
         return self.locked.robot
 
+    def pushed(self, leg: int) -> int:
+        """Coordinate on which a force of a drive acts; of a motor that lags, and is released, what it is asked for."""
+        shapes, at = self.system.kernel.shapes, int(self.port[leg])
+        lags = self.drives == "force" and shapes.has("j") and not self.system.held[leg, shapes.index("j")]
+        return shapes.index("j") if lags else at
+
     @property
     def command(self) -> Array:
         """Commands of all ports, (P, legs, ports); where statics know of none, what is there."""
