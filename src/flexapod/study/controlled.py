@@ -3,24 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
+from flexapod import model
 from flexapod.arrays import Array
 from flexapod.errors import InputError, nearest
 from flexapod.results.asked import Made
 from flexapod.results.record import Record
-from flexapod.solve.time.sampled import Sampled
 
-__all__ = ["Controller", "PerChannel", "Reads", "control_coords", "control_results", "sampled_controller"]
+if TYPE_CHECKING:
+    from flexapod.solve.time.sampled import Sampled
+
+__all__ = ["Controller", "Noise", "PerChannel", "control_coords", "control_results", "sampled_controller"]
 
 #: One number for all channels, or numbers by channels (``stroke:1``) and groups (``stroke``).
 PerChannel = float | Mapping[str, float] | None
+#: The same, or one-sided densities {"psd": unit^2/Hz} in place of numbers.
+Noise = float | Mapping[str, float] | Mapping[str, Mapping[str, float]] | None
 
 
 class Linear(Protocol):
-    """A linear system from sample to sample, as `flexapod.control.StateSpace`."""
+    """A linear system with named channels, sampled or to be sampled, as `flexapod.control.StateSpace`."""
 
     A: Array
     B: Array
@@ -32,68 +37,122 @@ class Linear(Protocol):
 
 
 @runtime_checkable
-class Reads(Protocol):
-    """What becomes a linear system from sample to sample, as the controllers of `flexapod.control`."""
+class Asked(Protocol):
+    """A function in place of a linear law, and the channels that it reads and moves: `flexapod.control.Function`."""
 
-    def sampled(self, period: float) -> Linear:
-        """The law for samples a period [s] apart."""
-        ...
+    function: Callable[[float, Array], object]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
 
 
 @runtime_checkable
-class Called(Protocol):
-    """A function in place of a linear law, and the channels that it reads and moves."""
+class Placed(Protocol):
+    """What finds its channels among those of a robot, as the controllers of `flexapod.control`."""
 
-    function: Callable[[float, Array], object]
-    inputs: Sequence[str]
-    outputs: Sequence[str]
+    def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str]) -> object:
+        """The law between channels."""
+        ...
+
+    def sampled(self, period: float, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str]) -> Linear:
+        """The same for samples a period [s] apart."""
+        ...
 
 
-Controller = Reads | Called | Linear
+Controller = Placed | Asked | Linear
+#: Groups of channels that controllers read and move without being told which.
+READ, MOVED = ("stroke", "encoder", "drive-force", "force-sensor:drive", "tool", "com"), ("drive", "command")
 
 
 def sampled_controller(
-    controller: Controller | None,
-    sample: float | None,
-    *,
-    delay_samples: int = 0,
+    study: model.Study,
+    controller: Controller | None = None,
+    sample: float | str | None = None,
+    delay_samples: int | None = None,
     quantise: PerChannel = None,
     saturate: PerChannel = None,
-    noise: PerChannel | Mapping[str, Mapping[str, float]] = None,
-    seed: int = 0,
+    noise: Noise = None,
+    seed: int | None = None,
 ) -> Sampled | None:
-    """The controller of a call, see `flexapod.simulate`; None without one.
+    """The controller of a simulation: that of the call, else that of the study; None without one.
+
+    Parameters
+    ----------
+    study : Study
+    controller : Controller, optional
+        One of `flexapod.control`, a StateSpace, or a `flexapod.control.Function`. It reads at each sample what sensors
+        show from what they showed at the start, kinematic ones against the commanded path, and holds its outputs until
+        the next, Eqs. (T26.1)-(T26.3).
+    sample : float or str, optional
+        Time between samples [s], or as ``"5 kHz"``; of fixed steps a multiple.
+    delay_samples : int, optional
+        Samples from a reading to what is made of it.
+    quantise, saturate, noise : float or mapping, optional
+        Steps of the readings, largest magnitude of the outputs, standard deviation of the readings' noise: one number,
+        or numbers by channel or group. ``{"psd": S}`` in place of a deviation: one-sided [unit^2/Hz], Eq. (T26.4).
+    seed : int, optional
+        Of the noise: the same seed, the same bits.
 
     Raises
     ------
     InputError
         Settings without a controller, no period, a delay or limits that are none, a channel that it has not.
     """
-    settings = {"sample": sample, "quantise": quantise, "saturate": saturate, "noise": noise}
-    settings |= {"delay_samples": delay_samples or None}
+    given = {"sample": sample, "delay_samples": delay_samples, "quantise": quantise, "saturate": saturate}
+    given |= {"noise": noise, "seed": seed}
+    given = {name: value for name, value in given.items() if value is not None}
+    if controller is None and study.control is not None:
+        controller, own = _of_table(study.control)
+        given = own | given
     if controller is None:
-        if given := [name for name, value in settings.items() if value is not None]:
-            raise InputError("is for a controller, and there is none", key=given[0], next_step="Give controller=")
+        if given:
+            raise InputError(
+                "is for a controller, and there is none", key=next(iter(given)), next_step="Give controller="
+            )
         return None
-    period = sample if sample is not None else getattr(controller, "sample", None)
-    if period is None or not (np.isfinite(period) and period > 0):
-        raise InputError(
-            "is not a time between samples", key="sample", value=sample, allowed="above 0 s, as 2e-4 for 5 kHz"
-        )
+    return _made(controller, study.robot, **given)  # type: ignore[arg-type]
+
+
+def _of_table(table: model.Control) -> tuple[Controller, dict[str, object]]:
+    """Controller and settings of a study file."""
+    from flexapod.control.controllers import DVF, IFF
+
+    settings = {
+        name: getattr(table, name) for name in ("sample", "delay_samples", "saturate", "seed", "quantise", "noise")
+    }
+    found = {name: value for name, value in settings.items() if value is not None}
+    if isinstance(table, model.ForceControl):
+        return IFF(table.gain, high_pass=table.high_pass, sensor=table.reads), found
+    return DVF(table.gain, low_pass=table.low_pass, sensor=table.reads), found
+
+
+def _made(
+    controller: Controller,
+    robot: model.Robot,
+    *,
+    sample: float | str | None = None,
+    delay_samples: int = 0,
+    quantise: PerChannel = None,
+    saturate: PerChannel = None,
+    noise: Noise = None,
+    seed: int = 0,
+) -> Sampled:
+    """A controller with all settings."""
+    from flexapod.solve.time.sampled import Sampled
+
+    period = _period(controller, sample)
     if not isinstance(delay_samples, int) or delay_samples < 0:
         raise InputError("is no number of samples", key="delay_samples", value=delay_samples, allowed="0, 1, 2, ...")
-    law = _law(controller, period)
+    law = _law(controller, period, robot)
     inputs, outputs = tuple(law.inputs), tuple(law.outputs)
     for key, names in (("controller.inputs", inputs), ("controller.outputs", outputs)):
         if not names or len(set(names)) < len(names):
             raise InputError("are none, or one of them twice", key=key, value=", ".join(names))
-    function = getattr(law, "function", None)
-    matrices = {} if function else {name: np.asarray(getattr(law, name), dtype=float) for name in "ABCD"}
+    matrices = {} if isinstance(law, Asked) else {name: np.asarray(getattr(law, name), dtype=float) for name in "ABCD"}
     return Sampled(
         readings=inputs,
         outputs=outputs,
-        period=float(period),
-        function=function,
+        period=period,
+        function=law.function if isinstance(law, Asked) else None,
         delay_samples=delay_samples,
         quantum=_by_channel(quantise, inputs, "quantise", 0.0),
         most=_by_channel(saturate, outputs, "saturate", np.inf),
@@ -103,26 +162,41 @@ def sampled_controller(
     )
 
 
-def _law(controller: Controller, period: float) -> Linear | Called:
-    """What is computed at each sample."""
-    found = controller
-    if isinstance(controller, Reads) and not isinstance(controller, Called) and getattr(found, "sample", None) is None:
-        found = controller.sampled(period)
-    if isinstance(found, Called):
-        return found
-    own = getattr(found, "sample", None)
-    if not all(hasattr(found, name) for name in ("A", "B", "C", "D", "inputs", "outputs")) or own is None:
-        raise InputError(
-            "is no controller from sample to sample",
-            key="controller",
-            value=type(controller).__name__,
-            allowed="one of flexapod.control, a StateSpace with a sample time, or a flexapod.control.Function",
-        )
-    if abs(own - period) > 1e-9 * period:
+def _period(controller: Controller, sample: float | str | None) -> float:
+    """Time between samples [s]: as given, or that of a law that has one."""
+    from flexapod.control.sampling import period_of
+
+    own = None if isinstance(controller, Asked | Placed) else getattr(controller, "sample", None)
+    if sample is None and own is None:
+        raise InputError("is missing", key="sample", allowed='a time [s], or a rate as "5 kHz"')
+    period = own if sample is None else period_of(sample)
+    if own is not None and abs(own - period) > 1e-9 * period:
         raise InputError(
             "is not the time between its samples", key="sample", value=period, allowed=f"{own:.6g} s, that of the law"
         )
-    return found  # type: ignore[return-value]
+    return float(period)
+
+
+def _law(controller: Controller, period: float, robot: model.Robot) -> Linear | Asked:
+    """What is computed at each sample."""
+    if isinstance(controller, Asked):
+        return controller
+    if isinstance(controller, Placed):
+        from flexapod.solve.linear.channels import asked
+
+        read, moved = (
+            [channel.name for group in groups for channel in asked(group, robot, key)]
+            for groups, key in ((READ, "outputs"), (MOVED, "inputs"))
+        )
+        return controller.sampled(period, read, moved, {})
+    if any(getattr(controller, name, None) is None for name in ("A", "B", "C", "D", "inputs", "outputs")):
+        raise InputError(
+            "is no controller",
+            key="controller",
+            value=type(controller).__name__,
+            allowed="one of flexapod.control, a StateSpace, or a flexapod.control.Function",
+        )
+    return controller if controller.sample is not None else controller.sampled(period)  # type: ignore[attr-defined]
 
 
 def _sigmas(noise: object, period: float) -> PerChannel:

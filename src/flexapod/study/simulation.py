@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -26,10 +25,10 @@ from flexapod.review.plausibility import robot_warnings
 from flexapod.review.unstable_loops import loop_remarks
 from flexapod.runtime.threads import one_thread
 from flexapod.solve.time.robot_march import RobotMarch, prepare
-from flexapod.solve.time.sampled import Sampled
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.controlled import (
     Controller,
+    Noise,
     PerChannel,
     control_coords,
     control_results,
@@ -38,6 +37,8 @@ from flexapod.study.controlled import (
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+    from flexapod.solve.time.sampled import Sampled
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,7 +92,7 @@ class Simulated:
 
 @one_thread()
 def simulated(study: model.Study, progress: Progress | None = None, sampled: Sampled | None = None) -> Simulated:
-    """Check and integrate a robot study, with a controller or without; what `simulate` does, without a Dataset.
+    """Check and integrate a robot study, with its controller or another one; what `simulate` does, without a Dataset.
 
     A record that stopped early says so: ``record.failure``, ``record.interrupted``.
 
@@ -100,7 +101,7 @@ def simulated(study: model.Study, progress: Progress | None = None, sampled: Sam
     InputError, ComputationError
         As `simulate`.
     """
-    path = RigidPath(study)
+    path, sampled = RigidPath(study), sampled or sampled_controller(study)
     remarks, march = [*check_path(study, path), *loop_remarks(study)], prepare(study, sampled=sampled)
     record = collect(march.chunks, damped_angles(march.system), study.duration, progress)
     return Simulated(study=study, path=path, march=march, record=record, remarks=remarks, sampled=sampled)
@@ -123,12 +124,12 @@ def simulate(
     output_step: float | None = None,
     rho_inf: float | None = None,
     controller: Controller | None = None,
-    sample: float | None = None,
-    delay_samples: int = 0,
+    sample: float | str | None = None,
+    delay_samples: int | None = None,
     quantise: PerChannel = None,
     saturate: PerChannel = None,
-    noise: PerChannel | Mapping[str, Mapping[str, float]] = None,
-    seed: int = 0,
+    noise: Noise = None,
+    seed: int | None = None,
     progress: Progress | None = None,
 ) -> Dataset:
     """Motion of a robot with elastic legs against the rigid one.
@@ -137,27 +138,13 @@ def simulate(
     ----------
     robot : Robot, Study or path
         A robot with its motion, a whole study, or its file.
-    motion : Motion, optional
-        In place of the study's.
-    load : Load, wrench or array_like (6,), optional
-        Fx Fy Fz [N], Mx My Mz [N m] at the tool, world axes, or a law; in place of the study's.
-    initial : str or Initial, optional
-        "equilibrium", "straight" or "moving"; in place of the study's.
+    motion, load, initial : optional
+        In place of the study's: a Motion; a Load, or Fx Fy Fz [N], Mx My Mz [N m] at the tool, world axes; an Initial,
+        or "equilibrium", "straight", "moving".
     fidelity, modes, axial_modes, basis, tolerance, step, duration, output_step, rho_inf : optional
         In place of those of [simulation]; times in s.
-    controller : Controller, optional
-        One of `flexapod.control`, a StateSpace with a sample time, or a `flexapod.control.Function`. It reads each
-        sample what sensors show from what they showed at the start, kinematic ones against the commanded path, and
-        holds its outputs until the next; Eqs. (T26.1)-(T26.7).
-    sample : float, optional
-        Time between samples [s]; of fixed steps a multiple.
-    delay_samples : int
-        Samples from a reading to what is made of it.
-    quantise, saturate, noise : float or mapping, optional
-        Steps of the readings, largest magnitude of the outputs, standard deviation of the readings' noise: one
-        number, or numbers by channel or group. ``{"psd": S}`` in place of a deviation: one-sided [unit^2/Hz].
-    seed : int
-        Of the noise: the same seed, the same bits.
+    controller, sample, delay_samples, quantise, saturate, noise, seed : optional
+        A sampled controller and its settings, as of `study.controlled.sampled_controller`; in place of [control].
     progress : callable, optional
         Called with simulated and whole time [s].
 
@@ -171,19 +158,14 @@ def simulate(
     ------
     InputError
         The path leaves a stroke, pulls a piston out or is singular; settings do not fit.
-    ComputationError
-        There is no equilibrium to start from, or the first steps fail.
-    Interrupted
-        By Ctrl-C, with what was computed.
+    ComputationError, Interrupted
+        There is no equilibrium to start from, or the first steps fail; by Ctrl-C, with what was computed.
     """
-    settings = {
-        "fidelity": fidelity, "modes": modes, "axial_modes": axial_modes, "basis": basis, "tolerance": tolerance,
-        "step": step, "duration": duration, "output_step": output_step, "rho_inf": rho_inf,
-    }  # fmt: skip
-    study = model.override(as_study(robot, motion, load, initial), **settings)  # type: ignore[arg-type]
-    sampled = sampled_controller(
-        controller, sample, delay_samples=delay_samples, quantise=quantise, saturate=saturate, noise=noise, seed=seed
-    )
+    study = model.override(
+        as_study(robot, motion, load, initial), fidelity=fidelity, modes=modes, axial_modes=axial_modes, basis=basis,
+        tolerance=tolerance, step=step, duration=duration, output_step=output_step, rho_inf=rho_inf,
+    )  # fmt: skip
+    sampled = sampled_controller(study, controller, sample, delay_samples, quantise, saturate, noise, seed)
     found = simulated(study, progress, sampled)
     return finished(found.dataset, found.record)
 

@@ -10,25 +10,22 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from flexapod.arrays import Array
-from flexapod.errors import InputError, nearest
-from flexapod.kinematics.limbs import COORDINATES, DRIVEN
+from flexapod.errors import InputError
 from flexapod.kinematics.robot import robot_limbs
 from flexapod.kinematics.rotations import quaternion
 from flexapod.mechanics.layout import columns, leg_parameters
-from flexapod.model import Robot
+from flexapod.model import Leg, Robot
+from flexapod.solve.linear.channels import Channel, asked
 from flexapod.solve.statics.drive_forces import force_ports, push_ports
 from flexapod.solve.system import Flow, System
 from flexapod.solve.time.tables import Law
 
-__all__ = ["ASKED", "NEAR_SAMPLE", "Asked", "Sampled", "SampledLoop", "reading_names"]
+__all__ = ["Asked", "Sampled", "SampledLoop"]
 
-ASKED = 5  # as in loop.c
 NEAR_SAMPLE = 1e-6  # of a period: instants that are no farther from a sample are its own
 BLOCK = 1024  # samples whose noise is drawn together
 FORCE, VALUE = 3, 0  # columns of a port in a table
-COORDINATE, PORT_FORCE, PLACE, TURN, ACCELERATION = range(5)  # what is read, as in loop.c
-POINTS = ("tool", "com")
-TWIST = ("x", "y", "z", "rx", "ry", "rz")
+COORDINATE, PORT_FORCE, CLOSURE, JOINT, PLACE, TURN, ACCELERATION = range(7)  # what is read, as in loop.c
 
 #: Of an instant [s] and readings (p,): outputs (m,).
 Asked = Callable[[float, Array], object]
@@ -86,7 +83,11 @@ class Sampled:
 
 
 class _Reading(Structure):
-    _fields_ = [*[(name, c_long) for name in ("of", "leg", "port", "axis")], ("arm", c_double * 3)]
+    _fields_ = [
+        *[(name, c_long) for name in ("of", "leg", "port", "axis")],
+        ("arm", c_double * 3),
+        ("along", c_double * 3),
+    ]
 
 
 class _Action(Structure):
@@ -126,7 +127,8 @@ class SampledLoop:
         self, sampled: Sampled, system: System, robot: Robot, path: Callable[[Array], tuple[Array, Array]]
     ) -> None:
         self.sampled, self.system, self._path = sampled, system, path
-        self._reading = _structures(_Reading, [_reading(name, system, robot) for name in sampled.readings])
+        start = path(np.zeros(1))[1][0]
+        self._reading = _structures(_Reading, [_reading(name, system, robot, start) for name in sampled.readings])
         self._action = _structures(_Action, [_action(name, system, robot) for name in sampled.outputs])
         self._at = [(a.leg, a.port, a.column) for a in self._action[: len(sampled.outputs)]]
         self._gravity = (c_double * 3)(*robot.gravity)
@@ -163,12 +165,25 @@ class SampledLoop:
 
         return with_held
 
-    def instants(self, first: float, last: float) -> list[float]:
-        """Instants of samples between two others, neither of these."""
+    def instants(self, first: float, last: float, known: Sequence[float]) -> list[float]:
+        """Instants of samples between two others, neither of these nor those that are `known` anyway."""
         period = self.sampled.period
         numbers = range(int(np.floor(first / period)), int(np.ceil(last / period)) + 1)
         near = NEAR_SAMPLE * period
-        return [k * period for k in numbers if first + near < k * period < last - near]
+        found = [k * period for k in numbers if first + near < k * period < last - near]
+        return [t for t in found if all(abs(t - x) > near for x in known)]
+
+    def refuse_off(self, step: float) -> None:
+        """Raise InputError if the period is no multiple of a fixed step [s]; of steps of their own it is 0."""
+        many = self.sampled.period / step if step else 1.0
+        if abs(many - round(many)) > NEAR_SAMPLE * max(many, 1.0) or round(many) < 1:
+            raise InputError(
+                "is no multiple of the fixed step",
+                key="sample",
+                value=f"{self.sampled.period:.6g} s",
+                allowed=f"multiples of {step:.6g} s; the nearest is {max(1, round(many)) * step:.6g} s",
+                next_step=f"Give the nearest, step = {self.sampled.period / max(1, np.ceil(many)):.6g}, or a tolerance",
+            )
 
     def call(self, flow: Flow, begin: float, end: float, rows: Array) -> tuple[_Loop, tuple[Array, ...]]:
         """What a call in C reads of it, from `begin` to `end` [s], and the arrays that this points to.
@@ -212,48 +227,58 @@ def _structures(kind: type[Structure], items: Sequence[Structure]) -> ctypes.Arr
     return (kind * max(len(items), 1))(*items)
 
 
-def reading_names(robot: Robot) -> list[str]:
-    """Names of all channels that a controller may read."""
-    legs = [str(i) for i, leg in enumerate(robot.legs, start=1) if leg.driven]
-    found = [f"{what}:{i}" for what in ("stroke", "encoder", "drive-force", "force-sensor:drive") for i in legs]
-    found += [f"{point}:{axis}" for point in POINTS for axis in TWIST]
-    return found + [f"accelerometer:{point}:{axis}" for point in POINTS for axis in "xyz"]
+def _reading(name: str, system: System, robot: Robot, start: Array) -> _Reading:
+    """What a channel reads; ``start``, (3, 3): attitude of the platform at the start."""
+    channel = _single(name, robot, "outputs")
+    leg, group = max(channel.leg, 0), channel.group
+    none = (c_double * 3)()
+    if group in ("tool", "com"):
+        arm = robot.tool - robot.com if group == "tool" else np.zeros(3)
+        return _Reading(TURN if channel.axis > 2 else PLACE, 0, 0, channel.axis % 3, (c_double * 3)(*arm), none)
+    if group == "accelerometer" and channel.at is not None:
+        along = start[channel.axis]  # axes that turn with the platform, the world's at the start
+        return _Reading(ACCELERATION, 0, 0, 0, (c_double * 3)(*channel.at), (c_double * 3)(*along))
+    if group == "joint-force":
+        return _Reading(CLOSURE, leg, 0, channel.axis, none, none)
+    if group == "force-sensor:platform" and not _moving_base(robot):
+        limbs = robot_limbs(robot)
+        return _Reading(JOINT, leg, 0, 0, (c_double * 3)(*system.joint_p[leg]), (c_double * 3)(*limbs.base[leg]))
+    one, rotor = robot.legs[leg], robot.legs[leg].gives
+    moved = push_ports(system, robot)[leg] if group == "encoder" and one.measured == "rotor" else _moved(system, one)
+    if group in ("stroke", "encoder") and not (group == "encoder" and one.closed_about == "joint-to-joint"):
+        return _Reading(COORDINATE, leg, _port(system, moved), moved, none, none)
+    if group in ("drive-force", "force-sensor:drive") and not rotor:
+        return _Reading(PORT_FORCE, leg, _port(system, moved), moved, none, none)
+    raise InputError(
+        "is not read in time" + (f" of leg {leg + 1}, whose drive has a rotor" if rotor else ""),
+        key="controller.inputs",
+        value=name,
+        allowed="tool, com, stroke, encoder, drive-force, force-sensor:drive of drives without a rotor, joint-force, "
+        "force-sensor:platform where base joints stand still, accelerometer:POINT",
+    )
 
 
-def _output_names(robot: Robot) -> list[str]:
-    return [f"{what}:{i}" for what in ("drive", "command") for i, leg in enumerate(robot.legs, start=1) if leg.driven]
-
-
-def _known(name: str, among: Sequence[str], key: str, words: str) -> None:
-    if name not in among:
-        like = nearest(name, among)
+def _single(name: str, robot: Robot, key: str) -> Channel:
+    found = asked(name, robot, key)
+    if len(found) != 1 or found[0].name != name:
         raise InputError(
-            f"is no channel that a sampled controller {words}",
-            key=key,
+            "is not one channel",
+            key=f"controller.{'inputs' if key == 'outputs' else 'outputs'}",
             value=name,
-            allowed=", ".join(dict.fromkeys(x.rpartition(":")[0] for x in among)) + f"; a single one as {among[0]}",
-            next_step=None if like is None else f"Did you mean {like!r}?",
+            allowed=f"a single one as {found[0].name}",
         )
+    return found[0]
 
 
-def _reading(name: str, system: System, robot: Robot) -> _Reading:
-    _known(name, reading_names(robot), "controller.inputs", "reads")
-    what, _, last = name.rpartition(":")
-    if what in POINTS or what.startswith("accelerometer"):
-        point = robot.tool if what.endswith("tool") else robot.com
-        axis = TWIST.index(last)
-        of = ACCELERATION if what.startswith("accelerometer") else TURN if axis > 2 else PLACE
-        return _Reading(of, 0, 0, axis % 3, (c_double * 3)(*(point - robot.com)))
-    leg = int(last) - 1
-    moved = _driven(system, robot)[leg] if what == "stroke" else push_ports(system, robot)[leg]
-    return _Reading(PORT_FORCE if "force" in what else COORDINATE, leg, _port(system, moved), moved)
+def _moving_base(robot: Robot) -> bool:
+    """Whether base joints do not stand still, or legs close the attitude too."""
+    return bool(robot.base_mount or robot.base_motion or robot.platform_mount or robot_limbs(robot).carriage)
 
 
-def _driven(system: System, robot: Robot) -> Array:
-    """Driven coordinate of each leg, stroke or carriage, (legs,)."""
-    state, shapes = robot_limbs(robot).state, system.kernel.shapes
-    slides = state[:, COORDINATES.index("chi")] == DRIVEN
-    return np.where(slides, shapes.index("chi") if shapes.has("chi") else 0, shapes.l_index)
+def _moved(system: System, leg: Leg) -> int:
+    """Coordinate that the drive of a leg moves, of a passive one its stroke."""
+    shapes = system.kernel.shapes
+    return shapes.index("chi") if leg.driven == "carriage" else shapes.l_index
 
 
 def _port(system: System, coordinate: int) -> int:
@@ -261,28 +286,34 @@ def _port(system: System, coordinate: int) -> int:
 
 
 def _action(name: str, system: System, robot: Robot) -> _Action:
-    _known(name, _output_names(robot), "controller.outputs", "moves")
-    what, _, number = name.partition(":")
-    leg, shapes = int(number) - 1, system.kernel.shapes
+    channel, shapes = _single(name, robot, "inputs"), system.kernel.shapes
+    if channel.group not in ("drive", "command"):
+        raise InputError(
+            "is not moved in time",
+            key="controller.outputs",
+            value=name,
+            allowed="drive, command; a single one as drive:1",
+        )
+    leg = channel.leg
     at = push_ports(system, robot)[leg]
     if system.enforced[leg, at]:
         raise InputError(
-            f"moves leg {number}, whose drive keeps its command whatever the force",
+            f"moves leg {leg + 1}, whose drive keeps its command whatever the force",
             key="controller.outputs",
             value=name,
             allowed="legs whose drives are servos or forces",
             next_step='Give drive.type = "servo" with a stiffness, or "force"',
         )
-    if what == "drive":
+    if channel.group == "drive":
         return _Action(leg, _port(system, force_ports(system, robot)[leg]), FORCE, 1.0)
     called = {shapes.index(name): f"{words}_stiffness" for name, words in shapes.drives}
     stiffness = float(system.leg_p[leg, columns(leg_parameters(shapes), called[at])].sum())
     if not stiffness:
         raise InputError(
-            f"commands leg {number}, whose drive has no stiffness of its own to its command",
+            f"commands leg {leg + 1}, whose drive has no stiffness of its own to its command",
             key="controller.outputs",
             value=name,
             allowed="legs whose drives are servos, or forces with a feedback stiffness",
-            next_step=f"Move its force: 'drive:{number}'",
+            next_step=f"Move its force: 'drive:{leg + 1}'",
         )
     return _Action(leg, _port(system, at), VALUE, stiffness)

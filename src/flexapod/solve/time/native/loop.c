@@ -1,11 +1,11 @@
 /* A sampled controller around the march: what it reads, the one linear law that it computes, what it moves, Eqs. (T26.1)-(T26.7).
    Between two samples its outputs are held. */
-enum { AT_COORDINATE, AT_FORCE, AT_PLACE, AT_TURN, AT_ACCELERATION };  /* what is read */
+enum { AT_COORDINATE, AT_FORCE, AT_CLOSURE, AT_JOINT, AT_PLACE, AT_TURN, AT_ACCELERATION };  /* what is read */
 enum { ASKED = 5 };                     /* status: who was asked for outputs failed */
 
 /* axis: the coordinate, of the leg or of a point on the payload; arm: to that from the centre of mass; port: whose command is
-   what a coordinate is read against */
-typedef struct { long of, leg, port, axis; double arm[3]; } Reading;
+   what a coordinate is read against; along: a direction in platform axes, or where the base joint is */
+typedef struct { long of, leg, port, axis; double arm[3], along[3]; } Reading;
 typedef struct { long leg, port, column; double gain; } Action;        /* gain: force by a unit of it */
 typedef int (*Asked)(double t, const double *readings, double *outputs);
 
@@ -88,7 +88,20 @@ static double of_payload(const Loop *c, const Reading *r, const Work *w, const d
   for (int i = 0; i < 3; i++) b[i] = w->payload.u_dot[i] - c->gravity[i];      /* as a body feels it, in its own axes */
   rotate(pose + 3, -1, b, d);
   cross(u, r->arm, a); cross(u, a, b); cross(turn, r->arm, a);
-  return d[r->axis] + a[r->axis] + b[r->axis];
+  double felt = 0;
+  for (int i = 0; i < 3; i++) felt += r->along[i]*(d[i] + a[i] + b[i]);
+  return felt;
+}
+
+/* Force of a leg on the platform, along the line between its joints */
+static double along_leg(const Reading *r, const Work *w) {
+  double arm[3], length = 0, force = 0;
+  rotate(w->payload.pose + 3, 1, r->arm, arm);
+  for (int i = 0; i < 3; i++) {
+    double way = w->payload.pose[i] + arm[i] - r->along[i];
+    length += way*way; force += way*w->leg[r->leg/LANES].lam[i][r->leg%LANES];
+  }
+  return force/sqrt(length);
 }
 
 /* All readings as they are, against the commanded path */
@@ -115,6 +128,8 @@ static void read_all(const Settings *s, const Loop *c, const double *path, const
       }
     }
     else if (r->of == AT_FORCE) y[k] = force[group][r->port][lane];
+    else if (r->of == AT_CLOSURE) y[k] = w->leg[group].lam[r->axis][lane];
+    else if (r->of == AT_JOINT) y[k] = along_leg(r, w);
     else y[k] = of_payload(c, r, w, path);
   }
 }
@@ -140,27 +155,39 @@ static double end_of_step(const Loop *c, double stop, int due) {
 
 static void rates_of_legs(const Settings *s, const Work *w, lanes **v) { for (int i = 0; i < groups(s); i++) v[i] = w->leg[i].v; }
 
-/* Take a sample: read, compute, hold. `change`: of the outputs, of which the table in the work space knows nothing yet */
-static int sample(const Settings *s, const Loop *c, Work *w, double *change) {
+/* Whether outputs follow from what was read before: they are held first then, and what is read is read under them */
+static int foresees(const Loop *c) {
+  if (c->delay > 0 || c->asked) return c->delay > 0;
+  for (long k = 0; k < c->actions*c->readings; k++) if (c->D[k] != 0) return 0;
+  return 1;
+}
+
+/* Readings that arrive now; zero before the first ones do */
+static double *arriving(const Loop *c, const Remembered *m) {
+  return m->ring + (((long)m->next[0] + 1) % (c->delay + 1))*c->readings;
+}
+
+static void read_sample(const Settings *s, const Loop *c, Work *w) {
   Remembered m = split(c);
-  long number = (long)m.next[0], row = number - c->first, slot = number % (c->delay + 1);
-  double *y = m.y, u[c->actions + 1];
-  lanes *v[GROUPS];
+  long number = (long)m.next[0], row = number - c->first;
+  double *to = m.ring + (number % (c->delay + 1))*c->readings;
   set_commands(s, w);
-  read_all(s, c, c->path + 7*row, m.u, w, y);
+  read_all(s, c, c->path + 7*row, m.u, w, m.y);
   for (long k = 0; k < c->readings; k++) {
-    if (number == 0) m.zero[k] = y[k];
-    double value = y[k] - m.zero[k] + c->noise[c->readings*row + k], q = c->quantum[k];
-    y[k] = m.ring[slot*c->readings + k] = q > 0 ? q*rint(value/q) : value;
+    if (number == 0) m.zero[k] = m.y[k];
+    double value = m.y[k] - m.zero[k] + c->noise[c->readings*row + k], q = c->quantum[k];
+    m.y[k] = to[k] = q > 0 ? q*rint(value/q) : value;
   }
-  const double *late = m.ring + ((number + 1) % (c->delay + 1))*c->readings;    /* zero before the first ones arrive */
+}
+
+/* Compute outputs and hold them. `change`: of them, of which the table in the work space knows nothing yet */
+static int hold_outputs(const Settings *s, const Loop *c, const Work *w, double *change) {
+  Remembered m = split(c);
+  double u[c->actions + 1];
+  lanes *v[GROUPS];
   if (c->asked) {
-    if (c->asked((double)number*c->period, late, u)) return ASKED;
-  } else {
-    affine(c->actions, c->states, c->C, m.x, c->readings, c->D, late, u);
-    affine(c->states, c->states, c->A, m.x, c->readings, c->B, late, m.ahead);
-    memcpy(m.x, m.ahead, BYTES(double, c->states));
-  }
+    if (c->asked(m.next[0]*c->period, arriving(c, &m), u)) return ASKED;
+  } else affine(c->actions, c->states, c->C, m.x, c->readings, c->D, arriving(c, &m), u);
   for (long k = 0; k < c->actions; k++) {
     double most = c->most[k];
     if (u[k] > most) u[k] = most;
@@ -168,10 +195,17 @@ static int sample(const Settings *s, const Loop *c, Work *w, double *change) {
     change[k] = u[k] - m.u[k];
     m.u[k] = u[k];
   }
-  m.next[0] += 1;
   rates_of_legs(s, w, v);
   m.power[0] = power_of_loop(s, c, v, m.u);
   return OK;
+}
+
+/* States of the law at the next sample */
+static void end_sample(const Loop *c) {
+  Remembered m = split(c);
+  affine(c->states, c->states, c->A, m.x, c->readings, c->B, arriving(c, &m), m.ahead);
+  memcpy(m.x, m.ahead, BYTES(double, c->states));
+  m.next[0] += 1;
 }
 
 /* How a jump of the outputs changes accelerations and forces, by the factored matrix of the iteration, (T26.5) */
