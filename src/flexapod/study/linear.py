@@ -33,7 +33,7 @@ __all__ = ["LinearModel", "compliance", "linearize", "transmissibility"]
 Friction = Literal["sliding", "stuck"]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class LinearModel(StateSpace):
     """A robot about its equilibrium at a pose, as `linearize` gives it.
 
@@ -47,6 +47,8 @@ class LinearModel(StateSpace):
     friction : {"sliding", "stuck"}
     position, quaternion : ndarray, shapes (3,), (4,)
         Of the payload's centre of mass [m] and its attitude, at the equilibrium.
+    plant : Plant
+        The robot that it is of, in arrays.
     """
 
     study: str
@@ -56,6 +58,11 @@ class LinearModel(StateSpace):
     position: Array
     quaternion: Array
     plant: Plant
+
+    def __repr__(self) -> str:
+        """How large it is, and of what."""
+        size = f"{len(self.states)} states, {len(self.inputs)} inputs, {len(self.outputs)} outputs"
+        return f"LinearModel({self.study}: {size}; drives {self.drives}, friction {self.friction})"
 
     def descriptor(self) -> Descriptor:
         """M, D, K, G, B, C in the flat coordinates of the equations, with names, Eq. (T20.1)."""
