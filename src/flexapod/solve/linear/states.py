@@ -161,10 +161,12 @@ def _turns(robot: Robot, leg: int) -> bool:
     return carriage is not None and carriage.kind == "crank" and robot.legs[leg].driven == "carriage"
 
 
-def descriptor_of(plant: Plant, inputs: Sequence[Channel], outputs: Sequence[Channel]) -> Descriptor:
-    """The equations in flat coordinates at the one pose of a plant."""
+def descriptor_of(
+    plant: Plant, inputs: Sequence[Channel], outputs: Sequence[Channel], about: Array | None = None
+) -> Descriptor:
+    """The equations in flat coordinates at the one pose of a plant; ``about``: as of `second_order`."""
     system = plant.system
-    second = second_order(plant, inputs)
+    second = second_order(plant, inputs, about=about)
     M, D, K = (x[0] for x in on_motions(system, plant.m, np.eye(system.size)[None]))
     m = len(inputs)
     seen = Seen(plant=plant, second=second, first=condensed(second), inputs=inputs)
