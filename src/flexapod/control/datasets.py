@@ -26,6 +26,7 @@ __all__ = [
     "h2_dataset",
     "hinf_dataset",
     "history_dataset",
+    "impedance_dataset",
     "in_parts",
     "locus_dataset",
     "margins_dataset",
@@ -173,6 +174,19 @@ def history_dataset(system: StateSpace, time: Array, values: Array, name: str) -
         {name: (("output", "input", "time"), values, words)},
         channel_labels(system, "output", "input") | {"time": ("time", time, {"units": "s"})},
     )
+
+
+def impedance_dataset(
+    frequency: Array, values: Complex, parallel: tuple[Array, Array], series: tuple[Array, Array]
+) -> xr.Dataset:
+    """`impedance` over `frequency`, and springs and dampers with the same."""
+    found: dict[str, tuple[object, ...]] = {
+        "impedance": (("frequency", "part"), in_parts(values), {"units": "N s/m", "long_name": "force over velocity"})
+    }
+    for name, (stiffness, damping) in {"parallel": parallel, "series": series}.items():
+        found[f"{name}_stiffness"] = ("frequency", stiffness, {"units": "N/m"})
+        found[f"{name}_damping"] = ("frequency", damping, {"units": "N s/m"})
+    return xr.Dataset(found, {"frequency": ("frequency", frequency, {"units": "Hz"}), "part": PARTS})
 
 
 def system_dataset(system: StateSpace) -> xr.Dataset:

@@ -21,12 +21,12 @@ WRENCH = ("fx", "fy", "fz", "mx", "my", "mz")
 #: Groups and their single channels; "legs": one a leg.
 INPUTS = {"wrench": WRENCH, "drive": "legs", "command": "legs", "floor": COMPONENTS, "force": AXES}
 OUTPUTS = {
-    "tool": COMPONENTS, "com": AXES, "stroke": "legs", "drive-force": "legs", "joint-force": "legs axes",
-    "force-sensor:base": "legs", "force-sensor:drive": "legs", "force-sensor:platform": "legs", "encoder": "legs",
-    "accelerometer": AXES, "geophone": AXES,
+    "tool": COMPONENTS, "com": AXES, "tool-base": COMPONENTS, "com-base": AXES, "stroke": "legs",
+    "drive-force": "legs", "joint-force": "legs axes", "force-sensor:base": "legs", "force-sensor:drive": "legs",
+    "force-sensor:platform": "legs", "encoder": "legs", "accelerometer": AXES, "geophone": AXES,
 }  # fmt: skip
 AT_POINTS = ("force", "accelerometer", "geophone")
-ON_PLATFORM = (*AT_POINTS, "wrench", "tool", "com")
+ON_PLATFORM = (*AT_POINTS, "wrench", "tool", "com", "tool-base", "com-base")
 #: Geophone of which nothing is said: a corner of 4.5 Hz, 0.7 of critical damping, and an output that is the velocity.
 USUAL = (4.5, 0.7, 1.0)
 
@@ -85,7 +85,7 @@ def _words(known: dict[str, object]) -> str:
 def _of(name: str, known: dict[str, object], robot: Robot, key: str) -> list[Channel]:
     group = next((g for g in sorted(known, key=len, reverse=True) if name == g or name.startswith(f"{g}:")), None)
     if group is None:
-        like = nearest(name.partition(":")[0], [*known, *{g.partition(":")[0] for g in known}])
+        like = nearest(name, [*known, *(f"{g}:POINT" for g in AT_POINTS if g in known)])
         raise InputError(
             "is not a channel", key=key, value=name, allowed=_words(known),
             next_step=None if like is None else f"Did you mean {like!r}?",
@@ -117,6 +117,8 @@ def _members(group: str, members: object, robot: Robot) -> list[Channel]:
             for i in legs
             for k, axis in enumerate(AXES)
         ]
+    if group == "floor" and robot.plane is not None:
+        members = AXES  # a base that turns is known of robots in space
     if members != "legs":
         return [Channel(name=f"{group}:{axis}", group=group, axis=k) for k, axis in enumerate(members)]  # type: ignore[arg-type]
     driven = [
