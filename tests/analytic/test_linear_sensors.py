@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from tests.analytic.test_linear_stewart import stewart
 from tests.consistency import test_motor_loops as motors
 from tests.machines import study
 
 import flexapod as fx
+from flexapod.verify.cases.linear import stewart
 
 HZ = np.array([3.0, 40.0, 300.0])
 S = 2j * np.pi * HZ

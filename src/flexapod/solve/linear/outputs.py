@@ -107,7 +107,7 @@ class Seen:
             if system.kernel.shapes.has(name):
                 legs[:, system.kernel.shapes.index(name)] = False
         found = np.linalg.lstsq(G[:, counts].T, -self.balance[counts], rcond=1e-12)[0]
-        return found.reshape(system.legs, system.rows, -1)
+        return np.asarray(found, dtype=np.float64).reshape(system.legs, system.rows, -1)
 
     @cached_property
     def jacobian(self) -> Array:

@@ -188,7 +188,7 @@ def _forces(plant: Plant, inputs: Sequence[Channel], gravity: Array, about: Arra
             case "force" if channel.at is not None:
                 found[:, hub, k] = point_motion(plant, channel.at)[:, channel.axis]
             case "drive":
-                found[:, channel.leg * system.n + plant.port[channel.leg], k] = 1.0
+                found[:, channel.leg * system.n + plant.pushed(channel.leg), k] = 1.0
             case "floor" if channel.axis < 3:
                 found[:, :, k] = gravity[:, :, channel.axis]
             case "floor" if turning is not None:

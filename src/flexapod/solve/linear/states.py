@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod.arrays import Array
+from flexapod.arrays import Array, Mask
 from flexapod.model import Robot
 from flexapod.solve.linear.channels import Channel
 from flexapod.solve.linear.first_order import FirstOrder, first_order, with_mass
@@ -67,7 +67,7 @@ class Descriptor:
     coordinates: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    held: Array
+    held: Mask
 
 
 def condensed(second: SecondOrder, k: int = 0) -> FirstOrder:
