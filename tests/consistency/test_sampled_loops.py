@@ -314,7 +314,7 @@ def test_refusals(study, given, words):
 def test_what_is_held_is_not_moved():
     law = Function(function=len, inputs=STROKES, outputs=DRIVES)
     with pytest.raises(InputError, match="keeps its command whatever the force"):
-        fx.simulate(fx.preset("paper-robot"), controller=law.system(), sample=1e-3)
+        fx.simulate(fx.preset("paper-robot"), controller=law, sample=1e-3)
 
 
 def test_ring_down_of_a_nano_hexapod_is_what_the_linear_model_predicts():
