@@ -142,7 +142,7 @@ def _closures(limbs: kinematics.Limbs, springs: Springs) -> Iterator[str]:
 
 def _end(gives: Gives, i: int) -> tuple[str, float]:
     """The body that ends in the platform joint, and where that is on its axis z [m]."""
-    return (f"piston_{i}", 0.0) if gives.turn is None else (f"bend_{i}", 0.5 * gives.free)
+    return (f"piston_{i}", 0.0) if gives.piston is None else (f"bend_{i}", 0.5 * gives.piston.free)
 
 
 def _actuators(springs: Springs) -> Iterator[str]:

@@ -11,7 +11,7 @@ from flexapod import kinematics, model
 from flexapod.elements.springs import Place, in_series, springs_along
 from flexapod.errors import InputError
 from flexapod.exchange.decks_legs import LegAtPose, drive_stiffness, legs_at_pose
-from flexapod.exchange.mjcf_trees import Gives, Spring
+from flexapod.exchange.mjcf_trees import Bending, Gives, Spring
 from flexapod.model.damping import damping_parts
 from flexapod.results.arguments import as_pose
 
@@ -76,22 +76,24 @@ def flexible_springs(robot: model.Robot, bends: bool) -> Springs:
         held = k
         if leg.driven == "carriage":
             own = drive_stiffness(leg, 0.0)
-            held = own if np.isfinite(own) else STIFF * k * _arm(limbs, i) ** 2
+            held = own if np.isfinite(own) else STIFF * _arm(limbs, i) ** 2 / (1 / k + 1 / outer)
         drives.append(_drive(limbs, i, leg, Spring(stiffness=held, damping=max(_damping(leg), held * delay))))
         joints = _joints(leg, step, at)
         joints |= {"l": Spring(stiffness=k, damping=k * delay)} if leg.strut is not None else {}
-        bending = _bending(leg, at, step, bool(limbs.pose_closure[i])) if bends else {}
-        bending |= {"along": Spring(stiffness=outer, damping=outer * delay)} if bends else {}
-        gives.append(Gives(joints=joints, base=_base(leg, step), begin=float(limbs.carriage_zero[i]), **bending))
+        between = Spring(stiffness=outer, damping=outer * delay)
+        piston = _bending(leg, at, step, between, twists=bool(limbs.pose_closure[i])) if bends else None
+        begin = float(limbs.carriage_zero[i])
+        gives.append(Gives(joints=joints, base=_base(leg, step), piston=piston, begin=begin))
     return Springs(gives=gives, drives=drives, step=step)
 
 
 def _step(robot: model.Robot, along: list[tuple[float, float]], legs: list[LegAtPose]) -> float:
     """A share of the shortest time in which a part of a piston swings on what is along it [s]."""
     times = []
-    for leg, at, stiffness in zip(robot.legs, legs, along, strict=True):
-        outer = _outer(at) * leg.piston.mass
-        times += [np.sqrt(m / k) for m, k in zip((leg.piston.mass - outer, outer), stiffness, strict=True)]
+    for leg, at, (inner, outer) in zip(robot.legs, legs, along, strict=True):
+        mass, cut = leg.piston.mass, bool(np.isfinite(outer))
+        tip = _outer(at) * mass if cut else 0.0
+        times += [np.sqrt((mass - tip) / inner), *[np.sqrt(tip / outer)] * cut]
     return float(np.clip(SHARE * min(times), STEP["shortest"], STEP["longest"]))
 
 
@@ -126,27 +128,32 @@ def _along(leg: model.Leg, at: LegAtPose, bends: bool) -> tuple[float, float]:
     return 1 / before, 1 / between if between else np.inf
 
 
-def _bending(leg: model.Leg, at: LegAtPose, step: float, twists: bool) -> dict[str, Spring | float]:
-    """A cantilever's springs at the middle of its free part, where force and moment do not couple."""
+def _bending(leg: model.Leg, at: LegAtPose, step: float, along: Spring, *, twists: bool) -> Bending:
+    """A cantilever's springs at the middle of its free part."""
     s, tip = at.free_length, leg.platform_joint.across_and_along
     softness = s**3 / (12 * at.EI) + (1 / tip[0] if tip else 0.0)
-    found: dict[str, Spring | float] = {"across": _damped(1 / softness, step), "turn": _damped(at.EI / s, step)}
-    if twists:
-        twist = leg.piston.torsional_stiffness / leg.piston.length
-        found["twist"] = Spring(stiffness=twist, damping=twist * step, armature=twist * (LAG * step) ** 2)
-    return found | {"free": s}
+    twist = leg.piston.torsional_stiffness / leg.piston.length
+    return Bending(
+        free=s,
+        across=_damped(1 / softness, step),
+        along=along,
+        turn=_damped(at.EI / s, step),
+        twist=Spring(stiffness=twist, damping=twist * step, armature=twist * (LAG * step) ** 2) if twists else None,
+    )
 
 
 def _joints(leg: model.Leg, step: float, at: LegAtPose) -> dict[str, Spring]:
     """Springs of joints that hold their angles, and what parts without mass need to turn with."""
     below, above = leg.base_joint, leg.platform_joint
-    of = dict.fromkeys(("alpha", "beta"), below.bending) | {"spin": below.torsion}
-    of |= dict.fromkeys(("gamma1", "gamma2"), above.bending) | {"gamma3": above.torsion}
     light = LAG * (LAG * step) ** 2 * at.EI / at.free_length
-    dampers = dict.fromkeys(("alpha", "beta", "spin"), below.damping)
+    of = {
+        "alpha": (below.bending, below.damping), "beta": (below.bending, below.damping),
+        "spin": (below.torsion, below.damping), "gamma1": (above.bending, above.damping),
+        "gamma2": (above.bending, above.damping), "gamma3": (above.torsion, above.damping),
+    }  # fmt: skip
     found = {}
-    for name, stiffness in of.items():
-        k, c = stiffness or 0.0, dampers.get(name, above.damping) or 0.0
+    for name, (stiffness, damping) in of.items():
+        k, c = stiffness or 0.0, damping or 0.0
         own = k * (LAG * step) ** 2 if k else light
         armature = own if name not in ("alpha", "beta") else 0.0
         found[name] = Spring(stiffness=k, damping=max(c, k * step), armature=armature)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from flexapod import kinematics
 from flexapod.arrays import Array
@@ -33,21 +34,30 @@ class Spring:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Bending:
+    """Springs of a piston in the middle of its `free` part [m], where force and moment do not couple.
+
+    `across`, `along` [N/m], `turn`, `twist` [N m/rad]; None: it does not twist.
+    """
+
+    free: float
+    across: Spring
+    along: Spring
+    turn: Spring
+    twist: Spring | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class Gives:
     """What gives way in a leg beside the coordinates of the rigid one.
 
-    `joints`: springs by coordinate; `base`: at the base joint by leg axis, x, y, z; `across`, `along`, `turn`,
-    `twist`: of the piston in the middle of its `free` part [m], where force and moment do not couple. None: that does
-    not give way. `begin`: what the coordinate of the carriage is at home [m, rad].
+    `joints`: springs by coordinate; `base`: at the base joint by leg axis, x, y, z; `piston`: None, it is one piece.
+    `begin`: what the coordinate of the carriage is at home [m, rad].
     """
 
     joints: Mapping[str, Spring] = field(default_factory=dict)
     base: Mapping[str, Spring] = field(default_factory=dict)
-    across: Spring | None = None
-    along: Spring | None = None
-    turn: Spring | None = None
-    twist: Spring | None = None
-    free: float = 0.0
+    piston: Bending | None = None
     begin: float = 0.0
 
 
@@ -147,16 +157,17 @@ def _piston(
     """The piston, in two parts where it bends: it is cut in the middle of its free part."""
     rod, still = leg.piston, np.eye(3)
     place = home * ALONG
-    if gives.turn is None:
+    cut = gives.piston
+    if cut is None:
         seen = [_capsule(-min(rod.length, home), 0.0, _radius(leg))] * looks
         parts = [_rod(leg, rod.length, 0.0), *seen]
         return Body(name=f"piston_{number}", place=place, turn=still, joints=joints, parts=parts, inside=ends)
-    middle, half = -0.5 * gives.free * ALONG, 0.5 * gives.free
+    middle, half = -0.5 * cut.free * ALONG, 0.5 * cut.free
     seen = [_capsule(-half, half, _radius(leg))] * looks
-    bends = [joint(f"bend_{name}_{number}", "slide", way, gives.across) for name, way in zip("xy", ACROSS, strict=True)]
-    bends += [joint(f"bend_z_{number}", "slide", ALONG, gives.along)] * (gives.along is not None)
-    bends += [joint(f"turn_{name}_{number}", "hinge", way, gives.turn) for name, way in zip("xy", ACROSS, strict=True)]
-    bends += [joint(f"twist_{number}", "hinge", ALONG, gives.twist)] * (gives.twist is not None)
+    bends = [joint(f"bend_{name}_{number}", "slide", way, cut.across) for name, way in zip("xy", ACROSS, strict=True)]
+    bends.append(joint(f"bend_z_{number}", "slide", ALONG, cut.along))
+    bends += [joint(f"turn_{name}_{number}", "hinge", way, cut.turn) for name, way in zip("xy", ACROSS, strict=True)]
+    bends += [joint(f"twist_{number}", "hinge", ALONG, cut.twist)] * (cut.twist is not None)
     outer = Body(
         name=f"bend_{number}",
         place=middle,
@@ -200,6 +211,6 @@ def _radius(leg: Leg) -> float:
     return 0.5 * depth if depth else float(np.sqrt(leg.piston.EA / (np.pi * 2.1e11)))
 
 
-def numbers(values: Array | Iterable[float] | float) -> str:
+def numbers(values: ArrayLike) -> str:
     """Numbers without loss of digits."""
     return " ".join(repr(float(x)) for x in np.ravel(values))
