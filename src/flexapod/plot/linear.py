@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from flexapod.arrays import Array
 from flexapod.control.channels import Names, chosen
-from flexapod.control.datasets import complex_of
+from flexapod.control.datasets import complex_of, per
 from flexapod.errors import InputError
 from flexapod.plot.style import LINE_STYLES, NOTE, PAGE, figure, needs, styled
 from flexapod.scene.colours import AXIS_COLORS, colors_of_legs
@@ -23,7 +23,7 @@ from flexapod.words import scale
 __all__ = ["bode", "cumulative", "transmissibility"]
 
 Several = xr.Dataset | Mapping[str, xr.Dataset]
-MOST = 18  # curves that a reader tells apart
+MOST = 12  # curves that a reader tells apart
 WIDTHS = (3.2, 1.3, 1.3)  # of lines: the second often lies upon the first
 FLOOR = 1e-12  # of the largest: what is smaller is rounding
 
@@ -202,8 +202,7 @@ def _unit_words(results: Mapping[str, xr.Dataset], pairs: list[tuple[str, str]])
     units = set()
     for one, (output, input) in product(results.values(), pairs):
         if _there(one, output, input):
-            top, bottom = one.output_units.sel(output=output).item(), one.input_units.sel(input=input).item()
-            units.add("1" if top == bottom else f"{top}/({bottom})" if " " in bottom else f"{top}/{bottom}")
+            units.add(per(one.output_units.sel(output=output).item(), one.input_units.sel(input=input).item()))
     return f"size [{units.pop()}]" if len(units) == 1 else "size [SI units of the channels]"
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -12,8 +12,9 @@ from flexapod.arrays import Array
 from flexapod.errors import InputError, nearest
 from flexapod.results.asked import Made
 from flexapod.results.record import Record
-from flexapod.solve.linear.channels import asked
-from flexapod.solve.time.sampled import Sampled
+
+if TYPE_CHECKING:
+    from flexapod.solve.time.sampled import Sampled
 
 __all__ = ["Controller", "Noise", "PerChannel", "control_coords", "control_results", "sampled_controller"]
 
@@ -136,6 +137,8 @@ def _made(
     seed: int = 0,
 ) -> Sampled:
     """A controller with all settings."""
+    from flexapod.solve.time.sampled import Sampled
+
     period = _period(controller, sample)
     if not isinstance(delay_samples, int) or delay_samples < 0:
         raise InputError("is no number of samples", key="delay_samples", value=delay_samples, allowed="0, 1, 2, ...")
@@ -179,6 +182,8 @@ def _law(controller: Controller, period: float, robot: model.Robot) -> Linear | 
     if isinstance(controller, Asked):
         return controller
     if isinstance(controller, Placed):
+        from flexapod.solve.linear.channels import asked
+
         read, moved = (
             [channel.name for group in groups for channel in asked(group, robot, key)]
             for groups, key in ((READ, "outputs"), (MOVED, "inputs"))

@@ -25,7 +25,6 @@ from flexapod.review.plausibility import robot_warnings
 from flexapod.review.unstable_loops import loop_remarks
 from flexapod.runtime.threads import one_thread
 from flexapod.solve.time.robot_march import RobotMarch, prepare
-from flexapod.solve.time.sampled import Sampled
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.controlled import (
     Controller,
@@ -38,6 +37,8 @@ from flexapod.study.controlled import (
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+    from flexapod.solve.time.sampled import Sampled
 
 
 @dataclass(frozen=True, kw_only=True)

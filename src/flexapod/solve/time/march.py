@@ -13,7 +13,6 @@ from flexapod.solve.time import interpreted, native
 from flexapod.solve.time.adaptive import adaptive_march
 from flexapod.solve.time.problem import CAUSES, Chunk, Problem
 from flexapod.solve.time.recording import Counters, Recording, unpack
-from flexapod.solve.time.sampled import NEAR_SAMPLE
 from flexapod.solve.time.stops import Stop, after, before
 
 CHUNK = 100  # output intervals between looks at the tolerance, or at progress where steps are slow
@@ -187,7 +186,8 @@ class _Control:
         """Run one output interval piece by piece, from break to break, with a restart after each that jumps."""
         p, prepared = self.problem, self.h
         begin, end = done * p.output_step, (done + 1) * p.output_step
-        stops = [*stops, *(Stop(first=t, last=t, jumps=False) for t in _samples(p, begin, end, stops))]
+        samples = p.loop.instants(begin, end, [stop.first for stop in stops]) if p.loop else []
+        stops = [*stops, *(Stop(first=t, last=t, jumps=False) for t in samples)]
         stops.sort(key=lambda stop: stop.first)
         edges = [begin, *(stop.first for stop in stops), end]
         spans = np.diff(edges)
@@ -262,15 +262,6 @@ class _Control:
         self.scales = [max(s, float(np.abs(x).max(initial=0.0))) for s, x in zip(self.scales, fine, strict=True)]
         groups = zip(coarse, fine, self.scales, strict=True)
         return max(float(np.abs(x - y).max(initial=0.0)) / max(s, 1e-9) for x, y, s in groups)
-
-
-def _samples(problem: Problem, first: float, last: float, stops: Sequence[Stop]) -> list[float]:
-    """Instants of samples between two others, but for those on which something stops anyway."""
-    if problem.loop is None:
-        return []
-    near = NEAR_SAMPLE * problem.loop.sampled.period
-    found = problem.loop.instants(first, last)
-    return [t for t in found if all(abs(t - stop.first) > near for stop in stops)]
 
 
 def _pieces(edges: list[float], counts: list[int], ends: Sequence[Stop | None]) -> list[Array]:

@@ -5,6 +5,7 @@ from ctypes import Structure, byref, c_double, c_long, c_void_p
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,8 +15,10 @@ from flexapod.integration import GeneralizedAlpha
 from flexapod.solve.kernel import Equations, Kernel
 from flexapod.solve.system import Flow, System
 from flexapod.solve.time.recording import Counters, record_width
-from flexapod.solve.time.sampled import SampledLoop
 from flexapod.symbolic.compiler import lanes, written_library
+
+if TYPE_CHECKING:
+    from flexapod.solve.time.sampled import SampledLoop
 
 NATIVE = Path(__file__).parent / "native"
 SOURCES = tuple(
@@ -143,7 +146,7 @@ def advance(
     every: int,
     counters: Counters,
     before: Advance | None = None,
-    loop: SampledLoop | None = None,
+    loop: "SampledLoop | None" = None,
     begin: float = 0.0,
 ) -> Advance:
     """Advance by the rows of ``tables`` ((T, legs, ports, 4), (T, load_size)), recording each ``every`` steps.

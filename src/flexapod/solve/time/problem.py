@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,13 +11,16 @@ from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.solve.system import Flow, System
 from flexapod.solve.time.recording import Recording
-from flexapod.solve.time.sampled import ASKED, SampledLoop
 from flexapod.solve.time.stops import Stops
 from flexapod.solve.time.tables import Law
+
+if TYPE_CHECKING:
+    from flexapod.solve.time.sampled import SampledLoop
 
 __all__ = ["CAUSES", "Chunk", "Measure", "Problem", "Weight"]
 
 Measure = Callable[[Recording], list[Array]]
+ASKED = 5  # as in loop.c
 CAUSES = {
     1: "the step's equations were not solved",
     2: "numbers became infinite",
@@ -59,7 +63,7 @@ class Problem:
     tolerance: float | None
     weights: tuple[Weight, ...] = ()
     knots: Array = field(default_factory=lambda: np.zeros(0))
-    loop: SampledLoop | None = None
+    loop: "SampledLoop | None" = None
 
     def tables_under(self, flow: Flow) -> Law:
         """Commands and loads with what a controller holds."""

@@ -2,6 +2,7 @@
 
 from ctypes import Structure, byref, c_double, c_long, c_void_p
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,7 +13,9 @@ from flexapod.solve.time.chebyshev import Series
 from flexapod.solve.time.native import Call, address, loops, memory, settings
 from flexapod.solve.time.pieces import NODES
 from flexapod.solve.time.recording import Counters, record_width
-from flexapod.solve.time.sampled import SampledLoop
+
+if TYPE_CHECKING:
+    from flexapod.solve.time.sampled import SampledLoop
 
 __all__ = ["OUT_OF_REACH", "Advanced", "Within"]
 
@@ -68,7 +71,7 @@ class Within:
     """
 
     def __init__(
-        self, system: System, series: Series, horizon: float, tolerance: float, loop: SampledLoop | None = None
+        self, system: System, series: Series, horizon: float, tolerance: float, loop: "SampledLoop | None" = None
     ) -> None:
         self.system, self.series, self.horizon, self.tolerance = system, series, horizon, tolerance
         self.loop = loop

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -30,10 +31,12 @@ from flexapod.solve.time.pieces import Pieces
 from flexapod.solve.time.problem import Chunk, Problem, Weight
 from flexapod.solve.time.recording import Counters, Recording
 from flexapod.solve.time.redundant import independent, shared
-from flexapod.solve.time.sampled import Sampled, SampledLoop
 from flexapod.solve.time.start import consistent_start
 from flexapod.solve.time.stops import Stops
 from flexapod.solve.time.tables import Law, robot_law
+
+if TYPE_CHECKING:
+    from flexapod.solve.time.sampled import Sampled, SampledLoop
 
 AHEAD = 2000  # outputs whose rigid places are made at once
 ROUNDING = 1e-12  # of the sum of what rounding makes along the legs [m]
@@ -55,7 +58,7 @@ class RobotMarch:
     counters: Counters = field(default_factory=Counters)
 
 
-def prepare(study: Study, state: State | None = None, sampled: Sampled | None = None) -> RobotMarch:
+def prepare(study: Study, state: State | None = None, sampled: "Sampled | None" = None) -> RobotMarch:
     """Start and time integration of a robot study.
 
     Parameters
@@ -81,13 +84,7 @@ def prepare(study: Study, state: State | None = None, sampled: Sampled | None = 
     path = _Path(study)
     law = robot_law(system, robot, study.load, path.poses, path.knots)
     method = GeneralizedAlpha(simulation.rho_inf)
-    if state is None:
-        state = _configuration(study, system)
-        if system.kernel.shapes.has("j"):
-            rests = study.initial.start == "equilibrium"
-            table, wrench = (part[0] for part in law(np.zeros(1)))
-            table[..., 1:3] *= not rests
-            state = settled(system, state, table, wrench, rests=rests)
+    state = _begun(study, system, law) if state is None else state
     refuse_flipped(system, robot, RestStates.of(state))
     system = independent(system, state)
     counters, output_step = Counters(), simulation.stored_step
@@ -113,7 +110,7 @@ def prepare(study: Study, state: State | None = None, sampled: Sampled | None = 
     step = initial_step(problem, simulation.step)
     start, impact = consistent_start(system, state, law, 0.0, method, step)
     if loop is not None:
-        refuse_off_the_steps(loop.sampled, step)
+        loop.refuse_off(step)
         start = replace(start, loop=loop.start())
     chunks = march(problem, start, step, counters)
     if system.slack is not None:
@@ -123,10 +120,12 @@ def prepare(study: Study, state: State | None = None, sampled: Sampled | None = 
     )
 
 
-def _around(sampled: Sampled | None, system: System, study: Study, path: "_Path") -> SampledLoop | None:
+def _around(sampled: "Sampled | None", system: System, study: Study, path: "_Path") -> "SampledLoop | None":
     """A controller around a robot, which compiled equations alone have."""
     if sampled is None:
         return None
+    from flexapod.solve.time.sampled import SampledLoop
+
     if system.kernel.library is None:
         raise InputError(
             "needs compiled equations",
@@ -134,22 +133,6 @@ def _around(sampled: Sampled | None, system: System, study: Study, path: "_Path"
             next_step="Install gcc or clang, or `pip install ziglang`",
         )
     return SampledLoop(sampled, system, study.robot, lambda t: path.exact(np.minimum(t, study.duration)))
-
-
-def refuse_off_the_steps(sampled: Sampled, step: float) -> None:
-    """Raise InputError if a controller's period is no multiple of a fixed step [s]; of steps of their own it is 0."""
-    if not step:
-        return
-    many = sampled.period / step
-    if abs(many - round(many)) > 1e-6 * max(many, 1.0) or round(many) < 1:
-        nearest = max(1, round(many))
-        raise InputError(
-            "is no multiple of the fixed step",
-            key="sample",
-            value=f"{sampled.period:.6g} s",
-            allowed=f"multiples of {step:.6g} s; the nearest is {nearest * step:.6g} s",
-            next_step=f"Give the nearest, step = {sampled.period / max(1, np.ceil(many)):.6g} s, or a tolerance",
-        )
 
 
 def refuse_massless(study: Study) -> None:
@@ -199,6 +182,17 @@ def refuse_growing_plates(study: Study) -> None:
                 allowed="over time the temperatures of pistons, cylinders and screws",
                 next_step=f"Give heat.{plate} a number here; flexapod.accuracy follows the whole table",
             )
+
+
+def _begun(study: Study, system: System, law: Law) -> State:
+    """State before the impact projection, with what motors that lag ask for."""
+    state = _configuration(study, system)
+    if not system.kernel.shapes.has("j"):
+        return state
+    rests = study.initial.start == "equilibrium"
+    table, wrench = (part[0] for part in law(np.zeros(1)))
+    table[..., 1:3] *= not rests
+    return settled(system, state, table, wrench, rests=rests)
 
 
 def _configuration(study: Study, system: System) -> State:

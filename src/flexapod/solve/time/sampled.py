@@ -20,9 +20,8 @@ from flexapod.solve.statics.drive_forces import force_ports, push_ports
 from flexapod.solve.system import Flow, System
 from flexapod.solve.time.tables import Law
 
-__all__ = ["ASKED", "NEAR_SAMPLE", "Asked", "Sampled", "SampledLoop"]
+__all__ = ["Asked", "Sampled", "SampledLoop"]
 
-ASKED = 5  # as in loop.c
 NEAR_SAMPLE = 1e-6  # of a period: instants that are no farther from a sample are its own
 BLOCK = 1024  # samples whose noise is drawn together
 FORCE, VALUE = 3, 0  # columns of a port in a table
@@ -166,12 +165,25 @@ class SampledLoop:
 
         return with_held
 
-    def instants(self, first: float, last: float) -> list[float]:
-        """Instants of samples between two others, neither of these."""
+    def instants(self, first: float, last: float, known: Sequence[float]) -> list[float]:
+        """Instants of samples between two others, neither of these nor those that are `known` anyway."""
         period = self.sampled.period
         numbers = range(int(np.floor(first / period)), int(np.ceil(last / period)) + 1)
         near = NEAR_SAMPLE * period
-        return [k * period for k in numbers if first + near < k * period < last - near]
+        found = [k * period for k in numbers if first + near < k * period < last - near]
+        return [t for t in found if all(abs(t - x) > near for x in known)]
+
+    def refuse_off(self, step: float) -> None:
+        """Raise InputError if the period is no multiple of a fixed step [s]; of steps of their own it is 0."""
+        many = self.sampled.period / step if step else 1.0
+        if abs(many - round(many)) > NEAR_SAMPLE * max(many, 1.0) or round(many) < 1:
+            raise InputError(
+                "is no multiple of the fixed step",
+                key="sample",
+                value=f"{self.sampled.period:.6g} s",
+                allowed=f"multiples of {step:.6g} s; the nearest is {max(1, round(many)) * step:.6g} s",
+                next_step=f"Give the nearest, step = {self.sampled.period / max(1, np.ceil(many)):.6g}, or a tolerance",
+            )
 
     def call(self, flow: Flow, begin: float, end: float, rows: Array) -> tuple[_Loop, tuple[Array, ...]]:
         """What a call in C reads of it, from `begin` to `end` [s], and the arrays that this points to.

@@ -155,27 +155,39 @@ static double end_of_step(const Loop *c, double stop, int due) {
 
 static void rates_of_legs(const Settings *s, const Work *w, lanes **v) { for (int i = 0; i < groups(s); i++) v[i] = w->leg[i].v; }
 
-/* Take a sample: read, compute, hold. `change`: of the outputs, of which the table in the work space knows nothing yet */
-static int sample(const Settings *s, const Loop *c, Work *w, double *change) {
+/* Whether outputs follow from what was read before: they are held first then, and what is read is read under them */
+static int foresees(const Loop *c) {
+  if (c->delay > 0 || c->asked) return c->delay > 0;
+  for (long k = 0; k < c->actions*c->readings; k++) if (c->D[k] != 0) return 0;
+  return 1;
+}
+
+/* Readings that arrive now; zero before the first ones do */
+static double *arriving(const Loop *c, const Remembered *m) {
+  return m->ring + (((long)m->next[0] + 1) % (c->delay + 1))*c->readings;
+}
+
+static void read_sample(const Settings *s, const Loop *c, Work *w) {
   Remembered m = split(c);
-  long number = (long)m.next[0], row = number - c->first, slot = number % (c->delay + 1);
-  double *y = m.y, u[c->actions + 1];
-  lanes *v[GROUPS];
+  long number = (long)m.next[0], row = number - c->first;
+  double *to = m.ring + (number % (c->delay + 1))*c->readings;
   set_commands(s, w);
-  read_all(s, c, c->path + 7*row, m.u, w, y);
+  read_all(s, c, c->path + 7*row, m.u, w, m.y);
   for (long k = 0; k < c->readings; k++) {
-    if (number == 0) m.zero[k] = y[k];
-    double value = y[k] - m.zero[k] + c->noise[c->readings*row + k], q = c->quantum[k];
-    y[k] = m.ring[slot*c->readings + k] = q > 0 ? q*rint(value/q) : value;
+    if (number == 0) m.zero[k] = m.y[k];
+    double value = m.y[k] - m.zero[k] + c->noise[c->readings*row + k], q = c->quantum[k];
+    m.y[k] = to[k] = q > 0 ? q*rint(value/q) : value;
   }
-  const double *late = m.ring + ((number + 1) % (c->delay + 1))*c->readings;    /* zero before the first ones arrive */
+}
+
+/* Compute outputs and hold them. `change`: of them, of which the table in the work space knows nothing yet */
+static int hold_outputs(const Settings *s, const Loop *c, const Work *w, double *change) {
+  Remembered m = split(c);
+  double u[c->actions + 1];
+  lanes *v[GROUPS];
   if (c->asked) {
-    if (c->asked((double)number*c->period, late, u)) return ASKED;
-  } else {
-    affine(c->actions, c->states, c->C, m.x, c->readings, c->D, late, u);
-    affine(c->states, c->states, c->A, m.x, c->readings, c->B, late, m.ahead);
-    memcpy(m.x, m.ahead, BYTES(double, c->states));
-  }
+    if (c->asked(m.next[0]*c->period, arriving(c, &m), u)) return ASKED;
+  } else affine(c->actions, c->states, c->C, m.x, c->readings, c->D, arriving(c, &m), u);
   for (long k = 0; k < c->actions; k++) {
     double most = c->most[k];
     if (u[k] > most) u[k] = most;
@@ -183,10 +195,17 @@ static int sample(const Settings *s, const Loop *c, Work *w, double *change) {
     change[k] = u[k] - m.u[k];
     m.u[k] = u[k];
   }
-  m.next[0] += 1;
   rates_of_legs(s, w, v);
   m.power[0] = power_of_loop(s, c, v, m.u);
   return OK;
+}
+
+/* States of the law at the next sample */
+static void end_sample(const Loop *c) {
+  Remembered m = split(c);
+  affine(c->states, c->states, c->A, m.x, c->readings, c->B, arriving(c, &m), m.ahead);
+  memcpy(m.x, m.ahead, BYTES(double, c->states));
+  m.next[0] += 1;
 }
 
 /* How a jump of the outputs changes accelerations and forces, by the factored matrix of the iteration, (T26.5) */

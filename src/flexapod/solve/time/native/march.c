@@ -383,15 +383,25 @@ INLINE void shift(long LARGE, long count, double scale, const double *jump, doub
   }
 }
 
+/* A row of the table with what the controller holds: in `held`, or as it is */
+static const double *held_row(const Settings *s, const Loop *c, const double *row, double *held) {
+  if (!c) return row;
+  memcpy(held, row, BYTES(double, s->legs*s->ports*COLUMNS));
+  hold(s, c, split(c).u, held);
+  return held;
+}
+
 /* Take a sample, if one is due, and jump to the accelerations and forces that belong to its outputs, (T26.5) */
-static int take_sample(const Settings *s, State *x, const Loop *c, const double *wrench, double now, Work *w) {
+static int take_sample(const Settings *s, State *x, const Loop *c, const double *row, const double *wrench, double now, Work *w) {
   SIZES(s);
   if (!is_due(c, now)) return OK;
   double change[c->actions + 1], dy[6], c_v = s->gamma/(s->beta*s->h), c_a = (1 - s->alpha_m)/((1 - s->alpha_f)*s->beta*s->h*s->h);
-  double before = split(c).power[0];
+  double before = split(c).power[0], held[s->legs*s->ports*COLUMNS];
   const Past *past = &w->past;
-  int fault = sample(s, c, w, change);
+  if (!foresees(c)) read_sample(s, c, w);
+  int fault = hold_outputs(s, c, w, change);
   if (fault) return fault;
+  follow_table(s, held_row(s, c, row, held), w);
   x->powers[1] += split(c).power[0] - before;
   if (w->age >= s->max_age) {
     x->factorisations++;
@@ -408,15 +418,9 @@ static int take_sample(const Settings *s, State *x, const Loop *c, const double 
   }
   for (int j = 0; j < 6 && s->hub; j++) w->payload.a[j] += c_a*dy[j];
   if (s->hub) shift(LARGE, 6, c_a, dy, w->payload.u_dot, past->u_dot, w->gap);
+  if (foresees(c)) read_sample(s, c, w);
+  end_sample(c);
   return OK;
-}
-
-/* A row of the table with what the controller holds: in `held`, or as it is */
-static const double *held_row(const Settings *s, const Loop *c, const double *row, double *held) {
-  if (!c) return row;
-  memcpy(held, row, BYTES(double, s->legs*s->ports*COLUMNS));
-  hold(s, c, split(c).u, held);
-  return held;
 }
 
 /* Work of the controller in a step, which is none of the drives' */
@@ -457,7 +461,7 @@ EXPORTED int march(const Settings *s, State *x, const double *table, const doubl
   }
   for (long t = 1; t <= steps; t++) {
     const double *load = wrench + load_size(s)*t;
-    int fault = loop ? take_sample(s, x, loop, load - load_size(s), loop->begin + (double)(t - 1)*s->h, w) : OK;
+    int fault = loop ? take_sample(s, x, loop, table + (t - 1)*width, load - load_size(s), loop->begin + (double)(t - 1)*s->h, w) : OK;
     if (!fault) {
       predict_body(s, held_row(s, loop, table + t*width, held), w, pose_step);
       fault = iterate(s, x, load, pose_step, w);

@@ -670,7 +670,8 @@ long radau_memory(const Settings *s) {
 static int take_sample_within(const Settings *s, const Loop *c, double h, double *row, Radau *r, Work *w) {
   SIZES(s);
   double change[c->actions + 1], dy[6], c_a = REAL*REAL/(h*h);
-  int fault = sample(s, c, w, change);
+  if (!foresees(c)) read_sample(s, c, w);
+  int fault = hold_outputs(s, c, w, change);
   if (fault) return fault;
   hold(s, c, change, row);
   follow_table(s, row, w);
@@ -694,6 +695,8 @@ static int take_sample_within(const Settings *s, const Loop *c, double h, double
     w->payload.u_dot[j] += c_a*dy[j];
     for (int k = 0; k < STAGES; k++) r->last_A[k].hub[j] += c_a*dy[j];
   }
+  if (foresees(c)) read_sample(s, c, w);
+  end_sample(c);
   start_step(s, w, r);
   return OK;
 }
