@@ -11,7 +11,7 @@ from flexapod import kinematics, model
 from flexapod.elements.springs import Place, in_series, springs_along
 from flexapod.errors import InputError
 from flexapod.exchange.decks_legs import LegAtPose, drive_stiffness, legs_at_pose
-from flexapod.exchange.mjcf_trees import Bending, Gives, Spring
+from flexapod.exchange.mjcf_trees import Bending, Gives, JointSpring
 from flexapod.model.damping import damping_parts
 from flexapod.results.arguments import as_pose
 
@@ -31,13 +31,13 @@ class Drive:
     """
 
     on: Literal["l", "chi"]
-    servo: Spring | None
+    servo: JointSpring | None
     push: bool
     home: float
 
 
 @dataclass(frozen=True, kw_only=True)
-class Springs:
+class LegSprings:
     """Of all legs what gives way, their drives (None: passive), and the step [s] for which they are made."""
 
     gives: list[Gives]
@@ -45,22 +45,22 @@ class Springs:
     step: float
 
 
-def rigid_springs(robot: model.Robot) -> Springs:
+def rigid_springs(robot: model.Robot) -> LegSprings:
     """Nothing gives way but servos; a prescribed drive is one as stiff as the steps and its own mass let it be."""
     limbs, step = kinematics.rigid_limbs(robot), STEP["rigid"]
-    light = {f"gamma{k}": Spring(armature=LIGHT * _turning(robot)) for k in (1, 2, 3)}
+    light = {f"gamma{k}": JointSpring(armature=LIGHT * _turning(robot)) for k in (1, 2, 3)}
     drives = []
     for i, leg in enumerate(robot.legs):
         mass = max(_moved(leg, _arm(limbs, i)), LIGHT * _carried(robot))
         stiffness = drive_stiffness(leg, _length(limbs, i))
-        hard = Spring(stiffness=mass * (SHARE / step) ** 2, damping=SHARE * mass / step)
-        own = Spring(stiffness=stiffness, damping=max(_damping(leg), stiffness * step))
+        hard = JointSpring(stiffness=mass * (SHARE / step) ** 2, damping=SHARE * mass / step)
+        own = JointSpring(stiffness=stiffness, damping=max(_damping(leg), stiffness * step))
         drives.append(_drive(limbs, i, leg, own if np.isfinite(stiffness) else hard))
     gives = [Gives(joints=light, begin=float(zero)) for zero in limbs.carriage_zero]
-    return Springs(gives=gives, drives=drives, step=step)
+    return LegSprings(gives=gives, drives=drives, step=step)
 
 
-def flexible_springs(robot: model.Robot, bends: bool) -> Springs:
+def flexible_springs(robot: model.Robot, bends: bool) -> LegSprings:
     """Legs stretch, with all springs along them, and where they bend (`bends`) do so in the middle of their free part.
 
     What is before the mass of a piston is the servo of its drive: between them stands no mass.
@@ -77,14 +77,14 @@ def flexible_springs(robot: model.Robot, bends: bool) -> Springs:
         if leg.driven == "carriage":
             own = drive_stiffness(leg, 0.0)
             held = own if np.isfinite(own) else STIFF * _arm(limbs, i) ** 2 / (1 / k + 1 / outer)
-        drives.append(_drive(limbs, i, leg, Spring(stiffness=held, damping=max(_damping(leg), held * delay))))
+        drives.append(_drive(limbs, i, leg, JointSpring(stiffness=held, damping=max(_damping(leg), held * delay))))
         joints = _joints(leg, step, at)
-        joints |= {"l": Spring(stiffness=k, damping=k * delay)} if leg.strut is not None else {}
-        between = Spring(stiffness=outer, damping=outer * delay)
+        joints |= {"l": JointSpring(stiffness=k, damping=k * delay)} if leg.strut is not None else {}
+        between = JointSpring(stiffness=outer, damping=outer * delay)
         piston = _bending(leg, at, step, between, twists=bool(limbs.pose_closure[i])) if bends else None
         begin = float(limbs.carriage_zero[i])
         gives.append(Gives(joints=joints, base=_base(leg, step), piston=piston, begin=begin))
-    return Springs(gives=gives, drives=drives, step=step)
+    return LegSprings(gives=gives, drives=drives, step=step)
 
 
 def _step(robot: model.Robot, along: list[tuple[float, float]], legs: list[LegAtPose]) -> float:
@@ -128,7 +128,7 @@ def _along(leg: model.Leg, at: LegAtPose, bends: bool) -> tuple[float, float]:
     return 1 / before, 1 / between if between else np.inf
 
 
-def _bending(leg: model.Leg, at: LegAtPose, step: float, along: Spring, *, twists: bool) -> Bending:
+def _bending(leg: model.Leg, at: LegAtPose, step: float, along: JointSpring, *, twists: bool) -> Bending:
     """A cantilever's springs at the middle of its free part."""
     s, tip = at.free_length, leg.platform_joint.across_and_along
     softness = s**3 / (12 * at.EI) + (1 / tip[0] if tip else 0.0)
@@ -138,11 +138,13 @@ def _bending(leg: model.Leg, at: LegAtPose, step: float, along: Spring, *, twist
         across=_damped(1 / softness, step),
         along=along,
         turn=_damped(at.EI / s, step),
-        twist=Spring(stiffness=twist, damping=twist * step, armature=twist * (LAG * step) ** 2) if twists else None,
+        twist=JointSpring(stiffness=twist, damping=twist * step, armature=twist * (LAG * step) ** 2)
+        if twists
+        else None,
     )
 
 
-def _joints(leg: model.Leg, step: float, at: LegAtPose) -> dict[str, Spring]:
+def _joints(leg: model.Leg, step: float, at: LegAtPose) -> dict[str, JointSpring]:
     """Springs of joints that hold their angles, and what parts without mass need to turn with."""
     below, above = leg.base_joint, leg.platform_joint
     light = LAG * (LAG * step) ** 2 * at.EI / at.free_length
@@ -156,11 +158,11 @@ def _joints(leg: model.Leg, step: float, at: LegAtPose) -> dict[str, Spring]:
         k, c = stiffness or 0.0, damping or 0.0
         own = k * (LAG * step) ** 2 if k else light
         armature = own if name not in ("alpha", "beta") else 0.0
-        found[name] = Spring(stiffness=k, damping=max(c, k * step), armature=armature)
+        found[name] = JointSpring(stiffness=k, damping=max(c, k * step), armature=armature)
     return found
 
 
-def _base(leg: model.Leg, step: float) -> dict[str, Spring]:
+def _base(leg: model.Leg, step: float) -> dict[str, JointSpring]:
     """Springs of the base joint by leg axis; along it only where a mass stands above them."""
     across, along = leg.base_joint.across_and_along, _softness(leg, "base")
     found = {} if across is None else dict.fromkeys("xy", _damped(across[0], step))
@@ -173,12 +175,12 @@ def _softness(leg: model.Leg, at: Place) -> float:
     return 1 / stiffness if stiffness else 0.0
 
 
-def _damped(stiffness: float, step: float) -> Spring:
+def _damped(stiffness: float, step: float) -> JointSpring:
     """A spring that steps of this length do not excite: a damper that takes one to bring it to rest."""
-    return Spring(stiffness=stiffness, damping=stiffness * step)
+    return JointSpring(stiffness=stiffness, damping=stiffness * step)
 
 
-def _drive(limbs: kinematics.Limbs, i: int, leg: model.Leg, servo: Spring) -> Drive | None:
+def _drive(limbs: kinematics.Limbs, i: int, leg: model.Leg, servo: JointSpring) -> Drive | None:
     if not leg.driven:
         return None
     push = isinstance(leg.drive, model.ForceDrive)
