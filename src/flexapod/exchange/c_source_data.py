@@ -176,7 +176,7 @@ def _outputs(study: model.Study, march: RobotMarch, row: Array) -> tuple[Array, 
     rows[:, moved] = 0.0
     rows[np.arange(len(moved)) + 1, moved] += 1.0
     rows[-1, moved] += np.sin(np.arange(len(moved)))
-    forms = VARIABLES | drive_forms(robot)
+    forms = {**VARIABLES, **drive_forms(robot)}
     matrices, offsets, channels, first = [], [], [], 0
 
     def add(name: str, shape: tuple[int, ...], matrix: Array, offset: Array) -> None:

@@ -27,7 +27,6 @@ from flexapod.runtime.threads import one_thread
 from flexapod.solve.time.robot_march import RobotMarch, prepare
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.controlled import (
-    Controller,
     Noise,
     PerChannel,
     control_coords,
@@ -38,6 +37,7 @@ from flexapod.study.controlled import (
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from flexapod.control import Controller, Function, StateSpace
     from flexapod.solve.time.sampled import Sampled
 
 
@@ -123,7 +123,7 @@ def simulate(
     duration: float | None = None,
     output_step: float | None = None,
     rho_inf: float | None = None,
-    controller: Controller | None = None,
+    controller: Controller | StateSpace | Function | None = None,
     sample: float | str | None = None,
     delay_samples: int | None = None,
     quantise: PerChannel = None,

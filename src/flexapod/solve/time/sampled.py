@@ -194,7 +194,7 @@ class SampledLoop:
         count = max(1, int(np.ceil(end / self.sampled.period)) + 2 - first)
         path = np.zeros((count, 7))
         if self._seen:
-            place, rotation = self._path(self.sampled.period * np.arange(first, first + count))
+            place, rotation = self._path(np.asarray(self.sampled.period * np.arange(first, first + count), dtype=float))
             path = np.concatenate([place, quaternion(rotation)], axis=1)
         kept = (self.sampled.noise(first, count), path)
         loop = _Loop(
