@@ -12,6 +12,7 @@ from flexapod.runtime.loading import loaded
 if TYPE_CHECKING:
     from flexapod import control, kinematics, model, plot, study
     from flexapod.citations import cite
+    from flexapod.control.measured import read_frf
     from flexapod.elements.element import Contribution, Element, Output
     from flexapod.elements.frame import Energies
     from flexapod.errors import ComputationError, FlexapodError, InputError
@@ -51,6 +52,7 @@ _HOMES = {
     "flexapod.schema.base": ("Key", "Quantity"),
     "flexapod.errors": ("ComputationError", "FlexapodError", "InputError"),
     "flexapod.citations": ("cite",),
+    "flexapod.control.measured": ("read_frf",),
     "flexapod.exchange.formats": ("export",),
     "flexapod.model": ("ActuatorStudy", "Study", "load", "loads", "open_values", "preset"),
     "flexapod.paper.study": ("replicate",),
@@ -120,6 +122,7 @@ __all__ = [
     "play",
     "plot",
     "preset",
+    "read_frf",
     "replicate",
     "run",
     "simulate",

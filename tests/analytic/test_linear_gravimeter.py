@@ -22,8 +22,8 @@ def gravimeter() -> model.Study:
     )  # fmt: skip
     payload = model.Payload(mass=M, inertia=INERTIA * np.eye(3), com=np.zeros(3))
     robot = model.Robot(
-        type="3-RPR", plane="xy", base_joints=flat(base), platform_joints=flat(top), home=model.Home(position=np.zeros(3)),
-        legs=(leg,) * 3, payload=payload, gravity=np.zeros(3),
+        type="3-RPR", plane="xy", base_joints=flat(base), platform_joints=flat(top),
+        home=model.Home(position=np.zeros(3)), legs=(leg,) * 3, payload=payload, gravity=np.zeros(3),
     )  # fmt: skip
     still = model.AxisMotion(type="surge", amplitude=0.0, duration=1.0)
     return model.Study(robot=robot, motion=still, simulation=model.Simulation(fidelity="rigid"))

@@ -19,7 +19,7 @@ def circle(radius, angles, z):
 
 
 def stewart() -> model.Study:
-    """Struts of two rods of 0.1 kg, 50 mm, radius 5 mm; the lower begins at the base, the upper ends at the platform."""
+    """Struts of two rods of 0.1 kg, 50 mm, radius 5 mm: one begins at the base, one ends at the platform."""
     base = circle(0.115, [-10, 10, 110, 130, 230, 250], 0.015)
     platform = circle(0.09, [-50, 50, 70, 170, 190, -70], 0.075)
     m, L, r = 0.1, 0.05, 0.005

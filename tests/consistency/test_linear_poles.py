@@ -10,7 +10,7 @@ from tests.consistency import test_motor_loops as motors
 from tests.consistency.test_hydraulic_drive import OIL
 from tests.consistency.test_mounts import BASE, TOP
 from tests.consistency.test_screw_drive import EVERYTHING
-from tests.machines import SCREW, SOFT, machine, study
+from tests.machines import SOFT, machine, study
 
 import flexapod as fx
 from flexapod.kinematics import home_pose

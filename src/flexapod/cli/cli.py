@@ -15,6 +15,7 @@ from typer.core import TyperGroup
 
 from flexapod.cli.commands_budget import budget
 from flexapod.cli.commands_export import export
+from flexapod.cli.commands_linear import damp, frf
 from flexapod.cli.commands_map import workspace_map
 from flexapod.cli.commands_poses import modes
 from flexapod.cli.commands_proof import replicate, verify
@@ -97,6 +98,8 @@ _ALL = (
     run,
     actuator,
     modes,
+    frf,
+    damp,
     budget,
     workspace_map,
     converge,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import string
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,23 +20,44 @@ if TYPE_CHECKING:
     from flexapod.exchange.formats import Exported
 
 OPTIONS = {"modes": "--count"} | {
-    name: f"--{name}" for name in ("format", "out", "pose", "elements", "commands", "step", "inputs", "outputs")
+    name: f"--{name}"
+    for name in ("format", "out", "pose", "elements", "fidelity", "magnify", "commands", "step", "inputs", "outputs")
 }
+COMMA = re.compile(r",(?![^(\[]*[)\]])")  # none of a place, (0, 0, 0.1), or of a sensor's numbers
 NAMES = frozenset(string.ascii_letters + string.digits + "-_")
 
-Kind = Annotated[str, typer.Option("--format", metavar="FORMAT", help="abaqus, which CalculiX reads as well.")]
+Kind = Annotated[
+    str,
+    typer.Option(
+        "--format", metavar="FORMAT", help="abaqus, which CalculiX reads as well; fmu, c, mjcf, gltf, vtk, mat."
+    ),
+]
 Elements = Annotated[
     int | None,
     typer.Option("--elements", help="abaqus: solid elements along the free part of each piston; default: 20."),
 ]
 Wanted = Annotated[int | None, typer.Option("--count", help="abaqus: how many frequencies are asked for; default: 24.")]
+Fidelity = Annotated[
+    str | None,
+    typer.Option("--fidelity", metavar="NAME", help="mjcf: in place of the study's; rigid: nothing gives way."),
+]
+Magnify = Annotated[float | None, typer.Option("--magnify", metavar="FACTOR", help="gltf: factor on deflections.")]
 Commands = Annotated[
     str | None,
-    typer.Option("--commands", metavar="KIND", help="inputs, commands of the drives come from outside, or motion."),
+    typer.Option(
+        "--commands", metavar="KIND", help="fmu, c: inputs, commands of the drives come from outside, or motion."
+    ),
 ]
-Step = Annotated[str | None, typer.Option("--step", metavar="TIME", help="Length of the fixed steps inside, 0.2ms.")]
+Step = Annotated[str | None, typer.Option("--step", metavar="TIME", help="fmu, c: length of the fixed steps, 0.2ms.")]
+Inputs = Annotated[
+    str | None, typer.Option("--inputs", metavar="NAMES", help="mat: channels with commas, wrench,command,floor.")
+]
+Outputs = Annotated[
+    str | None, typer.Option("--outputs", metavar="NAMES", help="mat: channels with commas, tool,stroke,drive-force.")
+]
 Place = Annotated[
-    Path | None, typer.Option("--out", metavar="FILE", help="File to write; default: beside the study, named after it.")
+    Path | None,
+    typer.Option("--out", metavar="FILE", help="File or folder to write; default: beside the study, named after it."),
 ]
 
 
@@ -46,13 +68,17 @@ def export(
     pose: Pose = None,
     elements: Elements = None,
     count: Wanted = None,
+    fidelity: Fidelity = None,
+    magnify: Magnify = None,
     commands: Commands = None,
     step: Step = None,
+    inputs: Inputs = None,
+    outputs: Outputs = None,
     out: Place = None,
     force: Force = False,
     json: Json = False,
 ) -> None:
-    """Write the robot for other programs: a deck with locked drives for Abaqus and CalculiX."""
+    """Write the robot for other programs: a deck, a unit that runs, a model, its motion to look at, matrices."""
     from flexapod.cli.map_options import parse_pose
     from flexapod.exchange.formats import FORMATS, check_options, check_place, format_of, written
     from flexapod.units import to_si
@@ -61,9 +87,13 @@ def export(
         "pose": parse_pose(pose),
         "elements": elements,
         "modes": count,
+        "fidelity": fidelity,
+        "magnify": magnify,
         "commands": commands,
         "step": None if step is None else to_si(step, "time", key="step"),
     }
+    channels = {"inputs": inputs, "outputs": outputs}
+    given |= {name: [x.strip() for x in COMMA.split(text)] for name, text in channels.items() if text is not None}
     given = {name: value for name, value in given.items() if value is not None}
     with as_options(**OPTIONS):
         kind = format_of(format)
@@ -73,8 +103,7 @@ def export(
         check_place(format, path)
         if format == "abaqus":
             _check_name(path)
-        if kind.endings:
-            refuse_existing(path, force)
+        refuse_existing(path, force)
         if "title" in FORMATS[format].options:
             given["title"] = f"{file.stem}: robot with locked drives"
         found = written(study, format, path, given)

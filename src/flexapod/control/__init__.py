@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from flexapod.runtime.loading import loaded
 
 if TYPE_CHECKING:
+    from flexapod.control.adaptive import AdaptiveDamping, Tracker
     from flexapod.control.closing import DelayedLoop
     from flexapod.control.controllers import DVF, IFF, PID, Controller, Decentralised, Decoupled, Fused, Together
     from flexapod.control.decoupling import (
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
         robot_jacobian,
     )
     from flexapod.control.function import Function
+    from flexapod.control.impedances import impedance
     from flexapod.control.laws import (
         Law,
         complementary,
@@ -35,9 +37,11 @@ if TYPE_CHECKING:
         rate,
     )
     from flexapod.control.loops import best_gain, margins, root_locus
+    from flexapod.control.scheduled import Scheduled
     from flexapod.control.state_space import StateSpace
 
 _HOMES = {
+    "adaptive": ("AdaptiveDamping", "Tracker"),
     "closing": ("DelayedLoop",),
     "controllers": ("DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together"),
     "decoupling": (
@@ -49,6 +53,7 @@ _HOMES = {
         "robot_jacobian",
     ),
     "function": ("Function",),
+    "impedances": ("impedance",),
     "laws": (
         "Law",
         "complementary",
@@ -63,6 +68,7 @@ _HOMES = {
         "rate",
     ),
     "loops": ("best_gain", "margins", "root_locus"),
+    "scheduled": ("Scheduled",),
     "state_space": ("StateSpace",),
 }
 _NAMES = {name: module for module, names in _HOMES.items() for name in names}
@@ -71,6 +77,7 @@ __all__ = [
     "DVF",
     "IFF",
     "PID",
+    "AdaptiveDamping",
     "Controller",
     "Decentralised",
     "Decoupled",
@@ -79,8 +86,10 @@ __all__ = [
     "Fused",
     "Law",
     "Matrices",
+    "Scheduled",
     "StateSpace",
     "Together",
+    "Tracker",
     "best_gain",
     "by_jacobian",
     "by_modes",
@@ -89,6 +98,7 @@ __all__ = [
     "complementary",
     "gain",
     "high_pass",
+    "impedance",
     "integrator",
     "lead",
     "low_pass",

@@ -16,7 +16,7 @@ from flexapod.control.laws import Law, Number
 from flexapod.control.state_space import StateSpace
 from flexapod.errors import InputError
 
-__all__ = ["DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together"]
+__all__ = ["DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together", "pairs"]
 
 NO_UNITS: Mapping[str, str] = {}
 
@@ -89,7 +89,7 @@ class Decentralised(Controller):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
-        sensors, actuators = _pairs(self.sensor, self.actuator, outputs, inputs)
+        sensors, actuators = pairs(self.sensor, self.actuator, outputs, inputs)
         each = np.eye(len(sensors))
         return assembled([self.law * -1.0] * len(sensors), each, each, sensors, actuators, units)
 
@@ -122,11 +122,11 @@ class IFF(Controller):
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
         law = laws.integrator(-self.gain, self.high_pass)
-        sensors, actuators = _pairs(self.sensor, self.actuator, outputs, inputs)
+        sensors, actuators = pairs(self.sensor, self.actuator, outputs, inputs)
         each = np.eye(len(sensors))
         if not self.parallel_stiffness:
             return assembled([law] * len(sensors), each, each, sensors, actuators, units)
-        strokes, _ = _pairs(self.stroke, self.actuator, outputs, inputs)
+        strokes, _ = pairs(self.stroke, self.actuator, outputs, inputs)
         into = np.hstack([each, self.parallel_stiffness * each])
         return assembled([law] * len(sensors), into, each, [*sensors, *strokes], actuators, units)
 
@@ -180,8 +180,8 @@ class Fused(Controller):
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
         below, above = laws.complementary(self.corner, self.order)
-        low, actuators = _pairs(self.low, self.actuator, outputs, inputs)
-        high, _ = _pairs(self.high, self.actuator, outputs, inputs)
+        low, actuators = pairs(self.low, self.actuator, outputs, inputs)
+        high, _ = pairs(self.high, self.actuator, outputs, inputs)
         each = np.eye(len(low))
         both = [self.law * below * -1.0] * len(low) + [self.law * above * -1.0] * len(low)
         return assembled(both, np.eye(2 * len(low)), np.hstack([each, each]), [*low, *high], actuators, units)
@@ -248,9 +248,7 @@ class Together(Controller):
         )
 
 
-def _pairs(
-    sensor: Names, actuator: Names, outputs: Sequence[str], inputs: Sequence[str]
-) -> tuple[list[str], list[str]]:
+def pairs(sensor: Names, actuator: Names, outputs: Sequence[str], inputs: Sequence[str]) -> tuple[list[str], list[str]]:
     """Names of sensors and actuators, as many of each."""
     sensors = [outputs[i] for i in chosen(sensor, outputs, "sensor")]
     actuators = [inputs[i] for i in chosen(actuator, inputs, "actuator")]

@@ -24,7 +24,8 @@ class Format:
     """A format: `module` below `flexapod.exchange` and `function` there, which returns what is `Written`.
 
     The function takes the study, and of the `options` of `export` those that are given, by their names. `endings` of
-    the file, none: it is a folder; `noun`, `words`: what it is; `named`: how it has to be named.
+    the file, none: it is a folder; `noun`, `words`: what it is; `named`: how it has to be named; `by_name`: what is
+    written depends on that, which the function takes as `name`.
     """
 
     module: str
@@ -33,6 +34,7 @@ class Format:
     noun: str
     words: str
     named: str
+    by_name: bool = False
     options: tuple[str, ...] = ()
 
 
@@ -64,6 +66,44 @@ FORMATS: Mapping[str, Format] = {
         named="a folder",
         options=("commands", "step"),
     ),
+    "mjcf": Format(
+        module="mjcf",
+        function="mjcf",
+        endings=(".xml", ".mjcf"),
+        noun="a model for MuJoCo",
+        words="a model for MuJoCo with closed loops",
+        named="FILE.xml or FILE.mjcf",
+        options=("fidelity",),
+    ),
+    "gltf": Format(
+        module="gltf",
+        function="gltf",
+        endings=(".glb",),
+        noun="a GLB file",
+        words="the motion for viewers of glTF, with pistons that bend",
+        named="FILE.glb",
+        options=("data", "magnify"),
+    ),
+    "vtk": Format(
+        module="vtk",
+        function="vtk",
+        endings=(".pvd",),
+        noun="a time series for ParaView",
+        words="the motion as a time series for ParaView",
+        named="FILE.pvd",
+        options=("data",),
+        by_name=True,
+    ),
+    "mat": Format(
+        module="state_space",
+        function="state_space",
+        endings=(".mat", ".npz", ".nc"),
+        noun="a file of matrices",
+        words="matrices A, B, C, D about rest, of MATLAB, NumPy or NetCDF",
+        named="FILE.mat, FILE.npz or FILE.nc",
+        options=("pose", "load", "inputs", "outputs"),
+        by_name=True,
+    ),
 }
 
 
@@ -82,6 +122,9 @@ class Exported:
     def __fspath__(self) -> str:
         return os.fspath(self.path)
 
+    def __str__(self) -> str:
+        return str(self.path)
+
 
 def export(
     study: RobotLike,
@@ -93,7 +136,9 @@ def export(
     title: str | None = None,
     elements: int | None = None,
     modes: int | None = None,
+    fidelity: str | None = None,
     data: Dataset | None = None,
+    magnify: float | None = None,
     commands: str | None = None,
     step: float | None = None,
     inputs: Sequence[str] | None = None,
@@ -101,29 +146,24 @@ def export(
 ) -> Exported:
     """The robot as a file for other programs; a file that exists is replaced.
 
-    Options belong to formats: one that the format does not take is refused. Those that are left out are as the format
-    wants them.
+    Options belong to formats: one that the format does not take is refused.
 
     Parameters
     ----------
     study : Study, Robot or path
-        A study, its file, or a robot, which stays at home.
+        A robot stays at home.
     format : str
         A name of `FORMATS`.
     out : path
         The file, with an ending of the format, or the folder.
-    pose, load : optional
-        As for `flexapod.modes`.
-    title : str, optional
-        First line of a deck.
-    elements, modes : int, optional
-        Solid elements along the free part of a piston, and frequencies, of a deck.
-    data : Dataset, optional
-        Result of `flexapod.simulate` of this study, where a format shows a motion; simulated if left out.
-    commands : str, optional
-        "inputs": the drives' commands come from outside; "motion": the study's own motion is built in.
-    step : float, optional
-        Length of the fixed steps inside [s].
+    pose, load, title, elements, modes : optional
+        Of a deck: pose and load as for `flexapod.modes`, first line, solid elements along a piston, frequencies.
+    fidelity : str, optional
+        In place of that of [simulation]; "rigid": nothing gives way.
+    data, magnify : optional
+        Of a motion: its result, of `flexapod.simulate`, which is made if left out; a factor on deflections.
+    commands, step : optional
+        Of a program: "inputs", commands come from outside, or "motion", that of the study; fixed steps inside [s].
     inputs, outputs : sequence of str, optional
         Channels of a linear model, as of `flexapod.linearize`.
 
@@ -138,8 +178,8 @@ def export(
         An unknown format or ending, an option of another format, a part of the robot that must not be left out.
     """
     given = {
-        "pose": pose, "load": load, "title": title, "elements": elements, "modes": modes, "data": data,
-        "commands": commands, "step": step, "inputs": inputs, "outputs": outputs,
+        "pose": pose, "load": load, "title": title, "elements": elements, "modes": modes, "fidelity": fidelity,
+        "data": data, "magnify": magnify, "commands": commands, "step": step, "inputs": inputs, "outputs": outputs,
     }  # fmt: skip
     return written(at_pose(study), format, Path(out), {k: value for k, value in given.items() if value is not None})
 
@@ -149,7 +189,8 @@ def written(study: model.Study, format: str, path: Path, given: Mapping[str, obj
     kind = format_of(format)
     check_options(format, given)
     check_place(format, path)
-    found: Written = getattr(loaded(f"flexapod.exchange.{kind.module}"), kind.function)(study, **given)
+    named = {"name": path.name} if kind.by_name else {}
+    found: Written = getattr(loaded(f"flexapod.exchange.{kind.module}"), kind.function)(study, **named, **given)
     beside = path.parent if kind.endings else path
     places = {beside / name if name else path: content for name, content in found.files.items()}
     for place, content in places.items():

@@ -1,4 +1,4 @@
-"""From M, D, K to x' = A x + B u: what has no mass condensed with its dampers, loops as states, Eqs. (T20.11)-(T20.16)."""
+"""From M, D, K to x' = A x + B u: what has no mass is condensed with its dampers, Eqs. (T20.11)-(T20.16)."""
 
 from __future__ import annotations
 

@@ -21,10 +21,11 @@ __all__ = ["Grid", "grid_of"]
 class Grid:
     """M z'' + D z' + K z = B u, y = C z at P poses; arrays with the pose first, ``motions`` by name.
 
-    Motions of loops have no inertia; those that inputs impose, as commands, stand last and follow z'' = u.
+    Motions of loops have no inertia; behind the ``free`` ones stand those that inputs impose, as commands: z'' = u.
     """
 
     motions: tuple[str, ...]
+    free: int
     M: Array
     D: Array
     K: Array
@@ -42,7 +43,7 @@ def grid_of(plant: Plant, inputs: Sequence[Channel], outputs: Sequence[Channel],
     """
     second = second_order(plant, inputs, about=about)
     C = np.stack([_row(plant, second, channel) for channel in outputs], axis=1)
-    return Grid(motions=second.names, M=second.M, D=second.D, K=second.K, B=second.F, C=C)
+    return Grid(motions=second.names, free=second.free, M=second.M, D=second.D, K=second.K, B=second.F, C=C)
 
 
 def _row(plant: Plant, second: SecondOrder, channel: Channel) -> Array:

@@ -1,4 +1,4 @@
-"""What is seen of a linear model: places, forces, what sensors measure, by states and inputs, Eqs. (T20.17)-(T20.23)."""
+"""What is seen of a linear model, by states and inputs: places, forces, sensors, Eqs. (T20.17)-(T20.23)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A robot about its equilibria as it moves from there: loops as they are, drives held or released, Eqs. (T20.1)-(T20.3)."""
+"""A robot about its equilibria with its loops as they are, drives held or released, Eqs. (T20.1)-(T20.3)."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal, cast
+
+import numpy as np
 
 from flexapod import kinematics
 from flexapod.arrays import Array
@@ -20,7 +22,7 @@ from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.robot_system import robot_system, smooth
 from flexapod.solve.statics.drive_forces import push_ports
 from flexapod.solve.statics.equilibrium import FARTHEST
-from flexapod.solve.statics.locked import LockedPoses
+from flexapod.solve.statics.locked import LockedPoses, the_equilibrium
 from flexapod.solve.statics.reduction import Motions, independent
 from flexapod.solve.statics.substitutes import with_substitutes
 from flexapod.solve.system import Index, System
@@ -57,8 +59,11 @@ class Plant:
 
     @property
     def command(self) -> Array:
-        """Commands of all ports, (P, legs, ports)."""
-        return self.locked.command[self.locked.at]
+        """Commands of all ports, (P, legs, ports); where statics know of none, what is there."""
+        found, told = self.x.q[..., self.system.ports], self.locked.command[self.locked.at]
+        for k, port in enumerate(self.locked.system.ports):
+            found[..., self.system.ports == port] = told[..., k, None]
+        return found
 
 
 def plant_at(
@@ -76,11 +81,15 @@ def plant_at(
     if drives == "force":
         robot = robot.replace(legs=tuple(leg.replace(drive=_holding(leg.drive)) for leg in robot.legs))
     locked = locked_poses(robot, simulation, path, load)
+    if len(path) == 1:
+        the_equilibrium(locked)
     robot = locked.robot
     shapes = locked.system.kernel.shapes
     as_at_rest = drives == "given" and not (shapes.has("w") or shapes.has("j"))
     system = locked.system if as_at_rest else _moving(robot, simulation, locked.per_loss, drives)
     x = locked.equilibria.states[locked.at]
+    if not as_at_rest:
+        x = replace(x, drive=np.zeros((len(x), system.legs, system.ports.size)))  # forces of statics: none is asked for
     m = with_friction(system, x, matrices_at_rest(system, x, locked.acts.wrench), stuck=simulation.friction == "stuck")
     if (more := pushes(system, x.q)) is not None:
         m = replace(m, D=m.D + more[0], K=m.K + more[1])

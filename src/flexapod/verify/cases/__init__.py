@@ -9,6 +9,7 @@ from flexapod.verify.cases import (
     bricard,
     calculix_beams,
     calculix_robots,
+    exports,
     exudyn,
     exudyn_parts,
     four_bar,
@@ -33,7 +34,7 @@ _SUBJECTS = (
     bending, solids, turning, sliding, integration, hexapods, frequencies, stiffness, mechanisms,
     slider_crank, squeezer, four_bar, bricard, real_parts, machines,
     mujoco_forces, calculix_beams, calculix_robots, exudyn,
-    exudyn_parts,
+    exudyn_parts, exports,
 )  # fmt: skip
 
 NOT_MODELLED = Case(
