@@ -332,11 +332,30 @@ def test_ring_down_of_a_nano_hexapod_is_what_the_linear_model_predicts():
     data = fx.simulate(
         still, controller=law, sample=period, step=period / 16, output_step=period, duration=0.1, load=load
     )
-    z, order = np.diff(heave(data)[10:]), 10
-    rows = np.stack([z[k : len(z) - order + k] for k in range(order)], axis=1)
-    found = np.roots([1.0, *-np.linalg.lstsq(rows, z[order:], rcond=None)[0][::-1]])
-    found = np.log(found[(found.imag > 1e-4) & (np.abs(found) > 0.9)]) / period
-    slowest = found[np.abs(found).argmin()]
+    slowest = next(x for x in fx.control.ring_down(heave(data)[10:], period) if x.imag > 1)
     nearest = predicted[np.abs(predicted - slowest).argmin()]
     assert abs(slowest - nearest) < 1e-4 * abs(nearest)
     assert -nearest.real / abs(nearest) > 5 * 0.0088  # it is the controller that damps
+
+
+def test_adaptive_damping_in_the_march(study):
+    """Damping that finds its frequency, heave at 171 Hz tracked from 120 Hz after a push of half a period: what the
+    same gain on the rate itself makes, (g + c) w / (2 k), within a tenth (the oscillator follows late)."""
+    times, zero = np.array([0, 1e-3, 1e-3, 4e-3, 4e-3, 1.0]), np.zeros((6, 6))
+    push = zero + np.outer([0, 0, 1, 1, 0, 0], [0, 0, F, 0, 0, 0])
+    load = fx.model.Load(wrench=fx.model.CsvWrench(time=times, wrench=push))
+    law = fx.control.AdaptiveDamping(gain=90.0, tracker=fx.control.Tracker(frequency=120.0, speed=200.0))
+    data = fx.simulate(study, controller=law, sample=T / 2, step=T / 20, duration=0.12, load=load)
+    pole = next(x for x in fx.control.ring_down(heave(data)[60:], T, order=4) if x.imag > 1)
+    w = np.sqrt(6 * height() ** 2 * K / M)
+    assert -pole.real / abs(pole) == pytest.approx((90.0 + C) * w / (2 * K), rel=0.1)
+
+
+def test_poles_of_a_ring_down():
+    """Two vibrations and an offset, known poles, to rounding; too few samples are refused."""
+    t, poles = 1e-3 * np.arange(400), np.array([-5 + 200j, -30 + 900j])
+    x = 0.7 + np.real(np.exp(poles[:, None] * t) * np.array([[1.0], [0.3j]])).T @ np.ones((2, 1))
+    found = fx.control.ring_down(x, "1 kHz", order=4)
+    np.testing.assert_allclose(found, poles, rtol=1e-8)
+    with pytest.raises(InputError, match="are too few"):
+        fx.control.ring_down(x[:8], 1e-3, order=10)

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
         rate,
     )
     from flexapod.control.loops import best_gain, margins, root_locus
+    from flexapod.control.ring_down import ring_down
     from flexapod.control.scheduled import Scheduled
     from flexapod.control.state_space import StateSpace
 
@@ -68,6 +69,7 @@ _HOMES = {
         "rate",
     ),
     "loops": ("best_gain", "margins", "root_locus"),
+    "ring_down": ("ring_down",),
     "scheduled": ("Scheduled",),
     "state_space": ("StateSpace",),
 }
@@ -107,6 +109,7 @@ __all__ = [
     "pid",
     "positive_feedback",
     "rate",
+    "ring_down",
     "robot_jacobian",
     "root_locus",
 ]

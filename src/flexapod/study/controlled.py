@@ -14,8 +14,10 @@ from flexapod.results.asked import Made
 from flexapod.results.record import Record
 
 if TYPE_CHECKING:
-    from flexapod.control import Controller, Function, StateSpace
+    from flexapod.control import AdaptiveDamping, Controller, Function, StateSpace
     from flexapod.solve.time.sampled import Sampled
+
+    AnyController = Controller | AdaptiveDamping | StateSpace | Function
 
 __all__ = ["Noise", "PerChannel", "control_coords", "control_results", "sampled_controller"]
 
@@ -31,7 +33,7 @@ READ, MOVED = ("stroke", "encoder", "drive-force", "force-sensor:drive", "tool",
 
 def sampled_controller(
     study: model.Study,
-    controller: Controller | StateSpace | Function | None = None,
+    controller: AnyController | None = None,
     sample: float | str | None = None,
     delay_samples: int | None = None,
     quantise: PerChannel = None,
@@ -44,7 +46,7 @@ def sampled_controller(
     Parameters
     ----------
     study : Study
-    controller : Controller, StateSpace or Function, optional
+    controller : Controller, AdaptiveDamping, StateSpace or Function, optional
         Of `flexapod.control`. It reads at each sample what sensors
         show from what they showed at the start, kinematic ones against the commanded path, and holds its outputs until
         the next, Eqs. (T26.1)-(T26.3).
@@ -92,7 +94,7 @@ def _of_table(table: model.Control) -> tuple[Controller, dict[str, object]]:
 
 
 def _made(
-    controller: Controller | StateSpace | Function,
+    controller: AnyController,
     robot: model.Robot,
     *,
     sample: float | str | None = None,
@@ -129,7 +131,7 @@ def _made(
     )
 
 
-def _period(controller: Controller | StateSpace | Function, sample: float | str | None) -> float:
+def _period(controller: AnyController, sample: float | str | None) -> float:
     """Time between samples [s]: as given, or that of a law that has one."""
     from flexapod.control import StateSpace
     from flexapod.control.sampling import period_of
@@ -145,14 +147,14 @@ def _period(controller: Controller | StateSpace | Function, sample: float | str 
     return float(period)
 
 
-def _law(controller: Controller | StateSpace | Function, period: float, robot: model.Robot) -> StateSpace | Function:
+def _law(controller: AnyController, period: float, robot: model.Robot) -> StateSpace | Function:
     """What is computed at each sample."""
-    from flexapod.control import Controller, Function, StateSpace
+    from flexapod.control import AdaptiveDamping, Controller, Function, StateSpace
     from flexapod.solve.linear.channels import asked
 
     if isinstance(controller, StateSpace):
         return controller if controller.sample is not None else controller.sampled(period)
-    if isinstance(controller, Controller):
+    if isinstance(controller, Controller | AdaptiveDamping):
         read, moved = (
             [channel.name for group in groups for channel in asked(group, robot, key)]
             for groups, key in ((READ, "outputs"), (MOVED, "inputs"))

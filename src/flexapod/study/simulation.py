@@ -37,8 +37,8 @@ from flexapod.study.controlled import (
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from flexapod.control import Controller, Function, StateSpace
     from flexapod.solve.time.sampled import Sampled
+    from flexapod.study.controlled import AnyController
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,7 +123,7 @@ def simulate(
     duration: float | None = None,
     output_step: float | None = None,
     rho_inf: float | None = None,
-    controller: Controller | StateSpace | Function | None = None,
+    controller: AnyController | None = None,
     sample: float | str | None = None,
     delay_samples: int | None = None,
     quantise: PerChannel = None,
