@@ -2,11 +2,15 @@
 
 import numpy as np
 import pytest
+from tests.consistency import test_motor_loops as motors
+from tests.consistency.test_hydraulic_drive import OIL
+from tests.consistency.test_screw_drive import EVERYTHING
 from tests.consistency.test_vibration import TILTED, lumped
-from tests.machines import machine, study
+from tests.machines import SCREW, machine, study
 
 import flexapod as fx
 from flexapod import model
+from flexapod.kinematics import inverse_kinematics, poses_from_home
 from flexapod.kinematics.rotations import exponential
 from flexapod.results.arguments import as_pose
 from flexapod.solve.linear.robot import linear_robot
@@ -51,6 +55,20 @@ def test_spectra_are_those_of_vibration():
     H = fx.linearize(given, TILTED, inputs=[*AXES, "wrench"], outputs="tool").at(hz)
     psd = np.einsum("pmf,fm->fp", np.abs(H) ** 2, np.broadcast_to(S, (len(hz), 9)))
     assert psd == pytest.approx(data.vibration_psd.values, rel=1e-9, abs=1e-9 * data.vibration_psd.values.max())
+
+
+def test_sources_are_those_of_vibration():
+    f = np.array([1.0, 500.0])
+    noise = model.Spectrum(frequency=f, density=np.full((2, 1), 4.0))
+    wrench = model.Spectrum(frequency=f, density=np.tile([1.0, 2.0, 3.0, 0.1, 0.2, 0.3], (2, 1)))
+    floor = model.Floor.by_curve("VC-A")
+    given = lumped(disturbance=model.Disturbance(floor=floor, wrench=wrench, force_noise=noise))
+    data = fx.vibration(given, TILTED)
+    lin = fx.linearize(given, TILTED, inputs=["floor", "wrench", "drive"], outputs="tool")
+    found = lin.by_source(given.disturbance)
+    # the same panels and the same spectra: what is left is rounding of poles and responses
+    assert found.rms_by_source.values == pytest.approx(data.vibration_by_source.values, rel=1e-9)
+    assert lin.psd(given.disturbance).rms.values == pytest.approx(data.vibration_rms.values, rel=1e-9)
 
 
 @pytest.mark.parametrize("drives", ["given", "force"])
@@ -144,14 +162,76 @@ class TestReleased:
         a, b = (fx.linearize(x, inputs="drive", outputs="tool", drives="force").at(HZ) for x in (given, pure))
         assert a == pytest.approx(b, rel=1e-12)
 
-    def test_a_position_screw_is_a_rotor_on_springs(self):
-        given = study(machine(), fidelity="lumped")
-        lin = fx.linearize(given, inputs="drive", outputs=["stroke", "drive-force"], drives="force")
-        assert len(lin.inputs) == 6
+    @pytest.mark.parametrize(("encoder", "motor"), [(motors.STROKE, motors.LAGS), (motors.ROTOR, model.Motor())])
+    def test_motors_that_are_released_and_closed_again_are_loops(self, encoder, motor):
+        # k, c and g of the loop about what the encoder shows, by hand, about the plant that is left without them: its
+        # lag stays. The same equilibrium but for what a spring of a loop gives way at rest, 1e-5 m of a metre
+        given = study(motors.real(encoder, motor), fidelity="lumped")
+        screw = given.robot.legs[0].screw
+        (k, c), g, s = screw.loop_spring, screw.integral, 2j * np.pi * HZ
+        free = fx.linearize(given, inputs=["drive", "wrench"], outputs=["encoder", "tool"], drives="force")
+        assert any("motor force" in name for name in free.states) == bool(screw.lag)
+        assert not any("summed error" in name for name in free.states)
+        H, closed = free.at(HZ), np.empty((6, 6, len(HZ)), dtype=complex)
+        for n in range(len(HZ)):
+            z = k + c * s[n] + g / s[n]
+            loop = np.linalg.solve(np.eye(6) + z * H[:6, :6, n], H[:6, 6:, n])
+            closed[..., n] = H[6:, 6:, n] - z * H[6:, :6, n] @ loop
+        theirs = fx.linearize(given, inputs="wrench", outputs="tool").at(HZ)
+        assert np.abs(closed - theirs).max() < 1e-7 * np.abs(theirs).max()
+
+    @pytest.mark.parametrize("place", ["rotor", "stroke", "joint-to-joint"])
+    def test_screws_that_hold_what_they_measure_are_rotors_on_springs(self, place):
+        # whatever they measured: released they are the same machine
+        given = [study(machine(drive=SCREW.replace(encoder=model.Encoder(at=x)), **EVERYTHING), fidelity="lumped")
+                 for x in ("rotor", place)]  # fmt: skip
+        first, second = (fx.linearize(x, inputs="drive", outputs="tool", drives="force") for x in given)
+        assert first.states == second.states
+        # the rotor is 2e-5 m from where it was, and the stiffness of its screw goes with that: 1e-4
+        a, b = first.at(HZ), second.at(HZ)
+        assert np.abs(a - b).max() < 1e-3 * np.abs(a).max()
+
+
+COMMANDED = {
+    "servo": lumped(),
+    "held stroke": fx.preset("paper-robot"),
+    "held rotor": study(machine(drive=SCREW, **EVERYTHING)),
+    "screw about its stroke": study(machine(drive=SCREW.replace(encoder=model.Encoder(at="stroke")), **EVERYTHING)),
+    "from joint to joint": study(
+        machine(drive=SCREW.replace(encoder=model.Encoder(at="joint-to-joint")), **EVERYTHING)
+    ),
+    "loops": study(motors.mixed()),
+    "oil": study(machine(drive=OIL)),
+    "carriages": fx.load("examples/mechanisms/hexaglide.toml"),
+    "hinges": fx.load("examples/mechanisms/tripod.toml"),
+    "a passive leg": fx.load("examples/mechanisms/tricept.toml"),
+    "flexures": fx.load("examples/mechanisms/flexures.toml"),
+}
+
+
+@pytest.mark.parametrize("name", list(COMMANDED))
+def test_slow_commands_take_the_tool_where_the_rigid_robot_goes(name):
+    # told as inverse kinematics says for a step of the platform, the tool makes this step; weight that the step turns
+    # bends robots by 1e-4 of it, and joints that give way share it in the same proportion
+    given = COMMANDED[name]
+    given = given.replace(robot=given.robot.replace(gravity=np.zeros(3)))
+    lin = fx.linearize(given, inputs="command", outputs="tool")
+    s = 2j * np.pi * 1e-4
+    H = (s**2 * lin.at([1e-4])[:, :, 0]).real
+    legs = [int(x.partition(":")[2]) - 1 for x in lin.inputs]
+    ways = []
+    for step in (1e-6, -1e-6):
+        found = inverse_kinematics(given.robot, poses_from_home(given.robot, np.array([[0, 0, step, 0, 0, 0]])))
+        carried = found.chi if found.chi is not None else found.length
+        ways.append([(carried if given.robot.legs[i].driven == "carriage" else found.length)[0, i] for i in legs])
+    moved = H @ (np.subtract(*ways) / 2e-6)
+    assert moved[2] == pytest.approx(1.0, abs=2e-3 if name == "flexures" else 1e-4)
+    assert np.abs(moved[[0, 1]]).max() < 1e-3
 
 
 MOTIONS = {"delta": ("surge", "sway", "heave"), "tripod": ("heave", "roll", "pitch"), "planar": ("surge", "yaw"),
-           "tricept": ("heave",), "hexaglide": model.AXES, "eight-legs": model.AXES}  # fmt: skip
+           "tricept": ("heave",), "hexaglide": model.AXES, "eight-legs": model.AXES, "hexapod": model.AXES,
+           "flexures": ("heave", "yaw")}  # fmt: skip
 
 
 class TestManyPoses:

@@ -12,6 +12,7 @@ from scipy.linalg import block_diag
 from flexapod.arrays import Array
 from flexapod.control import laws
 from flexapod.control.channels import RATE, Names, chosen
+from flexapod.control.interconnect import law_of
 from flexapod.control.laws import Law, Number
 from flexapod.control.state_space import StateSpace
 from flexapod.errors import InputError
@@ -231,7 +232,7 @@ class Together(Controller):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
-        each = [part.on(outputs, inputs, units) for part in self.parts]
+        each = [law_of(part, outputs, inputs, units) for part in self.parts]
         readings = tuple(dict.fromkeys(name for part in each for name in part.inputs))
         actuators = tuple(dict.fromkeys(name for part in each for name in part.outputs))
         reads = [np.array([[float(a == b) for b in readings] for a in part.inputs]) for part in each]

@@ -12,7 +12,7 @@ from scipy.optimize import brentq, linear_sum_assignment, minimize_scalar
 
 from flexapod.arrays import Array
 from flexapod.control.closing import DelayedLoop
-from flexapod.control.interconnect import closed, opened
+from flexapod.control.interconnect import closed, law_of, opened
 from flexapod.control.poles import damping_of, poles_of, zeros_of
 from flexapod.control.sampling import held
 from flexapod.errors import ComputationError, InputError
@@ -124,7 +124,7 @@ def margins(system: StateSpace, controller: Controller | StateSpace, *, delay: f
 
 
 def _law(system: StateSpace, controller: Controller | StateSpace) -> StateSpace:
-    law = controller.on(system.outputs, system.inputs, system.units)
+    law = law_of(controller, system.outputs, system.inputs, system.units)
     return held(law, system.sample) if system.sample is not None and law.sample is None else law
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from flexapod.arrays import Array
 from flexapod.control.controllers import Controller
 from flexapod.control.function import Function
+from flexapod.control.interconnect import law_of
 from flexapod.control.sampling import period_of
 from flexapod.errors import InputError
 
@@ -90,7 +91,7 @@ class Scheduled:
 def _law(
     one: Controller | StateSpace, outputs: Sequence[str], inputs: Sequence[str], period: float | None
 ) -> StateSpace:
-    law = one.on(outputs, inputs)
+    law = law_of(one, outputs, inputs, {})
     return law if period is None or law.sample is not None else law.sampled(period)
 
 

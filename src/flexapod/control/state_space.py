@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexapod.arrays import Array
-from flexapod.control.channels import RATE, Names, chosen
+from flexapod.control.channels import Names, chosen
 from flexapod.control.frequency import response
 from flexapod.control.histories import histories, instants
 from flexapod.control.norms import h2_norms, hinf_norm, relative_gains
@@ -84,14 +84,6 @@ class StateSpace:
             units=self.units,
             sample=self.sample,
         )
-
-    def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] | None = None) -> StateSpace:
-        """Itself, as a controller from some `outputs` of another system to some of its `inputs`."""
-        for name in self.inputs:
-            chosen(name.removeprefix(RATE), outputs, "sensor")
-        for name in self.outputs:
-            chosen(name, inputs, "actuator")
-        return self
 
     def sampled(self, period: float | str, delay: float | str = 0.0) -> StateSpace:
         """The same between samples, inputs held for a `period` [s] (or "5 kHz") and late by a `delay` [s], (T21.17)."""

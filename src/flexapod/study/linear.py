@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,7 +33,7 @@ __all__ = ["LinearModel", "compliance", "linearize", "transmissibility"]
 Friction = Literal["sliding", "stuck"]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class LinearModel(StateSpace):
     """A robot about its equilibrium at a pose, as `linearize` gives it.
 
@@ -47,6 +47,8 @@ class LinearModel(StateSpace):
     friction : {"sliding", "stuck"}
     position, quaternion : ndarray, shapes (3,), (4,)
         Of the payload's centre of mass [m] and its attitude, at the equilibrium.
+    plant : Plant
+        The robot that it is of, in arrays.
     """
 
     study: str
@@ -56,6 +58,11 @@ class LinearModel(StateSpace):
     position: Array
     quaternion: Array
     plant: Plant
+
+    def __repr__(self) -> str:
+        """How large it is, and of what."""
+        size = f"{len(self.states)} states, {len(self.inputs)} inputs, {len(self.outputs)} outputs"
+        return f"LinearModel({self.study}: {size}; drives {self.drives}, friction {self.friction})"
 
     def descriptor(self) -> Descriptor:
         """M, D, K, G, B, C in the flat coordinates of the equations, with names, Eq. (T20.1)."""
@@ -73,7 +80,7 @@ def linearize(
     drives: Drives = "given",
     friction: Friction | None = None,
     load: LoadLike = None,
-) -> LinearModel | StateSpace | Dataset:
+) -> LinearModel:
     """A robot about its equilibrium under gravity and load as a linear system with named channels, Eq. (T20.1).
 
     Closures are eliminated: states are motions by name ("payload x", "leg 3 a2", turns of the payload about platform
@@ -90,10 +97,10 @@ def linearize(
         ``wrench`` [N, N m] at the tool, ``drive`` [N, N m], ``command`` [m/s^2, rad/s^2], second derivative of what a
         drive is told, ``floor`` [m/s^2, rad/s^2] about the point of `base_motion` or the origin, ``force:POINT`` [N].
     outputs : str or sequence of str
-        ``tool`` [m, rad], ``com`` [m], ``stroke`` and ``encoder`` [m, rad], ``drive-force`` [N, N m], ``joint-force``,
-        ``force-sensor:base``, ``:drive``, ``:platform`` [N], ``accelerometer:POINT`` [m/s^2], ``geophone:POINT`` [m/s].
-        POINT: ``tool``, ``com``, ``platform``, ``joint-3``, or in platform axes ``(0.1, 0, 0.05)`` [m]. Single
-        channels: ``wrench:fx``, ``drive:3``, ``tool:rz``, ``force:tool:x``.
+        ``tool`` [m, rad], ``com`` [m], from a base plate ``tool-base``, ``com-base``; ``stroke``, ``encoder``;
+        ``drive-force``, ``joint-force``, ``force-sensor:base``, ``:drive``, ``:platform`` [N]; ``accelerometer:POINT``
+        [m/s^2], ``geophone:POINT`` [m/s]. POINT: ``tool``, ``com``, ``platform``, ``joint-3``, or in platform axes
+        ``(0.1, 0, 0.05)`` [m]. Single channels: ``wrench:fx``, ``drive:3``, ``tool:rz``, ``force:tool:x``.
     drives : {"given", "force"}
         "force" releases the drives at the equilibrium that they hold, with the force that holds them: neither springs
         nor loops of theirs are left. Pure force drives are linearised so.
@@ -105,9 +112,9 @@ def linearize(
     Returns
     -------
     LinearModel
-        A `control.StateSpace` that knows its pose. Of many poses a Dataset for interpolation between them: `mass`,
-        `damping`, `stiffness` (pose, motion, motion_by), `input_matrix` (pose, motion, input), `output_matrix`
-        (pose, output, motion) of M z'' + D z' + K z = B u, y = C z; NaN where a pose has none.
+        A `control.StateSpace` that knows its pose; of an actuator a `StateSpace`. Of many poses a Dataset for
+        interpolation: `mass`, `damping`, `stiffness` (pose, motion, motion_by), `input_matrix` (pose, motion, input),
+        `output_matrix` (pose, output, motion) of M z'' + D z' + K z = B u, y = C z; NaN where a pose has none.
 
     Raises
     ------
@@ -117,9 +124,9 @@ def linearize(
         No equilibrium at this pose, or one so far from home that the motions chosen there say nothing of it.
     """
     if isinstance(study := read(study), model.ActuatorStudy):
-        return _of_actuator(study, pose, inputs, outputs, drives)
+        return cast("LinearModel", _of_actuator(study, pose, inputs, outputs, drives))
     if is_many(pose):
-        return _grid(study, pose, inputs, outputs, drives, friction, load)
+        return cast("LinearModel", _grid(study, pose, inputs, outputs, drives, friction, load))
     found, plant = _plant(study, pose, load, drives, friction)
     robot = plant.robot
     states = states_of(plant, asked(inputs, robot, "inputs"), asked(outputs, robot, "outputs"), about=_about(found))
@@ -188,21 +195,23 @@ def _grid(
     path = as_many(found.robot, pose)
     given, seen = asked(inputs, found.robot, "inputs"), asked(outputs, found.robot, "outputs")
     parts: dict[str, Array] = {}
-    for part in batches(len(path)):
+    motions, free = (), 0
+    for part in batches(len(path)) if len(path) else [slice(0, 0)]:
         plant = _at(found, path.part(part), drives)
         grid = grid_of(plant, given, seen, about=_about(found))
+        motions, free = grid.motions, grid.free
         for name, (of, _) in MATRICES.items():
             value = getattr(grid, of)
             parts.setdefault(name, np.full((len(path), *value.shape[1:]), np.nan))
             parts[name][part][plant.locked.at] = value
     units = units_of(found.robot, [*given, *seen])
-    labels = {"pose": np.arange(len(path)), "coordinate": list(model.AXES), "motion": list(grid.motions)}
-    labels |= {"motion_by": list(grid.motions), "input": [c.name for c in given], "output": [c.name for c in seen]}
+    labels = {"pose": np.arange(len(path)), "coordinate": list(model.AXES), "motion": list(motions)}
+    labels |= {"motion_by": list(motions), "input": [c.name for c in given], "output": [c.name for c in seen]}
     data = xr.Dataset(
         {name: (MATRICES[name][1], value) for name, value in parts.items()}
         | {"pose_from_home": (("pose", "coordinate"), coordinates_of(found.robot, path))},
         labels,
-        {"study": _name(found), "drives": drives, "friction": found.simulation.friction, "free_motions": grid.free},
+        {"study": _name(found), "drives": drives, "friction": found.simulation.friction, "free_motions": free},
     )
     return data.assign_coords(
         {f"{x}_units": (x, [units[str(name)] for name in data[x].values]) for x in ("input", "output")}

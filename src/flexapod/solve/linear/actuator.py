@@ -93,7 +93,7 @@ def _first_order(
     for i, column in enumerate(told, start=d):
         f[:d, column] -= m[:d, i]
         m[:d, i], m[i, i], f[i, column] = 0.0, 1.0, 1.0
-    own, rest, T = with_mass(np.linalg.cholesky(M[np.ix_(moving, moving)]).T)
+    own, rest, T = with_mass(np.asarray(np.linalg.cholesky(M[np.ix_(moving, moving)]).T, dtype=np.float64))
     own = np.concatenate([own, np.arange(d, count)]).astype(np.intp)
     T = np.concatenate([T, np.zeros((count - d, rest.size))])
     return first_order(m, c, k, f, mass=(own, rest, T), loops=np.zeros(0, dtype=np.intp))

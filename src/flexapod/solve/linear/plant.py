@@ -10,7 +10,7 @@ from typing import Literal, cast
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.arrays import Array
+from flexapod.arrays import Array, Mask
 from flexapod.errors import ComputationError, InputError
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Drive, Encoder, ForceDrive, Load, PrescribedDrive, Robot, ScrewDrive, Simulation
@@ -56,6 +56,12 @@ class Plant:
     def robot(self) -> Robot:
         """The robot, pure force drives holding their places, on a base at rest."""
         return self.locked.robot
+
+    def pushed(self, leg: int) -> int:
+        """Coordinate on which a force of a drive acts; of a motor that lags, and is released, what it is asked for."""
+        shapes, at = self.system.kernel.shapes, int(self.port[leg])
+        lags = self.drives == "force" and shapes.has("j") and not self.system.held[leg, shapes.index("j")]
+        return shapes.index("j") if lags else at
 
     @property
     def command(self) -> Array:
@@ -137,7 +143,7 @@ def _at_rotors(robot: Robot) -> Robot:
     return robot.replace(legs=legs)
 
 
-def _released(system: System, held: Array, robot: Robot) -> System:
+def _released(system: System, held: Mask, robot: Robot) -> System:
     """The system whose drives are forces: nothing holds their ports, neither springs nor loops, Eq. (T20.2)."""
     shapes, leg_p, held = system.kernel.shapes, system.leg_p.copy(), held.copy()
     layout = leg_parameters(shapes)

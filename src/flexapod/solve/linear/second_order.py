@@ -12,7 +12,8 @@ from flexapod.errors import InputError
 from flexapod.kinematics.rotations import matrix
 from flexapod.solve.batch import residual
 from flexapod.solve.linear.channels import Channel
-from flexapod.solve.linear.floor import gravity_forces, tilt_stiffness, turning_forces
+from flexapod.solve.linear.floor import tilt_stiffness, turning_forces
+from flexapod.solve.linear.gravity import gravity_forces
 from flexapod.solve.linear.motions import coordinate_names, held_motions, on_motions
 from flexapod.solve.linear.plant import Plant
 from flexapod.solve.modal.modes import mass_on_motions, no_mass
@@ -188,7 +189,7 @@ def _forces(plant: Plant, inputs: Sequence[Channel], gravity: Array, about: Arra
             case "force" if channel.at is not None:
                 found[:, hub, k] = point_motion(plant, channel.at)[:, channel.axis]
             case "drive":
-                found[:, channel.leg * system.n + plant.port[channel.leg], k] = 1.0
+                found[:, channel.leg * system.n + plant.pushed(channel.leg), k] = 1.0
             case "floor" if channel.axis < 3:
                 found[:, :, k] = gravity[:, :, channel.axis]
             case "floor" if turning is not None:

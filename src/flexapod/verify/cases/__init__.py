@@ -16,6 +16,7 @@ from flexapod.verify.cases import (
     frequencies,
     hexapods,
     integration,
+    linear,
     machines,
     mechanisms,
     mujoco_forces,
@@ -32,7 +33,7 @@ __all__ = ["CASES"]
 
 _SUBJECTS = (
     bending, solids, turning, sliding, integration, hexapods, frequencies, stiffness, mechanisms,
-    slider_crank, squeezer, four_bar, bricard, real_parts, machines,
+    slider_crank, squeezer, four_bar, bricard, real_parts, machines, linear,
     mujoco_forces, calculix_beams, calculix_robots, exudyn,
     exudyn_parts, exports,
 )  # fmt: skip
