@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     AnyController = Controller | AdaptiveDamping | StateSpace | Function
 
-__all__ = ["Noise", "PerChannel", "control_coords", "control_results", "sampled_controller"]
+__all__ = ["Noise", "PerChannel", "control_attributes", "control_coords", "control_results", "sampled_controller"]
 
 #: One number for all channels, or numbers by channels (``stroke:1``) and groups (``stroke``).
 PerChannel = float | Mapping[str, float] | None
@@ -213,6 +213,17 @@ def control_results(sampled: Sampled | None, record: Record) -> dict[str, Made]:
         "sensor_reading": record.control[:, :read],
         "control_input": record.control[:, read:-1],
         "work_control": record.control[:, -1],
+    }
+
+
+def control_attributes(sampled: Sampled | None) -> dict[str, object]:
+    """Time between its samples [s], their delay, and the seed of its noise."""
+    if sampled is None:
+        return {}
+    return {
+        "control_sample": sampled.period,
+        "control_delay_samples": sampled.delay_samples,
+        "control_seed": sampled.seed,
     }
 
 

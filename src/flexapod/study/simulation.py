@@ -29,6 +29,7 @@ from flexapod.study.actuator import simulate_actuator
 from flexapod.study.controlled import (
     Noise,
     PerChannel,
+    control_attributes,
     control_coords,
     control_results,
     sampled_controller,
@@ -85,6 +86,7 @@ class Simulated:
         }
         if (error := self.force_error) is not None:
             attrs["estimated_force_error"] = error
+        attrs |= control_attributes(self.sampled)
         robot = self.study.robot
         coords = robot_coords(robot, system, self.record) | control_coords(self.sampled)
         return dataset(self.values(), coords, attrs, drive_forms(robot) | element_forms(robot))
