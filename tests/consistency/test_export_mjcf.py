@@ -11,7 +11,7 @@ import pytest
 
 import flexapod as fx
 from flexapod.kinematics import poses, rigid_limbs
-from flexapod.model import AxisMotion, CombinedMotion, ConstantWrench, ForceDrive, Guide, Load
+from flexapod.model import AxisMotion, CombinedMotion, ConstantWrench, ForceDrive, Guide, Load, override
 from flexapod.results.names import VARIABLES
 from flexapod.verify.engines import mujoco_forces
 from flexapod.verify.engines.mujoco_rest import AtRest
@@ -30,6 +30,17 @@ def study_of(name):
 
 def model_of(found):
     return AtRest(found.path.read_text(encoding="ascii"))
+
+
+def test_lumped_legs_only_stretch(tmp_path):
+    """Along the legs alone, in one piece: the stiffness of `lumped` to 1e-4, by steps of some 10 us."""
+    study = override(fx.preset("paper-robot"), fidelity="lumped")
+    model = model_of(fx.export(study, "mjcf", tmp_path / "robot.xml"))
+    ours = fx.stiffness(study).stiffness.values
+    theirs = np.linalg.inv(model.compliance(np.diag(np.linalg.inv(ours))))
+    scale = np.sqrt(np.diag(ours))
+    assert np.abs((theirs - ours) / np.outer(scale, scale)).max() < 1e-4
+    assert model.model.opt.timestep > 1e-5 and "bend_1" not in (tmp_path / "robot.xml").read_text()
 
 
 @pytest.mark.parametrize("name", [*PRESETS, *FILES])

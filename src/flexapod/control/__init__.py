@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     )
     from flexapod.control.limits import margins
     from flexapod.control.loops import best_gain, root_locus
+    from flexapod.control.ring_down import ring_down
     from flexapod.control.scheduled import Scheduled
     from flexapod.control.state_space import StateSpace
 
@@ -70,6 +71,7 @@ _HOMES = {
     ),
     "loops": ("best_gain", "root_locus"),
     "limits": ("margins",),
+    "ring_down": ("ring_down",),
     "scheduled": ("Scheduled",),
     "state_space": ("StateSpace",),
 }
@@ -109,6 +111,7 @@ __all__ = [
     "pid",
     "positive_feedback",
     "rate",
+    "ring_down",
     "robot_jacobian",
     "root_locus",
 ]

@@ -50,7 +50,7 @@ class AtRest:
     def rest(self, q: Array, wrench: Array, slopes: Array) -> Array:
         """Coordinates at which all is in balance, by Newton from `q`."""
         for _ in range(MOST_ITERATIONS):
-            step = np.linalg.solve(slopes, -self.left(q, wrench))
+            step = np.asarray(np.linalg.solve(slopes, -self.left(q, wrench)), dtype=float)
             q = self._moved(q, step)
             if np.abs(step).max() < ROUNDING:
                 break
