@@ -138,9 +138,7 @@ def _bending(leg: model.Leg, at: LegAtPose, step: float, along: JointSpring, *, 
         across=_damped(1 / softness, step),
         along=along,
         turn=_damped(at.EI / s, step),
-        twist=JointSpring(stiffness=twist, damping=twist * step, armature=twist * (LAG * step) ** 2)
-        if twists
-        else None,
+        twist=replace(_damped(twist, step), armature=twist * (LAG * step) ** 2) if twists else None,
     )
 
 
