@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from flexapod.elements.element import Contribution, Element, Output
     from flexapod.elements.frame import Energies
     from flexapod.errors import ComputationError, FlexapodError, InputError
+    from flexapod.feedforward import compensate
     from flexapod.model import ActuatorStudy, Study, load, loads, open_values, preset
     from flexapod.paper.study import replicate
     from flexapod.schema.base import Key, Quantity
@@ -47,6 +48,7 @@ _HOMES = {
     "flexapod.schema.base": ("Key", "Quantity"),
     "flexapod.errors": ("ComputationError", "FlexapodError", "InputError"),
     "flexapod.citations": ("cite",),
+    "flexapod.feedforward": ("compensate",),
     "flexapod.model": ("ActuatorStudy", "Study", "load", "loads", "open_values", "preset"),
     "flexapod.paper.study": ("replicate",),
     "flexapod.study": (
@@ -92,6 +94,7 @@ __all__ = [
     "accuracy",
     "budget",
     "cite",
+    "compensate",
     "converge",
     "forward_kinematics",
     "inverse_dynamics",
