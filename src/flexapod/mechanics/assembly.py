@@ -53,6 +53,22 @@ def leg_tangents(shapes: Shapes) -> NamedFunction:
     return x.named("leg_tangents", x.moving(), [("r_q", jacobian(r, x.q)), ("r_v", jacobian(r, x.v))])
 
 
+def leg_pushes(shapes: Shapes) -> NamedFunction:
+    """What parts that push without an energy add to D and K, Eq. (T20.3)."""
+    x = _Leg(shapes)
+    D, K = x.beside()
+    D = substitute(D, (x.v,), (zeros(shapes.size),))
+    return x.named("leg_pushes", [("q", x.q), ("p", x.p_vector)], [("D", D), ("K", K)])
+
+
+def leg_carried(shapes: Shapes) -> NamedFunction:
+    """Masses between the coordinates of a leg and the motion of the base that carries it, Eq. (T20.9)."""
+    x = _Leg(shapes)
+    first = shapes.index("g")
+    M = mass_matrix(x.body.lagrangian)[first : first + 6, :]
+    return x.named("leg_carried", [("q", x.q), ("p", x.p_vector)], [("M", M)])
+
+
 class _Leg:
     """The inputs of the functions of a leg, its equations, and the springs of its drives by coordinate."""
 
@@ -153,10 +169,17 @@ class _Leg:
             r[i] += mass * self.v_dot[i] + damper * self.v[i]
         return r + self.pushed()
 
+    def beside(self) -> tuple[SX, SX]:
+        """Derivatives by rates and by places, at rest, of what has no energy."""
+        rows, still = self.pushed(), zeros(self.shapes.size)
+        for i, servo in self.servos.items():
+            if servo.more is not None:
+                rows[i] -= servo.more
+        return jacobian(rows, self.v), substitute(jacobian(rows, self.q), (self.v,), (still,))
+
     def looping(self) -> NamedFunction:
         """What loops about other places, and lags, add to D and K, not symmetric; what is measured, and its slope."""
-        rows, place, still = self.pushed(), MotorLoop.place(self.as_moving()), zeros(self.shapes.size)
-        D, K = jacobian(rows, self.v), substitute(jacobian(rows, self.q), (self.v,), (still,))
+        (D, K), place = self.beside(), MotorLoop.place(self.as_moving())
         outputs = [("D", D), ("K", K), ("place", place), ("slope", jacobian(place, self.q).T)]
         return self.named("leg_loop", [("q", self.q), ("p", self.p_vector)], outputs)
 

@@ -69,7 +69,7 @@ NAMES = tuple(
 def kernel(shapes: Shapes) -> Kernel:
     """Kernel of legs with the given shapes and joints, see `shapes`."""
     if command := compiler():
-        return loaded_kernel(shapes, command, _fingerprint(shapes), lambda: _functions(shapes))
+        return loaded_kernel(shapes, command, fingerprint(shapes), lambda: _functions(shapes))
     _warn_interpreted()
     return interpreted_kernel(shapes)
 
@@ -143,7 +143,7 @@ def _functions(shapes: Shapes) -> "list[NamedFunction]":
     return [*leg_functions(shapes), *friction_functions(shapes), *joint_functions(), *payload_functions(shapes)]
 
 
-def _fingerprint(shapes: Shapes) -> list[object]:
+def fingerprint(shapes: Shapes) -> list[object]:
     """Everything the generated code depends on: the text of the equations and the numbers of the bases."""
     texts = [
         path.read_bytes()
