@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from flexapod.elements.element import Contribution, Element, Output
     from flexapod.elements.frame import Energies
     from flexapod.errors import ComputationError, FlexapodError, InputError
-    from flexapod.feedforward import compensate
+    from flexapod.feedforward import compensate, shape
     from flexapod.model import ActuatorStudy, Study, load, loads, open_values, preset
     from flexapod.paper.study import replicate
     from flexapod.schema.base import Key, Quantity
@@ -48,7 +48,7 @@ _HOMES = {
     "flexapod.schema.base": ("Key", "Quantity"),
     "flexapod.errors": ("ComputationError", "FlexapodError", "InputError"),
     "flexapod.citations": ("cite",),
-    "flexapod.feedforward": ("compensate",),
+    "flexapod.feedforward": ("compensate", "shape"),
     "flexapod.model": ("ActuatorStudy", "Study", "load", "loads", "open_values", "preset"),
     "flexapod.paper.study": ("replicate",),
     "flexapod.study": (
@@ -113,6 +113,7 @@ __all__ = [
     "preset",
     "replicate",
     "run",
+    "shape",
     "simulate",
     "simulate_actuator",
     "simulate_solid",

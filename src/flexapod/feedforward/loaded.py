@@ -18,7 +18,7 @@ from flexapod.solve.batch import RestStates, residual
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.statics.arrow import arrow_solve
-from flexapod.solve.statics.locked import LockedPoses
+from flexapod.solve.system import System
 
 __all__ = ["LoadedPath", "apart", "inertia_forces"]
 
@@ -106,19 +106,18 @@ class LoadedPath:
         if not self.inertia:
             return locked.equilibria.states.pose
         states = locked.equilibria.states
-        r, payload = inertia_forces(locked, states, path)
+        r, payload = inertia_forces(locked.system, locked.robot, states, path, locked.acts.wrench)
         nothing = np.zeros((len(t), *states.q.shape[1:]))
         step = arrow_solve(locked.system, locked.m, r, payload, np.zeros_like(states.lam), nothing)
         return states.moved(step.dq, step.dy).pose
 
 
-def inertia_forces(locked: LockedPoses, states: RestStates, path: Poses) -> tuple[Array, Array]:
+def inertia_forces(system: System, robot: Robot, states: RestStates, path: Poses, wrench: Array) -> tuple[Array, Array]:
     """What a rigid path (T,) adds by its rates to the balances of legs (T, legs, n) and payload (T, 6), Eq. (T22.2)."""
-    system, robot = locked.system, locked.robot
     rates = rigid_motion(system, robot, path)[1]
-    still = np.zeros_like(locked.command)
-    moving = residual(system, states, locked.command, rates.v[..., system.ports], locked.acts.wrench, rates)
-    resting = residual(system, states, locked.command, still, locked.acts.wrench)
+    still = np.zeros((len(path), system.legs, system.ports.size))
+    moving = residual(system, states, still, rates.v[..., system.ports], wrench, rates)
+    resting = residual(system, states, still, still, wrench)
     return moving[0] - resting[0], moving[1] - resting[1]
 
 
