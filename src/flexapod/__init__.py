@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from flexapod.elements.element import Contribution, Element, Output
     from flexapod.elements.frame import Energies
     from flexapod.errors import ComputationError, FlexapodError, InputError
-    from flexapod.feedforward import compensate, shape
+    from flexapod.feedforward import compensate, shape, time_optimal
     from flexapod.model import ActuatorStudy, Study, load, loads, open_values, preset
     from flexapod.paper.study import replicate
     from flexapod.schema.base import Key, Quantity
@@ -48,7 +48,7 @@ _HOMES = {
     "flexapod.schema.base": ("Key", "Quantity"),
     "flexapod.errors": ("ComputationError", "FlexapodError", "InputError"),
     "flexapod.citations": ("cite",),
-    "flexapod.feedforward": ("compensate", "shape"),
+    "flexapod.feedforward": ("compensate", "shape", "time_optimal"),
     "flexapod.model": ("ActuatorStudy", "Study", "load", "loads", "open_values", "preset"),
     "flexapod.paper.study": ("replicate",),
     "flexapod.study": (
@@ -120,6 +120,7 @@ __all__ = [
     "stiffness",
     "study",
     "sweep",
+    "time_optimal",
     "vibration",
     "workspace_map",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,7 +20,7 @@ from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.statics.locked import LockedPoses
 from flexapod.solve.statics.stiffness import tool_motion
 
-__all__ = ["LinearPath", "Vibration", "linear_path", "vibration_along"]
+__all__ = ["LinearPath", "Vibration", "followed", "forces", "linear_path", "vibration_along"]
 
 POSES = 25  # along a path, between which matrices follow cubic splines
 FINE, OF = 24, 3  # steps in a period of the third mode: the first may be far below what a path shakes
@@ -68,15 +69,15 @@ class Vibration:
         return self.after(0.0)
 
 
-def linear_path(study: Study, t: Array) -> LinearPath:
-    """The linear model at instants (P,) of a study's path, loads as at its start.
+def linear_path(study: Study, t: Array, path: kinematics.Poses | None = None) -> LinearPath:
+    """The linear model at instants (P,) of a study's path, or of another one's poses, loads as at its start.
 
     Raises
     ------
     ComputationError
         There is no equilibrium at an instant.
     """
-    path = kinematics.poses(study.robot, study.motion, t)
+    path = kinematics.poses(study.robot, study.motion, t) if path is None else path
     locked = locked_poses(study.robot, study.simulation, path, study.load)
     if len(locked.at) < len(t):
         k = int(np.flatnonzero(locked.equilibria.code)[0])
@@ -99,22 +100,31 @@ def vibration_along(study: Study, moving: float, until: float) -> Vibration:
     from scipy.interpolate import CubicSpline
 
     at = linear_path(study, np.linspace(0.0, moving, POSES))
+    edges, x = followed(at, lambda t: forces(at, kinematics.poses(study.robot, study.motion, t))[..., None])
+    tool = np.einsum("txd,td->tx", CubicSpline(at.time, at.tool)(edges), x[:, 0, :, 0])
+    later, rest = _at_rest(at, *x[-1, ..., 0], until - moving)
+    return Vibration(time=np.append(edges, moving + later), tool=np.concatenate([tool, rest]))
+
+
+def followed(at: LinearPath, acting: Callable[[Array], Array]) -> tuple[Array, Array]:
+    """Instants (T,) and motions with rates (T, 2, d, c) along a path under each of c loads (T, N, c), Eq. (T22.13)."""
+    from scipy.interpolate import CubicSpline
+
+    moving = float(at.time[-1])
     count = int(np.ceil(moving * FINE * np.nanmax(at.modes.frequency[:, :OF])))
     edges = np.linspace(0.0, moving, min(MOST, max(count, LEAST)) + 1)
     h, middle = edges[1], edges[:-1] + edges[1] / 2
     flat = CubicSpline(at.time, at.flat)
-    force = [-np.einsum("tnd,tn->td", flat(t), _forces(study, at, t)) for t in (middle - h * _NODE, middle + h * _NODE)]
+    force = [-flat(t).swapaxes(1, 2) @ acting(t) for t in (middle - h * _NODE, middle + h * _NODE)]
     matrices = CubicSpline(at.time, np.stack([at.M, at.D, at.K], axis=1))
-    x = np.zeros((len(edges), 2, force[0].shape[1]))
+    x = np.zeros((len(edges), 2, *force[0].shape[1:]))
     for k, t in enumerate(middle):
         x[k + 1] = _step(matrices(t), h, x[k], _TURN[0] * force[0][k] + _TURN[1] * force[1][k])
-    tool = np.einsum("txd,td->tx", CubicSpline(at.time, at.tool)(edges), x[:, 0])
-    later, rest = _at_rest(at, *x[-1], until - moving)
-    return Vibration(time=np.append(edges, moving + later), tool=np.concatenate([tool, rest]))
+    return edges, x
 
 
 def _step(matrices: Array, h: float, x: Array, force: Array) -> Array:
-    """Places and rates (2, d) a step later; Gauss' two stages are one complex one, (T22.13)."""
+    """Places and rates (2, d, c) a step later; Gauss' two stages are one complex one, (T22.13)."""
     (M, D, K), (z, v), way, c = matrices, x, h * _ROOT, _TURN.sum()
     q = np.linalg.solve(M + way * D + way**2 * K, force - c * (D @ v + K @ z) - way * c * (K @ v))
     return x + 2 * h * np.real(_WEIGHT * np.array([c * v + way * q, q]))
@@ -136,10 +146,9 @@ def _at_rest(at: LinearPath, z: Array, v: Array, until: float) -> tuple[Array, A
     return times, np.array(found)
 
 
-def _forces(study: Study, at: LinearPath, t: Array) -> Array:
-    """What the path's rates ask for in all coordinates (T, N), at the undeformed robot, Eq. (T22.2)."""
+def forces(at: LinearPath, path: kinematics.Poses) -> Array:
+    """What a rigid path's rates ask for in all coordinates (T, N), at the undeformed robot, Eq. (T22.2)."""
     system, robot = at.locked.system, at.locked.robot
-    path = kinematics.poses(study.robot, study.motion, t)
     states: RestStates = rigid_rest(system, robot, path)
     legs, payload = inertia_forces(system, robot, states, path, at.locked.acts.wrench)
-    return np.concatenate([legs.reshape(len(t), -1), payload], axis=1)
+    return np.concatenate([legs.reshape(len(path), -1), payload], axis=1)
