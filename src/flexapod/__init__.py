@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from flexapod.runtime.loading import loaded
 
 if TYPE_CHECKING:
-    from flexapod import kinematics, model, plot, study
+    from flexapod import control, kinematics, model, plot, study
     from flexapod.citations import cite
     from flexapod.elements.element import Contribution, Element, Output
     from flexapod.elements.frame import Energies
@@ -22,9 +22,11 @@ if TYPE_CHECKING:
     from flexapod.study import (
         accuracy,
         budget,
+        compliance,
         forward_kinematics,
         inverse_dynamics,
         inverse_kinematics,
+        linearize,
         mobility,
         modes,
         parts,
@@ -34,6 +36,7 @@ if TYPE_CHECKING:
         simulate_actuator,
         simulate_solid,
         stiffness,
+        transmissibility,
         vibration,
     )
     from flexapod.surveys.convergence import converge
@@ -54,9 +57,11 @@ _HOMES = {
     "flexapod.study": (
         "accuracy",
         "budget",
+        "compliance",
         "forward_kinematics",
         "inverse_dynamics",
         "inverse_kinematics",
+        "linearize",
         "mobility",
         "modes",
         "parts",
@@ -66,6 +71,7 @@ _HOMES = {
         "simulate_actuator",
         "simulate_solid",
         "stiffness",
+        "transmissibility",
         "vibration",
     ),
     "flexapod.surveys.convergence": ("converge",),
@@ -76,7 +82,7 @@ _HOMES = {
 }
 _NAMES = {name: module for module, names in _HOMES.items() for name in names}
 _FORMER = {"rigid": "kinematics"}  # names of the release before
-_PACKAGES = ("kinematics", "model", "plot", "study")
+_PACKAGES = ("control", "kinematics", "model", "plot", "study")
 
 __all__ = [
     "ActuatorStudy",
@@ -95,12 +101,15 @@ __all__ = [
     "budget",
     "cite",
     "compensate",
+    "compliance",
+    "control",
     "converge",
     "forward_kinematics",
     "inverse_dynamics",
     "inverse_kinematics",
     "kinematics",
     "ladder",
+    "linearize",
     "load",
     "loads",
     "mobility",
@@ -121,6 +130,7 @@ __all__ = [
     "study",
     "sweep",
     "time_optimal",
+    "transmissibility",
     "vibration",
     "workspace_map",
 ]

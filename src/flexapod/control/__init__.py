@@ -10,14 +10,96 @@ from typing import TYPE_CHECKING
 from flexapod.runtime.loading import loaded
 
 if TYPE_CHECKING:
+    from flexapod.control.closing import DelayedLoop
+    from flexapod.control.controllers import DVF, IFF, PID, Controller, Decentralised, Decoupled, Fused, Together
+    from flexapod.control.decoupling import (
+        Matrices,
+        by_jacobian,
+        by_modes,
+        by_singular_vectors,
+        centre_of_stiffness,
+        robot_jacobian,
+    )
+    from flexapod.control.function import Function
+    from flexapod.control.laws import (
+        Law,
+        complementary,
+        gain,
+        high_pass,
+        integrator,
+        lead,
+        low_pass,
+        notch,
+        pid,
+        positive_feedback,
+        rate,
+    )
+    from flexapod.control.loops import best_gain, margins, root_locus
     from flexapod.control.state_space import StateSpace
 
 _HOMES = {
+    "closing": ("DelayedLoop",),
+    "controllers": ("DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together"),
+    "decoupling": (
+        "Matrices",
+        "by_jacobian",
+        "by_modes",
+        "by_singular_vectors",
+        "centre_of_stiffness",
+        "robot_jacobian",
+    ),
+    "function": ("Function",),
+    "laws": (
+        "Law",
+        "complementary",
+        "gain",
+        "high_pass",
+        "integrator",
+        "lead",
+        "low_pass",
+        "notch",
+        "pid",
+        "positive_feedback",
+        "rate",
+    ),
+    "loops": ("best_gain", "margins", "root_locus"),
     "state_space": ("StateSpace",),
 }
 _NAMES = {name: module for module, names in _HOMES.items() for name in names}
 
-__all__ = ["StateSpace"]
+__all__ = [
+    "DVF",
+    "IFF",
+    "PID",
+    "Controller",
+    "Decentralised",
+    "Decoupled",
+    "DelayedLoop",
+    "Function",
+    "Fused",
+    "Law",
+    "Matrices",
+    "StateSpace",
+    "Together",
+    "best_gain",
+    "by_jacobian",
+    "by_modes",
+    "by_singular_vectors",
+    "centre_of_stiffness",
+    "complementary",
+    "gain",
+    "high_pass",
+    "integrator",
+    "lead",
+    "low_pass",
+    "margins",
+    "notch",
+    "pid",
+    "positive_feedback",
+    "rate",
+    "robot_jacobian",
+    "root_locus",
+]
 
 
 def __getattr__(name: str) -> object:

@@ -6,7 +6,10 @@ from collections.abc import Sequence
 
 from flexapod.errors import InputError, nearest
 
-__all__ = ["Names", "chosen", "groups"]
+__all__ = ["NOISE", "RATE", "Names", "chosen", "groups"]
+
+RATE = "rate:"  # before the name of a reading: its rate of change
+NOISE = "noise:"  # before the name of a sensor: what is added to its reading
 
 Names = str | Sequence[str] | None
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import xarray as xr
@@ -12,11 +13,40 @@ from flexapod.arrays import Array
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
+    from flexapod.solve.linear.random_vibration import RandomVibration
 
-__all__ = ["PARTS", "channel_labels", "complex_of", "damping_dataset", "in_parts", "response_dataset"]
+__all__ = [
+    "PARTS",
+    "best_dataset",
+    "channel_labels",
+    "complex_of",
+    "damping_dataset",
+    "h2_dataset",
+    "hinf_dataset",
+    "history_dataset",
+    "in_parts",
+    "locus_dataset",
+    "margins_dataset",
+    "response_dataset",
+    "source_dataset",
+    "system_dataset",
+    "vibration_dataset",
+]
 
 Complex = NDArray[np.complex128]
 PARTS = ["real", "imaginary"]
+RESPONSE = ("frequency_response", "response of outputs to inputs", "output_units / input_units")
+
+
+class Channels(Protocol):
+    """What has named inputs and outputs with units."""
+
+    @property
+    def inputs(self) -> tuple[str, ...]: ...
+    @property
+    def outputs(self) -> tuple[str, ...]: ...
+    @property
+    def units(self) -> Mapping[str, str]: ...
 
 
 def in_parts(values: Complex) -> Array:
@@ -29,22 +59,159 @@ def complex_of(values: xr.DataArray) -> xr.DataArray:
     return values.sel(part="real", drop=True) + 1j * values.sel(part="imaginary", drop=True)
 
 
-def channel_labels(system: StateSpace, *dims: str) -> dict[str, tuple[str, list[str]]]:
+def channel_labels(system: Channels, *dims: str) -> dict[str, tuple[str, list[str]]]:
     """Names and units of channels as coordinates: `output`, `output_units`, `input`, `input_units`."""
     names = {"input": system.inputs, "output": system.outputs}
     labels = {dim: (dim, list(names[dim])) for dim in dims}
     return labels | {f"{dim}_units": (dim, [system.units.get(name, "1") for name in names[dim]]) for dim in dims}
 
 
-def response_dataset(system: StateSpace, hz: ArrayLike) -> xr.Dataset:
-    """`frequency_response` (output, input, frequency, part) in the output's unit over the input's."""
+def response_dataset(
+    system: Channels, hz: ArrayLike, values: Complex, words: tuple[str, str, str] = RESPONSE
+) -> xr.Dataset:
+    """Complex values (output, input, frequency, part) under the name of `words`: name, long name, unit."""
     frequency = np.atleast_1d(np.asarray(hz, dtype=float))
-    words = {"long_name": "response of outputs to inputs", "units": "output_units / input_units"}
+    name, long_name, unit = words
+    attrs = {"long_name": long_name, "units": unit}
     return xr.Dataset(
-        {"frequency_response": (("output", "input", "frequency", "part"), in_parts(system.at(frequency)), words)},
+        {name: (("output", "input", "frequency", "part"), in_parts(values), attrs)},
         channel_labels(system, "output", "input")
         | {"frequency": ("frequency", frequency, {"units": "Hz"}), "part": ("part", PARTS)},
     )
+
+
+def h2_dataset(system: StateSpace, values: Array, why: dict[tuple[int, int], str]) -> xr.Dataset:
+    """`h2_norm` and `reason` (output, input); attribute `warnings`: a line for each channel that is infinite."""
+    reason = np.full(values.shape, "", dtype=object)
+    for at, words in why.items():
+        reason[at] = words
+    lines = [f"{system.outputs[i]} by {system.inputs[j]} is infinite: {words}" for (i, j), words in why.items()]
+    attrs = {"long_name": "H2 norm", "units": "output_units / input_units * Hz**0.5"}
+    return xr.Dataset(
+        {
+            "h2_norm": (("output", "input"), values, attrs),
+            "reason": (("output", "input"), reason.astype(str), {"long_name": "why the norm is infinite"}),
+        },
+        channel_labels(system, "output", "input"),
+        {"warnings": "\n".join(lines)},
+    )
+
+
+def hinf_dataset(value: float, hertz: float) -> xr.Dataset:
+    """`hinf_norm` and the `frequency` of it."""
+    return xr.Dataset(
+        {
+            "hinf_norm": ((), value, {"long_name": "largest singular value over frequency"}),
+            "frequency": ((), hertz, {"units": "Hz", "long_name": "frequency of the largest singular value"}),
+        }
+    )
+
+
+def vibration_dataset(system: StateSpace, found: RandomVibration, error: float) -> xr.Dataset:
+    """`psd` and `cumulative_rms` over `spectrum_frequency`, `rms`, `covariance` of outputs."""
+    labels = channel_labels(system, "output")
+    labels["output_b"] = ("output_b", list(system.outputs))
+    f = ("spectrum_frequency", found.frequency, {"units": "Hz"})
+    along = ("spectrum_frequency", "output")
+    return xr.Dataset(
+        {
+            "psd": (along, found.psd, {"units": "output_units**2 / Hz", "long_name": "one-sided spectral density"}),
+            "cumulative_rms": (along, found.cumulative, {"units": "output_units", "long_name": "rms from here up"}),
+            "rms": ("output", found.rms, {"units": "output_units", "long_name": "standard deviation"}),
+            "covariance": (("output", "output_b"), found.covariance, {"long_name": "covariance of outputs"}),
+        },
+        labels | {"spectrum_frequency": f},
+        {"estimated_error": error},
+    )
+
+
+def source_dataset(system: StateSpace, found: RandomVibration, error: float) -> xr.Dataset:
+    """`rms_by_source` (source, output), whose squares add up to those of `rms`."""
+    words = {"units": "output_units", "long_name": "standard deviation by source"}
+    return xr.Dataset(
+        {
+            "rms_by_source": (("source", "output"), found.by_source, words),
+            "rms": ("output", found.rms, {"units": "output_units", "long_name": "standard deviation"}),
+        },
+        channel_labels(system, "output") | {"source": ("source", list(found.sources))},
+        {"estimated_error": error},
+    )
+
+
+def history_dataset(system: StateSpace, time: Array, values: Array, name: str) -> xr.Dataset:
+    """`step_response` or `impulse_response` (output, input, time)."""
+    words = {"long_name": name.replace("_", " "), "units": "output_units / input_units"}
+    if name.startswith("impulse"):
+        words |= {"units": "output_units / (input_units s)", "feed_through": "its impulse at 0 is left out"}
+    return xr.Dataset(
+        {name: (("output", "input", "time"), values, words)},
+        channel_labels(system, "output", "input") | {"time": ("time", time, {"units": "s"})},
+    )
+
+
+def system_dataset(system: StateSpace) -> xr.Dataset:
+    """Matrices A, B, C, D with named states, inputs and outputs; `sample` [s], 0 of a continuous system."""
+    labels = channel_labels(system, "output", "input")
+    labels |= {name: (name, list(system.states)) for name in ("state", "state_b")}
+    dims = {"A": ("state", "state_b"), "B": ("state", "input"), "C": ("output", "state"), "D": ("output", "input")}
+    found = {name: (dim, getattr(system, name)) for name, dim in dims.items()}
+    return xr.Dataset(found, labels, {"sample": system.sample or 0.0, "sample_units": "s"})
+
+
+def locus_dataset(factors: Array, poles: Complex, zeros: Complex, sample: float | None) -> xr.Dataset:
+    """`pole`, `frequency`, `damping_ratio` over `gain` and `branch`, `open_zero`, where branches end."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        s = poles if sample is None else np.log(poles) / sample
+        size = np.abs(s)
+        ratio = np.where(size > 0, -s.real / size, 0.0)
+    names = {"units": "s-1" if sample is None else "1"}
+    return xr.Dataset(
+        {
+            "pole": (("gain", "branch", "part"), in_parts(poles), names | {"long_name": "pole of the loop"}),
+            "frequency": (("gain", "branch"), size / (2 * np.pi), {"units": "Hz", "long_name": "size over 2 pi"}),
+            "damping_ratio": (("gain", "branch"), ratio, {"units": "1", "long_name": "damping ratio"}),
+            "open_zero": (("zero", "part"), in_parts(zeros), names | {"long_name": "zero of the loop gain"}),
+        },
+        {"gain": ("gain", factors, {"long_name": "factor on the controller"}), "part": PARTS},
+        {} if sample is None else {"sample": sample},
+    )
+
+
+def best_dataset(gain: float, ratio: float, frequency: float, factors: Array, ratios: Array) -> xr.Dataset:
+    """`gain`, `damping_ratio`, `frequency` of the best, `least_damping_ratio` over `factor`."""
+    ratio_words = {"units": "1", "long_name": "least damping ratio of the poles"}
+    return xr.Dataset(
+        {
+            "gain": ((), gain, {"long_name": "factor on the controller"}),
+            "damping_ratio": ((), ratio, ratio_words),
+            "frequency": ((), frequency, {"units": "Hz", "long_name": "frequency of the pole that has it"}),
+            "least_damping_ratio": ("factor", ratios, ratio_words),
+        },
+        {"factor": ("factor", factors, {"long_name": "factor on the controller"})},
+    )
+
+
+def margins_dataset(
+    actuators: tuple[str, ...], each: list[dict[str, tuple[float, float]]], unstable: int
+) -> xr.Dataset:
+    """Margins by `actuator`, and their frequencies."""
+    both = {"gain_margin": ("1", ("below", "above"), "factor at which the loop is at its limit")}
+    single = {
+        "phase_margin": ("rad", "phase", "lag that the loop bears"),
+        "delay_margin": ("s", "delay", "further delay that the loop bears"),
+        "modulus_margin": ("1", "modulus", "least distance of the loop gain from -1"),
+    }
+    found = {}
+    for name, (unit, keys, words) in both.items():
+        values = np.array([[one[key] for key in keys] for one in each])
+        found[name] = (("actuator", "side"), values[..., 0], {"units": unit, "long_name": words})
+        found[f"{name}_frequency"] = (("actuator", "side"), values[..., 1], {"units": "Hz"})
+    for name, (unit, key, words) in single.items():
+        values = np.array([one[key] for one in each])
+        found[name] = ("actuator", values[:, 0], {"units": unit, "long_name": words})
+        found[f"{name}_frequency"] = ("actuator", values[:, 1], {"units": "Hz"})
+    labels = {"actuator": list(actuators), "side": ["below", "above"]}
+    return xr.Dataset(found, labels, {"unstable_poles": unstable})
 
 
 def damping_dataset(poles: Complex, frequency: Array, ratio: Array) -> xr.Dataset:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.arrays import Array, Mask
+from flexapod.arrays import Array
+from flexapod.control.integrators import moved_and_shown, without_integrators
 from flexapod.errors import ComputationError
 
 __all__ = ["response"]
@@ -15,58 +16,60 @@ Complex = NDArray[np.complex128]
 UPON = 1e-15  # distance from a pole over its size at which a point lies upon it
 CHECKED = 12  # frequencies at which poles and residues are compared with solving
 ALIKE = 1e5  # condition of the shapes of poles above which residues cancel
-AGREES = 1e-10  # of the response, with
-CANCELS = 1e-13  # of the sum of sizes of its terms
+AGREES = 1e-9  # of the response, or a tenth of
+CANCELS = 0.1  # what its poles could add up to
+SHIFTED = 2**0.5  # from the middle of the points, which may lie upon a pole
 BLOCK = 64  # frequencies solved for side by side
 
 
 def response(A: Array, B: Array, C: Array, D: Array, s: Complex) -> Complex:
     """C (s - A)^-1 B + D at points s (f,): (outputs, inputs, f), Eq. (T21.1).
 
-    Of the states that inputs move and outputs show. By poles and residues where that agrees with solving at some of the points, else by
-    solving at all of them.
+    Of the states that inputs move and outputs show. By poles and residues where that agrees with solving at some of
+    the points, else by solving at all of them.
 
     Raises
     ------
     ComputationError
         A point upon a pole.
     """
-    A, B, C = moved_and_shown(A, B, C)
+    apart = without_integrators(*moved_and_shown(A, B, C))
+    if len(apart.powers):
+        _refuse_poles(np.zeros(1), s)
+    return _regular(apart.A, apart.B, apart.C, s) + apart.drifting(s) + D[:, :, None]
+
+
+def _regular(A: Array, B: Array, C: Array, s: Complex) -> Complex:
+    """C (s - A)^-1 B."""
     if A.shape[0] == 0 or s.size == 0 or B.shape[1] == 0 or C.shape[0] == 0:
-        return np.repeat(D[:, :, None].astype(complex), s.size, axis=2)
-    values, shapes = np.linalg.eig(A)
+        return np.zeros((len(C), B.shape[1], s.size), dtype=complex)
+    middle = SHIFTED * np.exp(np.log(np.abs(s[s != 0])).mean()) if s.any() else 1.0
+    inverse, shapes = np.linalg.eig(np.linalg.inv(A - middle * np.eye(len(A))))
+    values = middle + 1.0 / inverse  # (T21.35): those amid the points to rounding, however fast others are
     _refuse_poles(values, s)
     sizes = np.linalg.norm(shapes, axis=1, keepdims=True)  # of states: their units are no matter
     if np.linalg.cond(shapes / np.where(sizes > 0, sizes, 1.0)) > ALIKE:
-        return _solved(A, B, C, s) + D[:, :, None]
+        return _solved(A, B, C, s)
     left, right = np.linalg.solve(shapes, B.astype(complex)), C @ shapes
     some = _where_it_matters(values, s)
     known = _solved(A, B, C, s[some])
-    terms = np.abs(1.0 / (s[some, None] - values))
-    floor = np.einsum("pn,fn,nm->pmf", np.abs(right), terms, np.abs(left), optimize=True)
     by_poles = _by_residues(values, left, right, s[some])
-    if (np.abs(by_poles - known) <= AGREES * np.abs(known) + CANCELS * floor).all():
-        return _by_residues(values, left, right, s) + D[:, :, None]
-    return _solved(A, B, C, s) + D[:, :, None]
+    most = _most(values, left, right, s[some])
+    if (np.abs(by_poles - known) <= AGREES * np.maximum(np.abs(known), CANCELS * most)).all():
+        return _by_residues(values, left, right, s)
+    return _solved(A, B, C, s)
 
 
-def moved_and_shown(A: Array, B: Array, C: Array) -> tuple[Array, Array, Array]:
-    """The states that some input moves and some output shows, by what is 0 in the matrices."""
-    links = A != 0
-    kept = np.flatnonzero(_reached(links, (B != 0).any(axis=1)) & _reached(links.T, (C != 0).any(axis=0)))
-    return A[np.ix_(kept, kept)], B[kept], C[:, kept]
+def _most(values: Complex, left: Complex, right: Complex, s: Complex) -> Array:
+    """What all poles could add up to in each channel, by the inequality of Cauchy and Schwarz, (p, m, f)."""
+    shown, moved = np.abs(right), np.abs(left)[None] / np.abs(s[:, None] - values)[..., None]
+    w = np.linalg.norm(moved, axis=2) / np.maximum(np.linalg.norm(shown, axis=0), 1e-300)  # poles of one size
+    w = np.maximum(w, 1e-300)
+    rows, columns = np.sqrt(shown**2 @ w.T), np.sqrt((moved**2 / w[..., None]).sum(axis=1))
+    return rows[:, None] * columns.T[None]
 
 
-def _reached(links: Mask, start: Mask) -> Mask:
-    """States that lie behind those of the start, which are among them."""
-    while True:
-        further = start | (links @ start)
-        if (further == start).all():
-            return start
-        start = further
-
-
-def _refuse_poles(values: Complex, s: Complex) -> None:
+def _refuse_poles(values: Complex | Array, s: Complex) -> None:
     away = np.abs(s[:, None] - values)
     if (away <= UPON * np.abs(values)).any():
         at = s[(away <= UPON * np.abs(values)).any(axis=1)][0]

@@ -98,7 +98,7 @@ def _rows_compressed(A: Array, B: Array, C: Array, D: Array) -> tuple[Array, Arr
 
 def _without_cancelled(zeros: Complex, poles: Complex, rate: float) -> Complex:
     """Zeros by size without those, one for one, that lie upon poles; `rate` counts as the size of smaller poles."""
-    left = list(zeros[np.argsort(np.abs(zeros), kind="stable")])
+    left = list(zeros[np.lexsort((zeros.imag, zeros.real, np.abs(zeros)))])
     for pole in poles:
         away = [abs(zero - pole) for zero in left]
         if away and min(away) <= CANCELS * max(abs(pole), rate):

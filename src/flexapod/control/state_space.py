@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexapod.arrays import Array
-from flexapod.control.channels import Names, chosen
+from flexapod.control.channels import RATE, Names, chosen
 from flexapod.control.frequency import response
+from flexapod.control.histories import histories, instants
+from flexapod.control.norms import h2_norms, hinf_norm, relative_gains
 from flexapod.control.poles import damping_of, poles_of, zeros_of
 from flexapod.errors import InputError
+from flexapod.units import to_si
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+    from flexapod.control.closing import DelayedLoop
+    from flexapod.control.controllers import Controller
+    from flexapod.control.spectra import Sources
 
 __all__ = ["StateSpace"]
 
@@ -77,6 +85,56 @@ class StateSpace:
             sample=self.sample,
         )
 
+    def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] | None = None) -> StateSpace:
+        """Itself, as a controller from some `outputs` of another system to some of its `inputs`."""
+        for name in self.inputs:
+            chosen(name.removeprefix(RATE), outputs, "sensor")
+        for name in self.outputs:
+            chosen(name, inputs, "actuator")
+        return self
+
+    def sampled(self, period: float | str, delay: float | str = 0.0) -> StateSpace:
+        """The same between samples, inputs held for a `period` [s] (or "5 kHz") and late by a `delay` [s], (T21.17)."""
+        from flexapod.control.sampling import held, period_of
+
+        if self.sample is not None:
+            raise InputError("is sampled already", key="sample", value=self.sample, allowed="a continuous system")
+        return held(self, period_of(period), to_si(delay, "time", key="delay"))
+
+    def close(
+        self, controller: Controller | StateSpace, *, delay: float | str = 0.0, sample: float | str | None = None
+    ) -> StateSpace | DelayedLoop:
+        """The system with a controller, u = r + K (y + w), Eq. (T21.21).
+
+        Parameters
+        ----------
+        controller : Controller or StateSpace
+            From outputs to inputs of this system.
+        delay : float or str
+            Of the actuators [s]: exact in the response of a continuous loop, and between samples.
+        sample : float or str, optional
+            Time between samples [s], or their rate as ``"5 kHz"``: readings and actuators are held in between.
+
+        Returns
+        -------
+        StateSpace or DelayedLoop
+            With inputs ``noise:SENSOR``, which are added to readings, and outputs ``control:ACTUATOR``. A continuous
+            loop with a delay has no finite number of states: a `DelayedLoop` has its response and its margins.
+        """
+        from flexapod.control.closing import close
+
+        return close(self, controller, delay, sample)
+
+    def _square(self, key: str, inputs: Names, outputs: Names) -> StateSpace:
+        part = self.select(inputs, outputs)
+        if len(part.inputs) != len(part.outputs):
+            raise InputError(
+                f"are {len(part.inputs)} inputs and {len(part.outputs)} outputs",
+                key=key,
+                allowed="as many inputs as outputs, for example one of each",
+            )
+        return part
+
     def at(self, hz: ArrayLike) -> Complex:
         """Complex response (outputs, inputs, frequencies) at frequencies [Hz], Eqs. (T21.1)-(T21.3)."""
         s = 2j * np.pi * np.atleast_1d(np.asarray(hz, dtype=float))
@@ -86,7 +144,7 @@ class StateSpace:
         """Response at frequencies [Hz] as a Dataset: `frequency_response` (output, input, frequency, part)."""
         from flexapod.control.datasets import response_dataset
 
-        return response_dataset(self, hz)
+        return response_dataset(self, hz, self.at(hz))
 
     def poles(self) -> Complex:
         """Eigenvalues of A, the slowest first, (n,) [1/s]; of a sampled system in the plane of z."""
@@ -97,14 +155,101 @@ class StateSpace:
 
         What no input moves or no output shows is left out: such a pole and its zero cancel.
         """
-        part = self.select(input, output)
-        if len(part.inputs) != len(part.outputs):
-            raise InputError(
-                f"are {len(part.inputs)} inputs and {len(part.outputs)} outputs",
-                key="zeros",
-                allowed="as many inputs as outputs, for example one of each",
-            )
+        part = self._square("zeros", input, output)
         return zeros_of(part.A, part.B, part.C, part.D, part.poles())
+
+    def h2(self, inputs: Names = None, outputs: Names = None) -> Dataset:
+        """`h2_norm` (output, input) of each channel, Eq. (T21.25): rms under white noise of density 2, one-sided.
+
+        Infinite where something follows what has no end of frequencies or never decays; `reason` says what.
+        """
+        from flexapod.control.datasets import h2_dataset
+
+        part = self.select(inputs, outputs)
+        return h2_dataset(part, *h2_norms(part))
+
+    def hinf(self, inputs: Names = None, outputs: Names = None) -> Dataset:
+        """`hinf_norm`, the largest singular value of the response of the channels, and its `frequency`, Eq. (T21.27).
+
+        Channels of several units are added as they are: choose one unit, or one of each.
+        """
+        from flexapod.control.datasets import hinf_dataset
+
+        return hinf_dataset(*hinf_norm(self.select(inputs, outputs)))
+
+    def rga(self, hz: ArrayLike, inputs: Names = None, outputs: Names = None) -> Dataset:
+        """`relative_gain` (output, input, frequency, part) at frequencies [Hz], Eq. (T21.29), of as many of each."""
+        from flexapod.control.datasets import response_dataset
+
+        part = self._square("rga", inputs, outputs)
+        words = ("relative_gain", "relative gain: 1 where other loops change nothing", "1")
+        return response_dataset(part, hz, relative_gains(part.at(hz)), words)
+
+    def psd(self, sources: Sources, outputs: Names = None) -> Dataset:
+        """Random vibration of outputs by independent sources: the integral of `flexapod.vibration`, (T18.6)-(T18.11).
+
+        Parameters
+        ----------
+        sources : Disturbance or mapping
+            That of a study, or one-sided spectra by channel or group of inputs: tables of a study, or pairs of
+            frequencies (m,) [Hz] and densities (m,) or (m, columns).
+        outputs : names, optional
+
+        Returns
+        -------
+        xarray.Dataset
+            `psd` and `cumulative_rms` (spectrum_frequency, output), `rms` (output), `covariance`.
+        """
+        from flexapod.control.datasets import vibration_dataset
+        from flexapod.control.spectra import shaken
+
+        part = self.select(outputs=outputs)
+        return vibration_dataset(part, *shaken(part, sources))
+
+    def by_source(self, sources: Sources, outputs: Names = None) -> Dataset:
+        """`rms_by_source` (source, output) as of `psd`; squares add up to those of `rms`."""
+        from flexapod.control.datasets import source_dataset
+        from flexapod.control.spectra import shaken
+
+        part = self.select(outputs=outputs)
+        return source_dataset(part, *shaken(part, sources))
+
+    def step(self, duration: float | None = None, step: float | None = None) -> Dataset:
+        """`step_response` (output, input, time) after unit steps at 0, exact; by itself as long as motions last."""
+        from flexapod.control.datasets import history_dataset
+
+        time = instants(self, duration, step)
+        return history_dataset(self, time, histories(self, time, impulse=False), "step_response")
+
+    def impulse(self, duration: float | None = None, step: float | None = None) -> Dataset:
+        """`impulse_response` (output, input, time) after unit impulses at 0, exact; without that of feed-through."""
+        from flexapod.control.datasets import history_dataset
+
+        time = instants(self, duration, step)
+        return history_dataset(self, time, histories(self, time, impulse=True), "impulse_response")
+
+    def to_control(self) -> Any:
+        """The same as `control.StateSpace` of python-control, with its names."""
+        from flexapod.control.files import to_control
+
+        return to_control(self)
+
+    def save(self, path: str | Path) -> Path:
+        """Matrices, names, units and sample time as ``.mat`` (MATLAB 5), ``.npz`` or ``.nc``; replaces a file."""
+        from flexapod.control.files import save
+
+        return save(self, path)
+
+    def reduce(
+        self, modes: int | None = None, *, below: float | str | None = None, residual: bool = True
+    ) -> StateSpace:
+        """The slowest `modes` of `damp`, or all `below` a frequency [Hz], Eqs. (T21.23)-(T21.24).
+
+        `residual`: what is left out still gives way as at rest. Without that zeros move.
+        """
+        from flexapod.control.reduction import reduced
+
+        return reduced(self, modes, below, residual)
 
     def damp(self) -> Dataset:
         """Frequencies [Hz], damping ratios and poles, by frequency, Eq. (T21.4); of a pair the pole above the axis."""

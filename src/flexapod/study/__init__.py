@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from flexapod.results.summary import summary
     from flexapod.study.actuator import simulate_actuator
     from flexapod.study.kinematics import forward_kinematics, inverse_dynamics, inverse_kinematics, mobility
+    from flexapod.study.linear import compliance, linearize, transmissibility
     from flexapod.study.simulation import run, simulate
     from flexapod.study.solid import simulate_solid
     from flexapod.study.static import modes, stiffness
@@ -24,9 +25,11 @@ if TYPE_CHECKING:
 _LATER = {  # what not all ask for loads on first use
     "Interrupted": "results.record",
     "budget": "error_budget",
+    "compliance": "study.linear",
     "forward_kinematics": "study.kinematics",
     "inverse_dynamics": "study.kinematics",
     "inverse_kinematics": "study.kinematics",
+    "linearize": "study.linear",
     "mobility": "study.kinematics",
     "modes": "study.static",
     "open_results": "study.store",
@@ -37,6 +40,7 @@ _LATER = {  # what not all ask for loads on first use
     "simulate_solid": "study.solid",
     "stiffness": "study.static",
     "summary": "results.summary",
+    "transmissibility": "study.linear",
     "vibration": "pose_errors.disturbances",
 }
 
@@ -45,9 +49,11 @@ __all__ = [
     "accuracy",
     "budget",
     "check_path",
+    "compliance",
     "forward_kinematics",
     "inverse_dynamics",
     "inverse_kinematics",
+    "linearize",
     "mobility",
     "modes",
     "open_results",
@@ -60,6 +66,7 @@ __all__ = [
     "simulate_solid",
     "stiffness",
     "summary",
+    "transmissibility",
     "vibration",
 ]
 

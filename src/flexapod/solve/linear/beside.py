@@ -44,9 +44,7 @@ def _each(function: Function | None, q: Array, system: System, shapes: Sequence[
 
     p = np.tile(system.leg_p, (len(q) // system.legs, 1))
     if isinstance(function, CompiledFunction):
-        return [
-            x.swapaxes(1, 2) if x.ndim == 3 else x for x in function.each(len(q), [q, p], shapes)
-        ]
+        return [x.swapaxes(1, 2) if x.ndim == 3 else x for x in function.each(len(q), [q, p], shapes)]
     found = [function(*row) for row in zip(q, p, strict=True)]  # type: ignore[misc]
     return [np.array([one[k] for one in found]).reshape(len(q), *shape) for k, shape in enumerate(shapes)]
 

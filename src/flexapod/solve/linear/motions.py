@@ -99,4 +99,3 @@ def on_motions(system: System, m: RestMatrices, flat: Array) -> tuple[Array, Arr
         flat_forces(system, m.D, no_damping, flat),
         flat_forces(system, m.K, m.payload_K, flat, m.X),
     )
-

@@ -40,7 +40,7 @@ class Plant:
 
     ``system``: its equations, drives released where ``drives`` is "force"; ``x``: states; ``m``: matrices with what
     friction and loops add; ``motions``: independent motions, the same ones at all poses; ``port`` (legs,): coordinate
-    on which each drive acts, -1 of passive legs.
+    on which each drive acts, -1 of passive legs; ``as_at_rest``: whether the equations are those of statics.
     """
 
     locked: LockedPoses
@@ -50,6 +50,7 @@ class Plant:
     m: RestMatrices
     motions: Motions
     port: Index
+    as_at_rest: bool
 
     @property
     def robot(self) -> Robot:
@@ -58,8 +59,11 @@ class Plant:
 
     @property
     def command(self) -> Array:
-        """Commands of all ports, (P, legs, ports)."""
-        return self.locked.command[self.locked.at]
+        """Commands of all ports, (P, legs, ports); where statics know of none, what is there."""
+        found, told = self.x.q[..., self.system.ports], self.locked.command[self.locked.at]
+        for k, port in enumerate(self.locked.system.ports):
+            found[..., self.system.ports == port] = told[..., k, None]
+        return found
 
 
 def plant_at(
@@ -82,9 +86,9 @@ def plant_at(
     as_at_rest = drives == "given" and not (shapes.has("w") or shapes.has("j"))
     system = locked.system if as_at_rest else _moving(robot, simulation, locked.per_loss, drives)
     x = locked.equilibria.states[locked.at]
-    m = with_friction(
-        system, x, matrices_at_rest(system, x, locked.acts.wrench), stuck=simulation.friction == "stuck"
-    )
+    if not as_at_rest:
+        x = replace(x, drive=np.zeros((len(x), system.legs, system.ports.size)))  # forces of statics: none is asked for
+    m = with_friction(system, x, matrices_at_rest(system, x, locked.acts.wrench), stuck=simulation.friction == "stuck")
     if (more := pushes(system, x.q)) is not None:
         m = replace(m, D=m.D + more[0], K=m.K + more[1])
     motions = independent(system, m)
@@ -95,7 +99,9 @@ def plant_at(
             next_step="Give the robot a home nearer to the pose.",
         )
     port = push_ports(system, robot)
-    return Plant(locked=locked, drives=drives, system=system, x=x, m=m, motions=motions, port=port)
+    return Plant(
+        locked=locked, drives=drives, system=system, x=x, m=m, motions=motions, port=port, as_at_rest=as_at_rest
+    )
 
 
 def _holding(drive: Drive) -> Drive:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,28 @@ BLOCK = 256  # frequencies side by side
 POINTS = 8  # of a polynomial through a response, on a panel whose ellipse holds no pole; error below 5.8**-16
 UNDAMPED = 1e-9  # damping ratio below which nothing limits a resonance
 FLOOR_RATES = {"acceleration": 0, "velocity": 1, "displacement": 2}
+
+
+class Shaken(Protocol):
+    """What the integral asks of a linear model: `LinearRobot` says it of a robot."""
+
+    @property
+    def omega(self) -> Array:
+        """Angular frequencies of modes, (r,)."""
+        ...
+
+    @property
+    def tool(self) -> Array:
+        """Outputs by modes, (p, r)."""
+        ...
+
+    def poles(self, rate: float) -> Complex:
+        """Poles [1/s] up to a rate [rad/s]."""
+        ...
+
+    def amplitudes(self, frequency: Array, forces: Array) -> Complex:
+        """Modes (f, r, k) at frequencies [Hz] under unit inputs, columns of (any, k)."""
+        ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,8 +146,8 @@ def density_at(frequency: Array, density: Array, f: Array) -> Array:
     return np.where(power, curved, straight) * inside[:, None]
 
 
-def random_vibration(model: LinearRobot, sources: list[Source], *, refine: int = 1) -> RandomVibration:
-    """Response of the tool to independent sources; ``refine``: into how many each panel is cut further.
+def random_vibration(model: Shaken, sources: list[Source], *, refine: int = 1) -> RandomVibration:
+    """Response of p outputs (the tool) to independent sources; ``refine``: into how many each panel is cut further.
 
     Raises
     ------
@@ -137,8 +160,9 @@ def random_vibration(model: LinearRobot, sources: list[Source], *, refine: int =
     weight = (half[:, None] * WEIGHTS).ravel()
     forces = np.concatenate([source.forces for source in sources], axis=1)
     response = _response(model, forces, f, refine)
-    psd, covariance = np.zeros((len(f), 6)), np.zeros((6, 6))
-    by_mode, by_input = np.zeros((model.omega.size, 6)), np.zeros((forces.shape[1], 6))
+    p = len(model.tool)
+    psd, covariance = np.zeros((len(f), p)), np.zeros((p, p))
+    by_mode, by_input = np.zeros((model.omega.size, p)), np.zeros((forces.shape[1], p))
     for start in range(0, len(f), BLOCK):
         some = slice(start, start + BLOCK)
         S = np.concatenate([source.at(f[some]) for source in sources], axis=1)
@@ -163,7 +187,7 @@ def random_vibration(model: LinearRobot, sources: list[Source], *, refine: int =
     )
 
 
-def _response(model: LinearRobot, forces: Array, f: Array, refine: int) -> Callable[[Array], Complex]:
+def _response(model: Shaken, forces: Array, f: Array, refine: int) -> Callable[[Array], Complex]:
     """Amplitudes (f, r, k) at frequencies: solved for, or where tables have many rows polynomials on wider panels."""
     span = Source(name="", forces=forces, frequency=f[[0, -1]], density=np.zeros((2, 1)))
     edges = panels(model, [span], 2 * refine)
@@ -189,7 +213,7 @@ def _response(model: LinearRobot, forces: Array, f: Array, refine: int) -> Calla
     return between
 
 
-def panels(model: LinearRobot, sources: list[Source], refine: int) -> Array:
+def panels(model: Shaken, sources: list[Source], refine: int) -> Array:
     """Edges [Hz] of panels each as long as rows of the tables and poles let it be, Eq. (T18.11)."""
     breaks = np.unique(np.concatenate([source.frequency for source in sources]))
     z = _poles(model, breaks[0], breaks[-1])
@@ -215,7 +239,7 @@ def _free(z: Complex, start: float, widest: float, shares: Array) -> NDArray[np.
     return (np.maximum(np.abs(x + root), np.abs(x - root)) >= ELLIPSE).all(axis=1)
 
 
-def _poles(model: LinearRobot, low: float, high: float) -> Complex:
+def _poles(model: Shaken, low: float, high: float) -> Complex:
     """Frequencies [Hz] at which responses are infinite, above the real axis.
 
     Raises

@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flexapod.arrays import Array
 from flexapod.errors import InputError
-from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
-from flexapod.solve.batch import RestStates, residual
+from flexapod.solve.batch import RestStates
+from flexapod.solve.linear.floor import gravity_forces
 from flexapod.solve.modal.damped import poles
 from flexapod.solve.modal.modal_loops import ModalLoops, growth, unstable_words
 from flexapod.solve.modal.modes import loops_of, modal_damping, no_mass, unit_modes
 from flexapod.solve.statics.drive_forces import push_ports
 from flexapod.solve.statics.locked import LockedPoses, the_equilibrium
 from flexapod.solve.statics.stiffness import tool_motion
-from flexapod.solve.system import System
 
 __all__ = ["LinearRobot", "linear_robot"]
 
@@ -97,28 +96,9 @@ def linear_robot(locked: LockedPoses) -> LinearRobot:
 
 
 def floor_forces(locked: LockedPoses) -> Array:
-    """Forces (N, 3) on all coordinates per unit acceleration of the base along x, y, z, Eq. (T18.4).
-
-    In axes that move with the base it is gravity changed by the acceleration; residuals are linear in gravity.
-    """
-    system, x = locked.system, locked.equilibria.states[locked.at]
-    command = locked.command[locked.at]
-
-    def forces(gravity: Array) -> Array:
-        legs, payload, _ = residual(
-            _in_gravity(system, gravity), x, command, np.zeros_like(command), locked.acts.wrench
-        )
-        return np.concatenate([legs[0].ravel(), payload[0]])
-
-    none = forces(np.zeros(3))
-    return np.stack([forces(axis) - none for axis in np.eye(3)], axis=1)
-
-
-def _in_gravity(system: System, gravity: Array) -> System:
-    leg_p, payload_p = system.leg_p.copy(), system.payload_p.copy()
-    leg_p[:, columns(LEG_PARAMETERS, "gravity")] = gravity
-    payload_p[columns(PAYLOAD_PARAMETERS, "gravity")] = gravity
-    return replace(system, leg_p=leg_p, payload_p=payload_p)
+    """Forces (N, 3) on all coordinates per unit acceleration of the base along x, y, z, Eq. (T18.4)."""
+    x, command = locked.equilibria.states[locked.at], locked.command[locked.at]
+    return gravity_forces(locked.system, x, command, locked.acts.wrench)[0]
 
 
 def _drive_forces(locked: LockedPoses) -> Array:

@@ -178,7 +178,7 @@ def unit_modes(locked: LockedPoses, *, shapes: bool) -> UnitModes:
     locked = locked.shaken
     system, m, motions = locked.system, locked.m, locked.motions
     K = motions.stiffness(system, m)
-    U, positive = _mass_factor(system, motions, m)
+    U, positive = mass_on_motions(system, motions, m)
     if not K.shape[-1]:
         raise InputError(
             "leaves nothing that could vibrate with the drives locked",
@@ -194,7 +194,7 @@ def unit_modes(locked: LockedPoses, *, shapes: bool) -> UnitModes:
     return UnitModes(omega=omega, flat=flat, positive=positive)
 
 
-def _mass_factor(system: System, motions: Motions, m: RestMatrices) -> tuple[Array, Mask]:
+def mass_on_motions(system: System, motions: Motions, m: RestMatrices) -> tuple[Array, Mask]:
     """Factor U (p, size, d) of the mass matrix on independent motions, body by body, and where it is positive."""
     p, legs, n, _ = m.M.shape
     size = motions.columns.size

@@ -1,0 +1,265 @@
+"""Controllers: laws between named sensors and actuators, alone or decoupled by matrices, (T21.12)-(T21.16)."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from flexapod.arrays import Array
+from flexapod.control import laws
+from flexapod.control.channels import RATE, Names, chosen
+from flexapod.control.laws import Law, Number
+from flexapod.control.state_space import StateSpace
+from flexapod.errors import InputError
+
+__all__ = ["DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together"]
+
+NO_UNITS: Mapping[str, str] = {}
+
+
+class Controller(ABC):
+    """What turns sensors into forces or commands of actuators, signs included: what damps is negative."""
+
+    @abstractmethod
+    def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
+        """State space from sensors, some of the outputs of a system, to actuators, some of its inputs, u = K y.
+
+        Parameters
+        ----------
+        outputs, inputs : sequences of str
+            Names of all channels of the system.
+        units : mapping, optional
+            Their units.
+
+        Raises
+        ------
+        InputError
+            No such channel, or numbers that do not fit.
+        """
+
+    def sampled(
+        self, period: Number, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS
+    ) -> StateSpace:
+        """The same from sample to sample, readings held for a `period` [s]: x_next = A x + B y, u = C x + D y.
+
+        Eq. (T21.17). Other arguments as of `on`: names of all channels there are, of which it takes its own.
+        """
+        return self.on(outputs, inputs, units).sampled(period)
+
+
+def assembled(
+    columns: Sequence[Law], into: Array, out: Array, sensors: Sequence[str], actuators: Sequence[str],
+    units: Mapping[str, str],
+) -> StateSpace:  # fmt: skip
+    """Laws between matrices: u = `out` (actuators, k) . laws (k) . `into` (k, sensors) y, Eq. (T21.12)."""
+    A, C = block_diag(*(law.A for law in columns)), block_diag(*(law.C[None] for law in columns))
+    n = sum(len(law.A) for law in columns)
+    A, C = A.reshape(n, n), C.reshape(len(columns), n)  # of laws without states
+    read, rates = (block_diag(*(law.B[:, [i]] for law in columns)).reshape(n, len(columns)) for i in (0, 1))
+    direct, damped = (np.diag([law.D[i] for law in columns]) for i in (0, 1))
+    names, B, D = list(sensors), read @ into, out @ direct @ into
+    if rates.any() or damped.any():
+        seen = np.flatnonzero((rates @ into).any(axis=0) | (out @ damped @ into).any(axis=0))
+        names += [RATE + sensors[i] for i in seen]
+        B, D = np.hstack([B, (rates @ into)[:, seen]]), np.hstack([D, (out @ damped @ into)[:, seen]])
+    return StateSpace(
+        A=A,
+        B=B,
+        C=out @ C,
+        D=D,
+        inputs=tuple(names),
+        outputs=tuple(actuators),
+        states=tuple(f"law {k + 1} x{i + 1}" for k, law in enumerate(columns) for i in range(len(law.A))),
+        units={name: units[name.removeprefix(RATE)] for name in (*sensors, *actuators) if name in units},
+    )
+
+
+@dataclass(frozen=True)
+class Decentralised(Controller):
+    """Each actuator by the sensor of the same place, u_i = -law(y_i), Eq. (T21.13)."""
+
+    law: Law
+    _: KW_ONLY
+    sensor: Names
+    actuator: Names = "drive"
+
+    def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
+        """See `Controller.on`."""
+        sensors, actuators = _pairs(self.sensor, self.actuator, outputs, inputs)
+        each = np.eye(len(sensors))
+        return assembled([self.law * -1.0] * len(sensors), each, each, sensors, actuators, units)
+
+
+@dataclass(frozen=True)
+class IFF(Controller):
+    """Integral force feedback: u_i = -gain / (s + w) (force_i + parallel_stiffness stroke_i), Eq. (T21.14).
+
+    Parameters
+    ----------
+    gain : float
+        [1/s]
+    high_pass : float or str
+        Corner [Hz] below which nothing is integrated: static stiffness stays, and a robot that turns stays stable.
+    parallel_stiffness : float
+        Force per `stroke` [N/m] that is added to what the sensors read, as if springs beside actuators and sensors
+        carried it: the robot keeps that stiffness.
+    sensor, stroke, actuator : names
+        Channels: forces through the actuators, elongations of these, forces of these.
+    """
+
+    gain: float
+    _: KW_ONLY
+    high_pass: Number = 0.0
+    parallel_stiffness: float = 0.0
+    sensor: Names = "force-sensor:drive"
+    stroke: Names = "stroke"
+    actuator: Names = "drive"
+
+    def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
+        """See `Controller.on`."""
+        law = laws.integrator(-self.gain, self.high_pass)
+        sensors, actuators = _pairs(self.sensor, self.actuator, outputs, inputs)
+        each = np.eye(len(sensors))
+        if not self.parallel_stiffness:
+            return assembled([law] * len(sensors), each, each, sensors, actuators, units)
+        strokes, _ = _pairs(self.stroke, self.actuator, outputs, inputs)
+        into = np.hstack([each, self.parallel_stiffness * each])
+        return assembled([law] * len(sensors), into, each, [*sensors, *strokes], actuators, units)
+
+
+@dataclass(frozen=True)
+class DVF(Controller):
+    """Direct velocity feedback: u_i = -gain (rate of sensor_i), with a `low_pass` [Hz] or without, Eq. (T21.15)."""
+
+    gain: float
+    _: KW_ONLY
+    low_pass: Number | None = None
+    sensor: Names = "stroke"
+    actuator: Names = "drive"
+
+    def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
+        """See `Controller.on`."""
+        law = laws.rate(self.gain, self.low_pass)
+        return Decentralised(law, sensor=self.sensor, actuator=self.actuator).on(outputs, inputs, units)
+
+
+@dataclass(frozen=True)
+class PID(Controller):
+    """u_i = -(proportional y_i + integral of y_i + derivative rate of y_i); `low_pass` [Hz] of the rate."""
+
+    proportional: float
+    integral: float = 0.0
+    derivative: float = 0.0
+    _: KW_ONLY
+    low_pass: Number | None = None
+    sensor: Names = "stroke"
+    actuator: Names = "drive"
+
+    def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
+        """See `Controller.on`."""
+        law = laws.pid(self.proportional, self.integral, self.derivative, self.low_pass)
+        return Decentralised(law, sensor=self.sensor, actuator=self.actuator).on(outputs, inputs, units)
+
+
+@dataclass(frozen=True)
+class Fused(Controller):
+    """Two sensors of one motion, the first below, the second above a `corner` [Hz], u_i = -law(L y_i + H z_i)."""
+
+    law: Law
+    _: KW_ONLY
+    low: Names
+    high: Names
+    corner: Number
+    order: int = 1
+    actuator: Names = "drive"
+
+    def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
+        """See `Controller.on`."""
+        below, above = laws.complementary(self.corner, self.order)
+        low, actuators = _pairs(self.low, self.actuator, outputs, inputs)
+        high, _ = _pairs(self.high, self.actuator, outputs, inputs)
+        each = np.eye(len(low))
+        both = [self.law * below * -1.0] * len(low) + [self.law * above * -1.0] * len(low)
+        return assembled(both, np.eye(2 * len(low)), np.hstack([each, each]), [*low, *high], actuators, units)
+
+
+@dataclass(frozen=True)
+class Decoupled(Controller):
+    """u = -out . law . into y: readings into directions that do not disturb each other, and back, Eq. (T21.16).
+
+    Parameters
+    ----------
+    law : Law or sequence of Law
+        One for all directions, or one each.
+    into : ndarray, shape (k, sensors)
+        Directions by readings, for example the inverse of a Jacobian.
+    out : ndarray, shape (actuators, k)
+        Actuators by what the directions ask for, for example the inverse of its transpose.
+    """
+
+    law: Law | Sequence[Law]
+    _: KW_ONLY
+    into: Array
+    out: Array
+    sensor: Names = "stroke"
+    actuator: Names = "drive"
+
+    def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
+        """See `Controller.on`."""
+        sensors = [outputs[i] for i in chosen(self.sensor, outputs, "sensor")]
+        actuators = [inputs[i] for i in chosen(self.actuator, inputs, "actuator")]
+        into, out = np.atleast_2d(np.asarray(self.into, float)), np.asarray(self.out, float)
+        out = out[:, None] if out.ndim == 1 else out
+        given = [self.law] * len(into) if isinstance(self.law, Law) else list(self.law)
+        shapes = {"into": (into, (len(given), len(sensors))), "out": (out, (len(actuators), len(given)))}
+        for key, (matrix, shape) in shapes.items():
+            if matrix.shape != shape:
+                words = f"{shape}: {len(given)} laws, {len(sensors)} sensors, {len(actuators)} actuators"
+                raise InputError(f"has the shape {matrix.shape}", key=key, allowed=words)
+        return assembled([law * -1.0 for law in given], into, out, sensors, actuators, units)
+
+
+@dataclass(frozen=True)
+class Together(Controller):
+    """Several controllers at once: what they ask of an actuator adds up, as an inner and an outer loop do."""
+
+    parts: tuple[Controller | StateSpace, ...]
+
+    def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
+        """See `Controller.on`."""
+        each = [part.on(outputs, inputs, units) for part in self.parts]
+        readings = tuple(dict.fromkeys(name for part in each for name in part.inputs))
+        actuators = tuple(dict.fromkeys(name for part in each for name in part.outputs))
+        reads = [np.array([[float(a == b) for b in readings] for a in part.inputs]) for part in each]
+        drives = [np.array([[float(a == b) for b in part.outputs] for a in actuators]) for part in each]
+        return StateSpace(
+            A=block_diag(*(part.A for part in each)).reshape(-1, sum(len(part.A) for part in each)),
+            B=np.vstack([part.B @ read for part, read in zip(each, reads, strict=True)]),
+            C=np.hstack([drive @ part.C for part, drive in zip(each, drives, strict=True)]),
+            D=sum(d @ part.D @ r for part, r, d in zip(each, reads, drives, strict=True)),
+            inputs=readings,
+            outputs=actuators,
+            states=tuple(f"part {k + 1} {name}" for k, part in enumerate(each) for name in part.states),
+            units={name: unit for part in each for name, unit in part.units.items()},
+        )
+
+
+def _pairs(
+    sensor: Names, actuator: Names, outputs: Sequence[str], inputs: Sequence[str]
+) -> tuple[list[str], list[str]]:
+    """Names of sensors and actuators, as many of each."""
+    sensors = [outputs[i] for i in chosen(sensor, outputs, "sensor")]
+    actuators = [inputs[i] for i in chosen(actuator, inputs, "actuator")]
+    if len(sensors) != len(actuators):
+        raise InputError(
+            f"are {len(sensors)} for {len(actuators)} actuators",
+            key="sensor",
+            value=", ".join(sensors),
+            allowed="a sensor for each actuator",
+            next_step="Name single channels, as drive:3",
+        )
+    return sensors, actuators

@@ -1,0 +1,151 @@
+"""Matrices that decouple sensors and actuators: by Jacobians, modes, singular vectors, (T21.36)-(T21.39)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexapod.arrays import Array
+from flexapod.control.channels import Names
+from flexapod.control.controllers import Decoupled
+from flexapod.control.laws import Law
+from flexapod.errors import ComputationError, InputError
+from flexapod.units import to_si
+
+if TYPE_CHECKING:
+    from flexapod.control.state_space import StateSpace
+    from flexapod.model import Robot
+
+__all__ = ["Matrices", "by_jacobian", "by_modes", "by_singular_vectors", "centre_of_stiffness", "robot_jacobian"]
+
+INDEPENDENT = 1e-9  # smallest over largest singular value of what still has an inverse
+
+
+@dataclass(frozen=True, kw_only=True)
+class Matrices:
+    """Directions by readings ``into`` (k, sensors), actuators by directions ``out`` (actuators, k), Eq. (T21.16)."""
+
+    into: Array
+    out: Array
+
+    def controller(self, law: Law | Sequence[Law], *, sensor: Names = "stroke", actuator: Names = "drive") -> Decoupled:
+        """A controller with a law, or one each, in these directions."""
+        return Decoupled(law, into=self.into, out=self.out, sensor=sensor, actuator=actuator)
+
+
+def by_jacobian(jacobian: ArrayLike) -> Matrices:
+    """Motion of a point by strokes, drive forces by its wrench, Eq. (T21.36), from strokes by its motion (m, d).
+
+    With the centre of mass masses do not couple, with the centre of stiffness springs do not.
+    """
+    J = np.atleast_2d(np.asarray(jacobian, dtype=float))
+    inverse = _inverse(J, "jacobian")
+    return Matrices(into=inverse, out=inverse.T)
+
+
+def robot_jacobian(robot: Robot, at: Literal["com", "cok"] | ArrayLike = "com", stiffness: ArrayLike = 1.0) -> Array:
+    """Rates of the drives by the twist of a point of the platform at home, (m, 6); see `kinematics.drive_jacobian`.
+
+    Parameters
+    ----------
+    robot : Robot
+    at : {"com", "cok"} or array_like, shape (3,)
+        Centre of mass of the payload, centre of stiffness, or a point in platform axes [m].
+    stiffness : float or array_like, shape (m,)
+        Of the drives [N/m], for "cok".
+    """
+    from flexapod import kinematics
+
+    home = kinematics.home_pose(robot)
+    point = robot.com if isinstance(at, str) else np.asarray(at, dtype=float)
+    found = kinematics.drive_jacobian(robot, home, point)[0]
+    if not (isinstance(at, str) and at == "cok"):
+        if isinstance(at, str) and at != "com":
+            raise InputError("is no point", key="at", value=at, allowed='"com", "cok", or three numbers')
+        return found
+    away = home.rotation[0].T @ centre_of_stiffness(found, stiffness)  # in platform axes
+    return kinematics.drive_jacobian(robot, home, point + away)[0]
+
+
+def centre_of_stiffness(jacobian: ArrayLike, stiffness: ArrayLike = 1.0) -> Array:
+    """From the point of a Jacobian (m, 6) to that about which forces turn least and moments move least, (3,) [m].
+
+    The stiffness of translation with rotation, K_tr, at a point beside it by a is K_tr + K_tt [a]x, Eq. (T21.37), with
+    the least sum of squares there.
+    """
+    J = np.asarray(jacobian, dtype=float)
+    K = J.T @ (np.broadcast_to(np.asarray(stiffness, dtype=float), len(J))[:, None] * J)
+    turns = [K[:3, :3] @ np.cross(np.eye(3), axis) for axis in np.eye(3)]
+    system = np.stack([turn.ravel() for turn in turns], axis=1)
+    return np.linalg.lstsq(system, -K[:3, 3:].ravel(), rcond=None)[0]
+
+
+def by_modes(
+    system: StateSpace, *, sensor: Names = "stroke", actuator: Names = "drive", count: int | None = None,
+    above: float | str = 0.0,
+) -> Matrices:  # fmt: skip
+    """Amplitudes of the slowest modes by readings, and forces that drive each alone, Eq. (T21.38).
+
+    Parameters
+    ----------
+    system : StateSpace
+    sensor, actuator : names
+    count : int, optional
+        Modes, as many as sensors and actuators at most; by itself as many as these.
+    above : float or str
+        Frequency [Hz] below which poles are no modes.
+
+    Raises
+    ------
+    ComputationError
+        Modes that sensors or actuators do not tell apart.
+    """
+    part = system.select(actuator, sensor)
+    k = min(part.D.shape) if count is None else count
+    if not 0 < k <= min(part.D.shape):
+        raise InputError("cannot be told apart", key="count", value=k, allowed=f"1 to {min(part.D.shape)}")
+    values, right = np.linalg.eig(part.A)
+    left = np.linalg.solve(right, part.B.astype(complex))
+    shown = part.C @ right
+    edge = 2 * np.pi * to_si(above, "frequency", key="above")
+    slowest = np.argsort(np.abs(values), kind="stable")
+    modes = [i for i in slowest if values[i].imag > 0 and abs(values[i]) > edge]
+    if len(modes) < k:
+        raise ComputationError(f"there are {len(modes)} modes that vibrate, fewer than {k}")
+    into = np.stack([_real(shown[:, i]) for i in modes[:k]], axis=1)
+    out = np.stack([_real(left[i]) for i in modes[:k]])
+    return Matrices(into=_inverse(into, "sensor"), out=_inverse(out, "actuator"))
+
+
+def by_singular_vectors(
+    system: StateSpace, hz: float | str, *, sensor: Names = "stroke", actuator: Names = "drive"
+) -> Matrices:
+    """Singular vectors of a real matrix near the response at a frequency, Eq. (T21.39): G ~ U S V'."""
+    at = to_si(hz, "frequency", key="hz")
+    G = system.select(actuator, sensor).at(at)[:, :, 0]
+    if G.shape[0] != G.shape[1]:
+        raise InputError("is not square", key="sensor", allowed="as many sensors as actuators")
+    D = np.linalg.pinv((G.conj().T @ G).real)
+    turn = np.exp(0.5j * np.angle(np.diag(G @ D @ G.T)))
+    real = np.linalg.pinv(D @ (G.conj().T @ np.diag(turn)).real)
+    U, _, Vt = np.linalg.svd(real)
+    return Matrices(into=U.T, out=Vt.T)
+
+
+def _real(shape: np.ndarray) -> Array:
+    """A complex shape as the real one that is nearest, of its size, its largest part positive."""
+    turned = shape * np.exp(-0.5j * np.angle((shape**2).sum()))
+    real = turned.real
+    return real * np.sign(real[np.abs(real).argmax()] or 1.0)
+
+
+def _inverse(matrix: Array, key: str) -> Array:
+    """Its (pseudo-)inverse; refuses what has none."""
+    values = np.linalg.svd(matrix / (np.linalg.norm(matrix, axis=0) + 1e-300), compute_uv=False)
+    if values.min(initial=np.inf) < INDEPENDENT * values.max(initial=0.0):
+        raise ComputationError(f"directions are not told apart by {key}", next_step="Ask for fewer directions")
+    return np.linalg.pinv(matrix)

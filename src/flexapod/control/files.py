@@ -1,0 +1,69 @@
+"""Linear systems for other programs: MATLAB, NumPy and NetCDF files with all names and units, python-control."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flexapod.errors import ComputationError, InputError
+from flexapod.runtime.files import replacing
+
+if TYPE_CHECKING:
+    from flexapod.control.state_space import StateSpace
+
+__all__ = ["save", "to_control"]
+
+
+def to_control(system: StateSpace) -> Any:
+    """See `StateSpace.to_control`."""
+    try:
+        import control
+    except ImportError:
+        raise ComputationError(
+            "python-control is not installed", next_step='pip install "flexapod[control]", or pip install control'
+        ) from None
+    names = {"inputs": list(system.inputs), "outputs": list(system.outputs), "states": list(system.states)}
+    return control.ss(system.A, system.B, system.C, system.D, system.sample or 0, **names)
+
+
+def save(system: StateSpace, path: str | Path) -> Path:
+    """See `StateSpace.save`."""
+    path = Path(path)
+    if path.suffix not in WRITERS:
+        raise InputError("is not a format of linear systems", key="path", value=path.name, allowed=", ".join(WRITERS))
+    with replacing(path) as temporary:
+        WRITERS[path.suffix](system, temporary)
+    return path
+
+
+def _named(system: StateSpace) -> dict[str, np.ndarray]:
+    """Matrices and names; units beside inputs and outputs; a sample time of 0 is that of a continuous system."""
+    names = {"inputs": system.inputs, "outputs": system.outputs, "states": system.states}
+    units = {f"{name[:-1]}_units": [system.units.get(x, "1") for x in names[name]] for name in ("inputs", "outputs")}
+    texts = {name: np.array(list(values), dtype=str) for name, values in (names | units).items()}
+    return {name: getattr(system, name) for name in "ABCD"} | texts | {"sample": np.array(system.sample or 0.0)}
+
+
+def _mat(system: StateSpace, path: Path) -> None:
+    from scipy.io import savemat
+
+    given = {name: x.astype(object) if x.dtype.kind == "U" else x for name, x in _named(system).items()}  # as cells
+    with path.open("wb") as file:
+        savemat(file, given, oned_as="row")
+
+
+def _npz(system: StateSpace, path: Path) -> None:
+    with path.open("wb") as file:
+        np.savez(file, **_named(system))
+
+
+def _nc(system: StateSpace, path: Path) -> None:
+    from flexapod.control.datasets import system_dataset
+
+    system_dataset(system).to_netcdf(path, engine="netcdf4")
+
+
+WRITERS: dict[str, Callable[[StateSpace, Path], None]] = {".mat": _mat, ".npz": _npz, ".nc": _nc}

@@ -1,0 +1,28 @@
+"""A controller that is a function of an instant and readings, in place of a linear law."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from flexapod.arrays import Array
+
+__all__ = ["Function"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Function:
+    """What a simulation asks once a sample: ``function(t, readings) -> values``, t [s].
+
+    Parameters
+    ----------
+    function : callable
+        Of an instant and the readings (p,), in the order of `inputs`; returns the values (m,) of `outputs`. Called in
+        the order of samples; after a step that fails some come again with the same instants.
+    inputs, outputs : tuples of str
+        Single channels that it reads, as ``stroke:1``, and that it moves, as ``drive:1``.
+    """
+
+    function: Callable[[float, Array], object]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]

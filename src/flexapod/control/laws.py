@@ -1,0 +1,189 @@
+"""Laws of one channel, from a reading and its rate to an output: integrators, filters, leads, (T21.6)-(T21.11)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import comb
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flexapod.arrays import Array
+from flexapod.errors import InputError
+from flexapod.units import to_si
+
+__all__ = [
+    "Law",
+    "complementary",
+    "gain",
+    "high_pass",
+    "integrator",
+    "lead",
+    "low_pass",
+    "notch",
+    "pid",
+    "positive_feedback",
+    "rate",
+]
+
+Number = float | str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Law:
+    """x' = A x + B (y, y'), out = C x + D (y, y') of one reading y with its rate y', Eq. (T21.6).
+
+    The rate stands beside the reading, so that laws with a pure derivative have a state space: of a linear system the
+    rate is exact, of a sampled reading it is the last difference over the period. ``A`` (n, n), ``B`` (n, 2),
+    ``C`` (n,), ``D`` (2,).
+    """
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+
+    @classmethod
+    def of(cls, numerator: Sequence[float], denominator: Sequence[float] = (1.0,)) -> Law:
+        """Numerator over denominator, powers of s with the highest first; at most one zero more than poles."""
+        top, bottom = (
+            np.trim_zeros(np.asarray(numerator, float), "f"),
+            np.trim_zeros(np.asarray(denominator, float), "f"),
+        )
+        n = len(bottom) - 1
+        if n < 0 or len(top) > n + 2:
+            raise InputError(
+                "has more than one zero more than poles",
+                key="numerator",
+                value=f"{list(top)} over {list(bottom)}",
+                allowed="a degree of at most that of the denominator and one",
+                next_step="Multiply it by a low_pass",
+            )
+        top = np.concatenate([np.zeros(n + 2 - len(top)), top]) / bottom[0]
+        bottom = bottom / bottom[0]
+        derivative = top[0]
+        top = top[1:] - derivative * np.append(bottom[1:], 0.0)
+        direct = top[0]
+        A = np.vstack([-bottom[1:], np.eye(n)[:-1]]) if n else np.zeros((0, 0))
+        B = np.zeros((n, 2))
+        B[:1, 0] = 1.0
+        return cls(A=A, B=B, C=top[1:] - direct * bottom[1:], D=np.array([direct, derivative]))
+
+    @property
+    def uses_rate(self) -> bool:
+        """Whether the rate of the reading matters."""
+        return bool(self.B[:, 1].any() or self.D[1])
+
+    def __mul__(self, other: Law | float) -> Law:
+        """A number of times the law, or one law behind the other: their transfers multiply, Eq. (T21.7)."""
+        if not isinstance(other, Law):
+            return Law(A=self.A, B=self.B, C=float(other) * self.C, D=float(other) * self.D)
+        first, second = (self, other) if not other.uses_rate else (other, self)
+        if second.uses_rate:
+            raise InputError("both take rates: their product needs a rate of a rate", key="law")
+        n, m = len(first.A), len(second.A)
+        return Law(
+            A=np.block([[first.A, np.zeros((n, m))], [np.outer(second.B[:, 0], first.C), second.A]]),
+            B=np.vstack([first.B, np.outer(second.B[:, 0], first.D)]),
+            C=np.concatenate([second.D[0] * first.C, second.C]),
+            D=second.D[0] * first.D,
+        )
+
+    __rmul__ = __mul__
+
+    def __add__(self, other: Law) -> Law:
+        """Two laws side by side: their outputs add."""
+        n, m = len(self.A), len(other.A)
+        return Law(
+            A=np.block([[self.A, np.zeros((n, m))], [np.zeros((m, n)), other.A]]),
+            B=np.vstack([self.B, other.B]),
+            C=np.concatenate([self.C, other.C]),
+            D=self.D + other.D,
+        )
+
+    def at(self, hz: ArrayLike) -> NDArray[np.complex128]:
+        """Complex response (f,) at frequencies [Hz], the rate that of the reading."""
+        s = 2j * np.pi * np.atleast_1d(np.asarray(hz, float))
+        given = np.stack([np.ones_like(s), s])
+        moved = np.linalg.solve(s[:, None, None] * np.eye(len(self.A)) - self.A, (self.B @ given).T[..., None])
+        return (moved[..., 0] @ self.C) + self.D @ given
+
+
+def gain(value: float) -> Law:
+    """A number."""
+    return Law.of([value])
+
+
+def rate(value: float, low_pass: Number | None = None) -> Law:
+    """A number times the rate; `low_pass` [Hz]: corner above which it is the reading's."""
+    return Law.of([value, 0.0]) if low_pass is None else Law.of([value, 0.0], [1 / _omega(low_pass, "low_pass"), 1.0])
+
+
+def integrator(value: float, high_pass: Number = 0.0) -> Law:
+    """Integral above the corner `high_pass` [Hz], below it a number: value / (s + w), Eq. (T21.8)."""
+    return Law.of([value], [1.0, _omega(high_pass, "high_pass", least=0.0)])
+
+
+def low_pass(corner: Number, order: int = 1, damping: float = 0.5**0.5) -> Law:
+    """1 at rest, above the corner [Hz] falling with a power of one or two; of order 2 with a damping ratio."""
+    w = _omega(corner, "corner")
+    return Law.of([1.0], _of_order(order, [1 / w, 1.0], [1 / w**2, 2 * damping / w, 1.0]))
+
+
+def high_pass(corner: Number, order: int = 1, damping: float = 0.5**0.5) -> Law:
+    """1 far above the corner [Hz], below it falling with a power of one or two."""
+    w = _omega(corner, "corner")
+    top = _of_order(order, [1 / w, 0.0], [1 / w**2, 0.0, 0.0])
+    return Law.of(top, _of_order(order, [1 / w, 1.0], [1 / w**2, 2 * damping / w, 1.0]))
+
+
+def lead(crossing: Number, ratio: float) -> Law:
+    """(1 + s h / w) / (1 + s / (h w)) / h: size 1 at the crossing [Hz], phase most there, Eq. (T21.9)."""
+    w = _omega(crossing, "crossing")
+    if not ratio > 0:
+        raise InputError("is not above 0", key="ratio", value=ratio)
+    return Law.of([1 / w, 1 / ratio], [1 / (ratio * w), 1.0])
+
+
+def notch(frequency: Number, damping: float = 0.5, depth: float = 0.0) -> Law:
+    """1 but about a frequency [Hz], where it is `depth`; `damping`: how broad, Eq. (T21.10)."""
+    w = _omega(frequency, "frequency")
+    return Law.of([1.0, 2 * depth * damping * w, w**2], [1.0, 2 * damping * w, w**2])
+
+
+def pid(proportional: float, integral: float = 0.0, derivative: float = 0.0, low_pass: Number | None = None) -> Law:
+    """Reading, integral and rate, each times a number; `low_pass` [Hz] of the rate alone."""
+    law = gain(proportional)
+    law = law + integrator(integral) if integral else law
+    return law + rate(derivative, low_pass) if derivative else law
+
+
+def positive_feedback(frequency: Number, damping: float, value: float) -> Law:
+    """What positive position feedback passes on of a reading: value w^2 / (s^2 + 2 zeta w s + w^2)."""
+    w = _omega(frequency, "frequency")
+    return Law.of([value * w**2], [1.0, 2 * damping * w, w**2])
+
+
+def complementary(corner: Number, order: int = 1) -> tuple[Law, Law]:
+    """Low-pass and high-pass that add up to 1 and fall with the power `order` outside of their bands, Eq. (T21.11)."""
+    if order not in (1, 2, 3):
+        raise InputError("is not an order of complementary filters", key="order", value=order, allowed="1, 2, 3")
+    w, n = _omega(corner, "corner"), 2 * order - 1
+    terms = np.array([comb(n, k) * w**k for k in range(n + 1)])  # of (s + w)^n
+    high = np.where(np.arange(n + 1) < order, terms, 0.0)
+    return Law.of(terms - high, terms), Law.of(high, terms)
+
+
+def _of_order(order: int, one: list[float], two: list[float]) -> list[float]:
+    if order not in (1, 2):
+        raise InputError("is not an order of this filter", key="order", value=order, allowed="1, 2")
+    return one if order == 1 else two
+
+
+def _omega(frequency: Number, key: str, least: float | None = None) -> float:
+    """Angular frequency [rad/s] of a number [Hz] or a text."""
+    found = to_si(frequency, "frequency", key=key)
+    if found < 0 or (least is None and found == 0):
+        raise InputError("is not a frequency", key=key, value=frequency, allowed="above 0 Hz")
+    return 2 * np.pi * found

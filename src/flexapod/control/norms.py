@@ -1,0 +1,179 @@
+"""Sizes of responses: H2, H-infinity, relative gains, with the reason of what is infinite, (T21.25)-(T21.28)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from flexapod.arrays import Array
+from flexapod.control.integrators import integrators, moved_and_shown, reached
+from flexapod.control.reduction import Part, apart
+from flexapod.errors import ComputationError
+
+if TYPE_CHECKING:
+    from flexapod.control.state_space import StateSpace
+
+__all__ = ["h2_norms", "hinf_norm", "relative_gains", "stays"]
+
+Complex = NDArray[np.complex128]
+
+LASTS = 1e-9  # damping ratio, and size of a pole over the middle one, below which nothing decays
+SHOWN = 1e-9  # of the product of its sizes: a response of what lasts that counts
+PEAK = 1e-10  # relative accuracy of H-infinity
+ROUNDS = 40
+ON_AXIS = 1e-8  # real part of an eigenvalue over its size that lies on the imaginary axis
+
+
+def stays(pole: complex, rate: float) -> bool:
+    """Whether what a pole [1/s] stands for never decays, among others of a `rate` [rad/s]."""
+    return pole.real >= -max(LASTS * abs(pole), LASTS * LASTS * rate) or abs(pole) <= LASTS * rate
+
+
+def h2_norms(system: StateSpace) -> tuple[Array, dict[tuple[int, int], str]]:
+    """H2 norm of each channel (outputs, inputs), Eq. (T21.25), and why some are infinite by (output, input)."""
+    A, B, C, D = system.A, system.B, system.C, system.D
+    found, why = np.zeros(D.shape), {}
+    links = A != 0
+    shown = np.stack([reached(links.T, row != 0) for row in C]) if len(C) else np.zeros((0, len(A)), bool)
+    drifting = integrators(A) if system.sample is None else np.zeros(len(A), dtype=bool)
+    for j in range(B.shape[1]):
+        moved = reached(links, B[:, j] != 0)
+        drifts = (shown & drifting & moved).any(axis=1)
+        for i in np.flatnonzero(drifts):
+            why[int(i), j] = "an integrator: a pole at 0 Hz"
+        if system.sample is None:
+            for i in np.flatnonzero(D[:, j]):
+                why.setdefault((int(i), j), "feed-through: it follows what has no end of frequencies")
+        ends = np.array([(i, j) not in why for i in range(len(C))], dtype=bool)
+        kept = np.flatnonzero(moved & shown[ends].any(axis=0))
+        rows = np.flatnonzero(ends)
+        values, lasting = _h2_of(A[np.ix_(kept, kept)], B[kept, j], C[np.ix_(rows, kept)], D[rows, j], system.sample)
+        found[rows, j] = values
+        why |= {(int(i), j): words for i, words in zip(rows, lasting, strict=True) if words}
+    for at in why:
+        found[at] = np.inf
+    return found, why
+
+
+def _h2_of(A: Array, b: Array, C: Array, d: Array, sample: float | None) -> tuple[Array, list[str]]:
+    """H2 norms of one input by outputs (p,), and of each what lasts in it, "" of those that end."""
+    if not len(A):
+        return np.abs(d), [""] * len(C)
+    poles = np.linalg.eigvals(A)
+    size = np.abs(poles)
+    rate = float(np.exp(np.log(size[size > LASTS * size.max()]).mean())) if size.any() else 1.0
+    passes = (lambda pole: abs(pole) < 1 - LASTS) if sample is not None else (lambda pole: not stays(pole, rate))
+    ends, lasts = apart(A, b[:, None], C, passes)
+    words = _lasting(lasts)
+    if not len(ends.A):
+        return np.abs(d), words
+    if sample is None:
+        P = scipy.linalg.solve_continuous_lyapunov(ends.A, -ends.B @ ends.B.T)  # (T21.26)
+    else:
+        P = scipy.linalg.solve_discrete_lyapunov(ends.A, ends.B @ ends.B.T)
+    power = np.einsum("in,nm,im->i", ends.C, P, ends.C) + (d**2 if sample is not None else 0.0)
+    return np.sqrt(np.maximum(power, 0.0)), words
+
+
+def _lasting(part: Part) -> list[str]:
+    """What lasts in each output, in words; "" where nothing of it is seen."""
+    words = [""] * len(part.C)
+    if not len(part.A):
+        return words
+    scale = np.linalg.norm(part.C, axis=1) * np.linalg.norm(part.B)
+    power, seen = part.B[:, 0], np.zeros(len(part.C), dtype=bool)
+    for _ in range(len(part.A)):
+        seen |= np.abs(part.C @ power) > SHOWN * scale * (np.linalg.norm(power) / np.linalg.norm(part.B))
+        power = part.A @ power
+        if not power.any():
+            break
+    worst = max(np.linalg.eigvals(part.A), key=lambda pole: pole.real)
+    at = f"a pole at {abs(worst) / (2 * np.pi):.4g} Hz"
+    kind = "an unstable motion" if worst.real > LASTS * abs(worst) else "a motion that never decays"
+    return [f"{kind}: {at}" if one else "" for one in seen]
+
+
+def hinf_norm(system: StateSpace) -> tuple[float, float]:
+    """Largest singular value of the response over all frequencies, and where it is [Hz], Eq. (T21.27).
+
+    Bruinsma & Steinbuch, Systems & Control Letters 14, 1990: levels which no frequency reaches have Hamiltonian
+    matrices without eigenvalues on the imaginary axis. Infinite, at its pole, of what never decays.
+    """
+    A, B, C = moved_and_shown(system.A, system.B, system.C)
+    D, poles = system.D, np.linalg.eigvals(A).astype(complex)
+    if not len(A):
+        return float(np.linalg.norm(D, 2)) if D.size else 0.0, 0.0
+    if system.sample is not None:
+        A, B, C, D, poles = _continuous(A, B, C, D)
+    size = np.abs(poles)
+    rate = float(np.exp(np.log(np.maximum(size, LASTS * size.max() or 1.0)).mean()))
+    if lasting := [pole for pole in poles if stays(pole, rate)]:
+        return np.inf, _hertz(abs(lasting[0]), system.sample)
+    A, change = scipy.linalg.matrix_balance(A / rate)  # time in units of 1 / rate
+    B, C = np.linalg.solve(change, B), C @ change / rate
+    level, at = max((float(np.linalg.norm(_at(A, B, C, D, w), 2)), w) for w in [0.0, *np.abs(poles) / rate])
+    far = float(np.linalg.norm(D, 2))
+    level, at = max((level, at), (far, np.inf))
+    for _ in range(ROUNDS):
+        raised = level * (1 + PEAK)
+        crossings = _crossings(A, B, C, D, raised) if raised else np.zeros(0)
+        if len(crossings) < 2:
+            break
+        middles = 0.5 * (crossings[1:] + crossings[:-1])
+        level, at = max((float(np.linalg.norm(_at(A, B, C, D, w), 2)), w) for w in middles)
+        if level <= raised:
+            break
+    return level, _hertz(at * rate, system.sample)
+
+
+def _hertz(omega: float, sample: float | None) -> float:
+    """Frequency [Hz] of an angular one [rad/s], or of that behind the bilinear transform of samples."""
+    return float(omega / (2 * np.pi) if sample is None else np.arctan(omega) / (np.pi * sample))
+
+
+def _at(A: Array, B: Array, C: Array, D: Array, omega: float) -> Complex:
+    return D + C @ np.linalg.solve(1j * omega * np.eye(len(A)) - A, B)
+
+
+def _continuous(A: Array, B: Array, C: Array, D: Array) -> tuple[Array, Array, Array, Array, Complex]:
+    """The same sizes on the imaginary axis as between samples on the circle: s = (z - 1) / (z + 1)."""
+    inverse = np.linalg.inv(np.eye(len(A)) + A)
+    found = inverse @ (A - np.eye(len(A)))
+    return found, np.sqrt(2) * inverse @ B, np.sqrt(2) * C @ inverse, D - C @ inverse @ B, np.linalg.eigvals(found)
+
+
+def _crossings(A: Array, B: Array, C: Array, D: Array, level: float) -> Array:
+    """Frequencies at which a singular value is `level`: eigenvalues of the Hamiltonian on the axis, Eq. (T21.28)."""
+    R, S = D.T @ D - level**2 * np.eye(D.shape[1]), D @ D.T - level**2 * np.eye(D.shape[0])
+    if min(np.linalg.cond(R), np.linalg.cond(S)) > 1 / PEAK**1.5:
+        return np.zeros(0)
+    inner = A - B @ np.linalg.solve(R, D.T @ C)
+    size = np.sqrt(np.linalg.norm(B) / np.linalg.norm(C))  # both blocks of one size
+    values = np.linalg.eigvals(
+        np.block(
+            [
+                [inner, -level / size**2 * B @ np.linalg.solve(R, B.T)],
+                [level * size**2 * C.T @ np.linalg.solve(S, C), -inner.T],
+            ]
+        )
+    )
+    return np.unique(np.abs(values[np.abs(values.real) <= ON_AXIS * np.maximum(np.abs(values), 1.0)].imag))
+
+
+def relative_gains(response: Complex) -> Complex:
+    """G times the transposed inverse of G, number by number, (n, n, f), Eq. (T21.29): 1 where loops do not couple.
+
+    Raises
+    ------
+    ComputationError
+        A matrix without an inverse.
+    """
+    G = np.moveaxis(response, 2, 0)
+    try:
+        inverse = np.linalg.inv(G)
+    except np.linalg.LinAlgError:
+        raise ComputationError("the response has no inverse: some outputs move together") from None
+    return np.moveaxis(G * inverse.transpose(0, 2, 1), 0, 2)

@@ -1,0 +1,108 @@
+"""Random vibration of any outputs of a linear system: the integral of `flexapod.vibration`, (T18.6)-(T18.11)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flexapod.arrays import Array
+from flexapod.control.channels import chosen
+from flexapod.control.integrators import moved_and_shown
+from flexapod.errors import InputError
+from flexapod.model.disturbance import Disturbance, Floor, Spectrum, check_density
+from flexapod.solve.linear.random_vibration import FLOOR_RATES, SOURCES, RandomVibration, Source, random_vibration
+
+if TYPE_CHECKING:
+    from flexapod.control.state_space import StateSpace
+
+__all__ = ["Sources", "shaken"]
+
+Complex = NDArray[np.complex128]
+
+#: A disturbance of a study, or one-sided spectra by channel or group: tables of a study, or (frequency [Hz], density).
+Sources = Disturbance | Mapping[str, Floor | Spectrum | tuple[ArrayLike, ArrayLike]]
+#: Groups of inputs by the field of a disturbance.
+GROUPS = {"floor": "floor", "wrench": "wrench", "force_noise": "drive"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shaken:
+    """What an integral over frequency asks of a linear system: outputs stand in place of modes."""
+
+    system: StateSpace
+
+    @property
+    def omega(self) -> Array:
+        """As many numbers as outputs."""
+        return np.ones(len(self.system.outputs))
+
+    @property
+    def tool(self) -> Array:
+        """Outputs by themselves."""
+        return np.eye(len(self.system.outputs))
+
+    def poles(self, rate: float) -> Complex:
+        """Poles [1/s] of what inputs move and outputs show."""
+        return np.linalg.eigvals(moved_and_shown(self.system.A, self.system.B, self.system.C)[0]).astype(complex)
+
+    def amplitudes(self, frequency: Array, forces: Array) -> Complex:
+        """Outputs (f, p, k) at frequencies [Hz] under inputs (m, k)."""
+        return np.moveaxis(self.system.at(frequency), 2, 0) @ forces
+
+
+def shaken(system: StateSpace, sources: Sources) -> tuple[RandomVibration, float]:
+    """Vibration of all outputs, and the error of the integral over frequency that is estimated, relative."""
+    if system.sample is not None:
+        raise InputError("is of samples: spectra need a continuous system", key="sample", value=system.sample)
+    every = _sources(system, sources)
+    used = system.select([system.inputs[i] for i in np.flatnonzero(sum(abs(s.forces).sum(axis=1) for s in every))])
+    every = [
+        Source(
+            name=one.name,
+            forces=one.forces[[system.inputs.index(name) for name in used.inputs]],
+            frequency=one.frequency,
+            density=one.density,
+            rates=one.rates,
+        )
+        for one in every
+    ]
+    model = Shaken(system=used)
+    found, coarse = random_vibration(model, every, refine=2), random_vibration(model, every)
+    error = np.divide(coarse.rms, found.rms, out=np.ones_like(found.rms), where=found.rms > 0) - 1.0
+    return found, float(np.abs(error).max(initial=0.0))
+
+
+def _sources(system: StateSpace, given: Sources) -> list[Source]:
+    """Sources with what each of their columns moves, (inputs, columns)."""
+    if isinstance(given, Disturbance):
+        tables = {field: getattr(given, field) for field in GROUPS}
+        return [_source(system, SOURCES[f], GROUPS[f], table) for f, table in tables.items() if table is not None]
+    if not given:
+        raise InputError("is empty: nothing shakes", key="sources", allowed="spectra by channel, as {'wrench:Fz': ...}")
+    return [_source(system, name, name, table) for name, table in given.items()]
+
+
+def _source(system: StateSpace, name: str, group: str, table: Floor | Spectrum | tuple[ArrayLike, ArrayLike]) -> Source:
+    places = chosen(group, system.inputs, "sources")
+    rates = FLOOR_RATES[table.of] if isinstance(table, Floor) else 0
+    if isinstance(table, tuple):
+        frequency, density = (np.asarray(part, dtype=float) for part in table)
+        density = density[:, None] if density.ndim == 1 else density
+        check_density(frequency, density)
+    else:
+        frequency, density = table.frequency, table.density
+    columns = density.shape[1]
+    if isinstance(table, Floor):
+        places = places[:columns]  # along x, y, z; not about them
+    if columns not in (1, len(places)):
+        raise InputError(
+            f"has {columns} columns", key=f"sources[{name}]", allowed=f"1, or {len(places)}: one for each of {group}"
+        )
+    forces = np.zeros((len(system.inputs), len(places)))
+    forces[places, np.arange(len(places))] = 1.0
+    density = np.broadcast_to(density, (len(frequency), len(places)))
+    return Source(name=name, forces=forces, frequency=frequency, density=density, rates=rates)

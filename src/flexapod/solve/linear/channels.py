@@ -1,0 +1,188 @@
+"""Names of inputs and outputs: groups, single channels, points of the platform, and their units."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod.arrays import Array
+from flexapod.errors import InputError, nearest
+from flexapod.model import Robot
+from flexapod.solve.linear.motions import COMPONENTS
+from flexapod.units import to_si
+
+__all__ = ["INPUTS", "OUTPUTS", "Channel", "Geophone", "asked"]
+
+AXES = COMPONENTS[:3]
+WRENCH = ("fx", "fy", "fz", "mx", "my", "mz")
+#: Groups and their single channels; "legs": one a leg.
+INPUTS = {"wrench": WRENCH, "drive": "legs", "command": "legs", "floor": COMPONENTS, "force": AXES}
+OUTPUTS = {
+    "tool": COMPONENTS, "com": AXES, "stroke": "legs", "drive-force": "legs", "joint-force": "legs axes",
+    "force-sensor:base": "legs", "force-sensor:drive": "legs", "force-sensor:platform": "legs", "encoder": "legs",
+    "accelerometer": AXES, "geophone": AXES,
+}  # fmt: skip
+AT_POINTS = ("force", "accelerometer", "geophone")
+ON_PLATFORM = (*AT_POINTS, "wrench", "tool", "com")
+#: Geophone of which nothing is said: a corner of 4.5 Hz, 0.7 of critical damping, and an output that is the velocity.
+USUAL = (4.5, 0.7, 1.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Geophone:
+    """A proof mass on a spring: its corner ``f0`` [Hz], ``damping`` ratio and ``sensitivity`` [V s/m]."""
+
+    f0: float
+    damping: float
+    sensitivity: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Channel:
+    """One channel: its ``name``, ``group``, and which ``leg`` or ``axis`` of it, from 0; ``at``: a point from the CoM.
+
+    ``at`` (3,) [m] in platform axes.
+    """
+
+    name: str
+    group: str
+    leg: int = -1
+    axis: int = -1
+    at: Array | None = None
+    geophone: Geophone | None = None
+
+
+def asked(names: str | Sequence[str], robot: Robot, key: str) -> list[Channel]:
+    """Channels by names of groups or single ones, in the order given.
+
+    Parameters
+    ----------
+    names : str or sequence of str
+    robot : Robot
+    key : {"inputs", "outputs"}
+
+    Raises
+    ------
+    InputError
+        A name that nothing has, with the nearest one.
+    """
+    known, found = (INPUTS if key == "inputs" else OUTPUTS), {}
+    for name in (names,) if isinstance(names, str) else names:
+        for channel in _of(str(name), known, robot, key):
+            found.setdefault(channel.name, channel)
+    if not found:
+        raise InputError("are none", key=key, allowed=_words(known))
+    return list(found.values())
+
+
+def _words(known: dict[str, object]) -> str:
+    return ", ".join(f"{name}:POINT" if name in AT_POINTS else name for name in known)
+
+
+def _of(name: str, known: dict[str, object], robot: Robot, key: str) -> list[Channel]:
+    group = next((g for g in sorted(known, key=len, reverse=True) if name == g or name.startswith(f"{g}:")), None)
+    if group is None:
+        like = nearest(name.partition(":")[0], [*known, *{g.partition(":")[0] for g in known}])
+        raise InputError(
+            "is not a channel", key=key, value=name, allowed=_words(known),
+            next_step=None if like is None else f"Did you mean {like!r}?",
+        )  # fmt: skip
+    if robot.platform_fixed and group in ON_PLATFORM:
+        raise InputError(
+            "has no meaning: the platform is fixed", key=key, value=name,
+            allowed=_words({g: x for g, x in known.items() if g not in ON_PLATFORM}),
+        )  # fmt: skip
+    rest = name[len(group) + 1 :]
+    every = _at_point(group, rest, robot, key) if group in AT_POINTS else _members(group, known[group], robot)
+    chosen = [x for x in every if name in (group, x.name) or x.name.startswith(f"{name}:")] or (
+        every if group in AT_POINTS and rest and not any(rest.endswith(f":{axis}") for axis in AXES) else []
+    )
+    if not chosen:
+        like = nearest(name, [x.name for x in every])
+        raise InputError(
+            "is not a channel", key=key, value=name, allowed=f"{every[0].name} to {every[-1].name}",
+            next_step=None if like is None else f"Did you mean {like!r}?",
+        )  # fmt: skip
+    return chosen
+
+
+def _members(group: str, members: object, robot: Robot) -> list[Channel]:
+    legs = range(len(robot.legs))
+    if members == "legs axes":
+        return [
+            Channel(name=f"{group}:{i + 1}:{axis}", group=group, leg=i, axis=k)
+            for i in legs
+            for k, axis in enumerate(AXES)
+        ]
+    if members != "legs":
+        return [Channel(name=f"{group}:{axis}", group=group, axis=k) for k, axis in enumerate(members)]  # type: ignore[arg-type]
+    driven = [
+        i
+        for i in legs
+        if group not in ("drive", "command", "drive-force", "force-sensor:drive") or robot.legs[i].driven
+    ]
+    return [Channel(name=f"{group}:{i + 1}", group=group, leg=i) for i in driven]
+
+
+def _at_point(group: str, rest: str, robot: Robot, key: str) -> list[Channel]:
+    """Along the world's axes at a point."""
+    point, _, last = rest.rpartition(":")
+    point = point if last in AXES else rest
+    base, sensor = point, None
+    if group == "geophone":
+        base, sensor = _sensor(point, key)
+    at = _point(base, robot, f"{group}:{rest}" if rest else group, key)
+    return [
+        Channel(name=f"{group}:{base}:{axis}", group=group, axis=k, at=at, geophone=sensor)
+        for k, axis in enumerate(AXES)
+    ]
+
+
+def _point(text: str, robot: Robot, name: str, key: str) -> Array:
+    """A point of the platform from the payload's centre of mass, platform axes (3,)."""
+    points = {"tool": robot.tool, "com": robot.com, "payload": robot.com, "platform": np.zeros(3)}
+    points |= {f"joint-{i + 1}": at for i, at in enumerate(robot.platform_joints)}
+    if text in points:
+        return np.asarray(points[text] - robot.com, dtype=float)
+    numbers = [part.strip() for part in text.strip("()").split(",")]
+    try:
+        if len(numbers) == 3:
+            return np.array([_length(part) for part in numbers]) - robot.com
+    except (InputError, ValueError):
+        pass
+    like = nearest(text, points)
+    raise InputError(
+        "has no such point", key=key, value=name,
+        allowed=f"{', '.join([*list(points)[:4], 'joint-1'])} to joint-{len(robot.legs)}, or a place in platform axes "
+        "as (0.1 m, 0, 50 mm)",
+        next_step=None if like is None or not text else f"Did you mean {like!r}?",
+    )  # fmt: skip
+
+
+def _length(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return to_si(text, "length")
+
+
+def _sensor(text: str, key: str) -> tuple[str, Geophone]:
+    """Name of the point, and the geophone behind it: "tool[4.5 Hz, 0.7, 28.8]"."""
+    found = re.fullmatch(r"(.*?)\s*\[(.*)\]", text)
+    numbers = list(USUAL)
+    if found is not None:
+        text = found[1]
+        for k, part in enumerate(filter(None, (p.strip() for p in found[2].split(",")))):
+            try:
+                numbers[k] = float(re.sub(r"\s*(Hz|V.*)$", "", part))
+            except (ValueError, IndexError):
+                numbers[0] = -1.0
+    if min(numbers[0], numbers[1]) <= 0:
+        raise InputError(
+            "is no geophone", key=key, value=text if found is None else found[0],
+            allowed="corner [Hz], damping ratio and sensitivity [V s/m], as geophone:tool[4.5 Hz, 0.7, 28.8]",
+        )  # fmt: skip
+    return text, Geophone(f0=numbers[0], damping=numbers[1], sensitivity=numbers[2])

@@ -1,0 +1,81 @@
+"""What a base that moves does to a robot that is seen from it, Eqs. (T18.4), (T20.8)-(T20.10)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from flexapod.arrays import Array
+from flexapod.kinematics.rotations import matrix
+from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
+from flexapod.model import Robot, Simulation
+from flexapod.model.mount import BaseMotion
+from flexapod.solve.batch import RestStates, residual
+from flexapod.solve.linear.beside import carried
+from flexapod.solve.linear.motions import flat_forces
+from flexapod.solve.linear.plant import Plant
+from flexapod.solve.robot_system import robot_system, smooth
+from flexapod.solve.system import System
+
+__all__ = ["carried_masses", "gravity_forces", "tilt_stiffness", "turning_forces"]
+
+
+def gravity_forces(system: System, x: RestStates, command: Array, wrench: Array) -> Array:
+    """Forces (P, size, 3) on all coordinates per unit acceleration of the base along x, y, z, Eq. (T18.4).
+
+    In axes that move with the base it is gravity changed by the acceleration; residuals are linear in gravity.
+    """
+
+    def forces(gravity: Array) -> Array:
+        legs, payload, _ = residual(_in_gravity(system, gravity), x, command, np.zeros_like(command), wrench)
+        return np.concatenate([legs.reshape(len(x), -1), payload], axis=1)
+
+    none = forces(np.zeros(3))
+    return np.stack([forces(axis) - none for axis in np.eye(3)], axis=2)
+
+
+def _in_gravity(system: System, gravity: Array) -> System:
+    leg_p, payload_p = system.leg_p.copy(), system.payload_p.copy()
+    leg_p[:, columns(LEG_PARAMETERS, "gravity")] = gravity
+    payload_p[columns(PAYLOAD_PARAMETERS, "gravity")] = gravity
+    return replace(system, leg_p=leg_p, payload_p=payload_p)
+
+
+def turning_forces(plant: Plant, about: Array) -> Array:
+    """Forces (P, size, 3) per unit angular acceleration of the base about a point (3,), Eq. (T20.9)."""
+    system, x = plant.system, plant.x
+    found, first = np.zeros((len(x), system.size, 3)), system.legs * system.n
+    found[:, :first] = -carried_masses(plant, about)[0][:, :, 3:].swapaxes(2, 3).reshape(len(x), -1, 3)
+    rigid, arm = np.zeros((len(x), system.size, 3)), x.pose[:, :3] - about
+    rigid[:, first : first + 3] = np.cross(np.eye(3)[None], arm[:, None]).swapaxes(1, 2)
+    rigid[:, first + 3 :] = matrix(x.pose[:, 3:]).swapaxes(1, 2)
+    none = np.zeros((len(x), system.legs, system.n, system.n))
+    return found - flat_forces(system, none, plant.m.payload_M, rigid)
+
+
+def carried_masses(plant: Plant, about: Array) -> tuple[Array, Array]:
+    """Masses of each leg between a base that moves and its coordinates (P, legs, 6, n), and of the base's motions.
+
+    The latter (P, legs, 6, 6). The base is displaced and turned about a point (3,).
+    """
+    system, x = plant.system, plant.x
+    moved = _on_moved_base(plant.robot, plant.locked.simulation, plant.locked.per_loss, about, plant.as_at_rest)
+    own, there = ([(n, k) for n, size in s.kernel.shapes.layout for k in range(size)] for s in (system, moved))
+    place = {pair: i for i, pair in enumerate(there)}
+    at, base = [place[pair] for pair in own], [place["g", k] for k in range(6)]
+    q = np.zeros((len(x), system.legs, moved.n))
+    q[..., at] = x.q
+    M = carried(moved, q)
+    return M[..., at], M[..., base]
+
+
+def tilt_stiffness(per_acceleration: Array, gravity: Array) -> Array:
+    """Forces (P, size, 3) against unit small turns of the base, by how gravity turns in its axes, Eq. (T20.10)."""
+    return -per_acceleration @ np.cross(np.eye(3), gravity).T
+
+
+def _on_moved_base(robot: Robot, simulation: Simulation, per_loss: float, about: Array, at_rest: bool) -> System:
+    still = BaseMotion(time=np.array([0.0, 1.0]), values=np.zeros((2, 6)), at=about)
+    robot = smooth(robot.replace(base_motion=still))
+    return robot_system(robot, simulation.replace(play="static"), per_loss, at_rest=at_rest)

@@ -1,0 +1,197 @@
+"""A robot about rest on named motions: M, D, K, and what inputs do to them, Eqs. (T20.4)-(T20.10)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod.arrays import Array
+from flexapod.errors import InputError
+from flexapod.kinematics.rotations import matrix
+from flexapod.solve.batch import residual
+from flexapod.solve.linear.channels import Channel
+from flexapod.solve.linear.floor import gravity_forces, tilt_stiffness, turning_forces
+from flexapod.solve.linear.motions import coordinate_names, held_motions, on_motions
+from flexapod.solve.linear.plant import Plant
+from flexapod.solve.modal.modes import mass_on_motions, no_mass
+from flexapod.solve.statics.stiffness import tool_motion
+from flexapod.solve.system import Index
+
+__all__ = ["SecondOrder", "point_motion", "second_order"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SecondOrder:
+    """M z'' + D z' + K z = F u at P poses, on d motions: free ones, then those that inputs impose.
+
+    ``names`` (d,); ``free``: how many of them are free; ``M``, ``D``, ``K`` (P, d, d), ``F`` (P, d, m); ``flat``
+    (P, size, d): flat coordinates by motions; ``on_rate``, ``on_place``, ``on_acceleration`` (P, size, d) and
+    ``forces`` (P, size, m): balance of all coordinates by them and by inputs; ``U`` (P, rows, free): factor of the
+    mass; ``sums``, ``lags``: motions that are states of loops; ``about`` (3,): point about which the floor turns.
+    """
+
+    names: tuple[str, ...]
+    free: int
+    M: Array
+    D: Array
+    K: Array
+    F: Array
+    flat: Array
+    on_acceleration: Array
+    on_rate: Array
+    on_place: Array
+    forces: Array
+    U: Array
+    sums: Index
+    lags: Index
+    about: Array
+
+
+def second_order(
+    plant: Plant, inputs: Sequence[Channel], *, tilt: bool = True, about: Array | None = None
+) -> SecondOrder:
+    """The equations on motions.
+
+    Parameters
+    ----------
+    plant : Plant
+    inputs : sequence of Channel
+    tilt : bool
+        Whether gravity turns in the axes of a floor that turns.
+    about : ndarray, shape (3,), optional
+        Point about which the floor turns, world axes; default where the study's base motion does, or the origin.
+
+    Raises
+    ------
+    InputError
+        Nothing can move, or an input that moves nothing.
+    ComputationError
+        Masses that no body can have.
+    """
+    system, m, motions = plant.system, plant.m, plant.motions
+    P, d, about = len(plant.x), motions.columns.size, np.zeros(3) if about is None else about
+    commands = [c for c in inputs if c.group == "command"]
+    gravity = gravity_forces(system, plant.x, plant.command, plant.locked.acts.wrench)
+    turns = [c for c in inputs if c.group == "floor" and c.axis >= 3] if tilt and plant.robot.gravity.any() else []
+    extra = len(commands) + len(turns)
+    if not d and not extra:
+        raise InputError(
+            "leaves nothing that could move with the drives locked", key="simulation.fidelity",
+            value=plant.locked.simulation.fidelity, next_step='drives = "force" releases them',
+        )  # fmt: skip
+    flat = np.zeros((P, system.size, d + extra))
+    flat[:, :, :d] = motions.flat(system, np.broadcast_to(np.eye(d), (P, d, d)))
+    flat[:, :, d : d + len(commands)] = _held(plant, commands)
+    A, R, Q = on_motions(system, m, flat)
+    Q[:, :, d : d + len(commands)] += (by := _springs(plant, commands))[0]
+    R[:, :, d : d + len(commands)] += by[1]
+    for k, channel in enumerate(turns):
+        Q[:, :, d + len(commands) + k] += tilt_stiffness(gravity, plant.robot.gravity)[:, :, channel.axis - 3]
+    forces = _forces(plant, inputs, gravity, about)
+    names = coordinate_names(system)
+    own = [names[k] for k in motions.columns]
+    sums, lags = ([k for k, at in enumerate(motions.columns) if _is(plant, int(at), x)] for x in ("w", "j"))
+    # a lag's impulse enters by its rate alone, the force; a sum's equation is integrated once, Eq. (T20.7)
+    Q[:, :, lags], R[:, :, lags], A[:, :, lags] = R[:, :, lags], A[:, :, lags], 0.0
+    own = [
+        f"{name[:-1]}summed error" if k in sums else f"{name[:-1]}motor force" if k in lags else name
+        for k, name in enumerate(own)
+    ]
+    z = flat[:, :, :d].swapaxes(1, 2)
+    M, D, K = np.zeros((3, P, d + extra, d + extra))
+    M[:, :d], D[:, :d], K[:, :d] = z @ A, z @ R, z @ Q
+    K[:, sums], D[:, sums], M[:, sums] = D[:, sums], M[:, sums], 0.0
+    F = np.concatenate([z @ forces, np.zeros((P, extra, len(inputs)))], axis=1)
+    for k, channel in enumerate([*commands, *turns]):
+        i = list(inputs).index(channel)
+        F[:, :d, i] -= M[:, :d, d + k]
+        M[:, :d, d + k], M[:, d + k, d + k], F[:, d + k, i] = 0.0, 1.0, 1.0
+    U, positive = mass_on_motions(system, motions, m)
+    if P and not positive.all():
+        raise no_mass(system, plant.x.q[int((~positive).argmax())])
+    U[:, :, [*sums, *lags]] = 0.0
+    return SecondOrder(
+        names=(*own, *(c.name for c in [*commands, *turns])), free=d, M=M, D=D, K=K, F=F, flat=flat, on_acceleration=A,
+        on_rate=R, on_place=Q, forces=forces, U=U, sums=np.array(sums, dtype=np.intp),
+        lags=np.array(lags, dtype=np.intp), about=about,
+    )  # fmt: skip
+
+
+def _is(plant: Plant, at: int, name: str) -> bool:
+    shapes, system = plant.system.kernel.shapes, plant.system
+    return shapes.has(name) and at < system.legs * system.n and at % system.n == shapes.index(name)
+
+
+def _held(plant: Plant, commands: Sequence[Channel]) -> Array:
+    """Motions (P, size, c) by commands of drives that hold what they are told to hold, Eq. (T20.5)."""
+    system, found = plant.system, np.zeros((len(plant.x), plant.system.size, len(commands)))
+    l = system.kernel.shapes.l_index
+    for k, channel in enumerate(commands):
+        i, at = channel.leg, int(plant.port[channel.leg])
+        if not system.held[i, at]:
+            continue
+        follow = {at} | ({l} if plant.robot.legs[i].gives and system.held[i, l] else set())
+        found[:, :, k] = held_motions(system, plant.m, [(i, x) for x in sorted(follow)]).sum(axis=2)
+    return found
+
+
+def _springs(plant: Plant, commands: Sequence[Channel]) -> tuple[Array, Array]:
+    """What unit commands, and unit rates of them, of springs and loops add to all balances, two (P, size, c)."""
+    system, x, wrench = plant.system, plant.x, plant.locked.acts.wrench
+    none = np.zeros((len(x), system.legs, system.ports.size))
+    found = np.zeros((2, len(x), system.size, len(commands)))
+    soft = [(k, c) for k, c in enumerate(commands) if not system.held[c.leg, plant.port[c.leg]]]
+    if not soft:
+        return found[0], found[1]
+    before = residual(system, x, none, none, wrench)
+    for k, channel in soft:
+        one = none.copy()
+        one[:, channel.leg, np.flatnonzero(system.ports == plant.port[channel.leg])] = 1.0
+        for order, told in enumerate(((one, none), (none, one))):
+            after = residual(system, x, *told, wrench)
+            found[order, :, : system.legs * system.n, k] = (after[0] - before[0]).reshape(len(x), -1)
+    for k, channel in soft:
+        if not found[:, :, :, k].any():
+            raise InputError(
+                f"moves nothing: the drive of leg {channel.leg + 1} is a force that follows no command", key="inputs",
+                value=channel.name, allowed='"drive", its force', next_step='Ask for inputs "drive"',
+            )  # fmt: skip
+    return found[0], found[1]
+
+
+def point_motion(plant: Plant, at: Array) -> Array:
+    """Displacements (P, 3, 6) of a point of the payload, from its centre of mass in its axes, by the payload's steps."""
+    R = matrix(plant.x.pose[:, 3:])
+    cross = np.cross(np.eye(3), at)  # rows e_i x at
+    found = np.zeros((len(R), 3, 6))
+    found[:, :, :3], found[:, :, 3:] = np.eye(3), R @ cross.T
+    return found
+
+
+def _forces(plant: Plant, inputs: Sequence[Channel], gravity: Array, about: Array) -> Array:
+    """Forces (P, size, m) on all coordinates per unit input, Eqs. (T18.3)-(T18.5), (T20.8)-(T20.9)."""
+    system = plant.system
+    P, hub = len(plant.x), slice(system.legs * system.n, system.size)
+    found, tool = np.zeros((P, system.size, len(inputs))), tool_motion(plant.robot, plant.x.pose)
+    turning = turning_forces(plant, about) if any(c.group == "floor" and c.axis >= 3 for c in inputs) else None
+    for k, channel in enumerate(inputs):
+        match channel.group:
+            case "wrench":
+                found[:, hub, k] = tool[:, channel.axis]
+            case "force" if channel.at is not None:
+                found[:, hub, k] = point_motion(plant, channel.at)[:, channel.axis]
+            case "drive":
+                found[:, channel.leg * system.n + plant.port[channel.leg], k] = 1.0
+            case "floor" if channel.axis < 3:
+                found[:, :, k] = gravity[:, :, channel.axis]
+            case "floor" if turning is not None:
+                found[:, :, k] = turning[:, :, channel.axis - 3]
+    drives = [c for c in inputs if c.group == "drive"]
+    if drives and all(system.held[c.leg, plant.port[c.leg]] for c in drives):
+        raise InputError(
+            "moves nothing: the drives hold their positions, whatever pushes them", key="inputs", value="drive",
+            allowed='drives that give way; or drives = "force", which releases them',
+        )  # fmt: skip
+    return found

@@ -1,0 +1,147 @@
+"""Norms, relative gains and fewer states: one mode, two masses, integrators against their closed forms."""
+
+import numpy as np
+import pytest
+
+import flexapod.control as fc
+from flexapod.errors import InputError
+
+M, K, C = 2.5, 4000.0, 3.0
+
+
+def mode(m=M, k=K, c=C, sample=None):
+    return fc.StateSpace(
+        A=[[0, 1], [-k / m, -c / m]],
+        B=[[0, 0], [1 / m, -1]],
+        C=[[1, 0], [0, 1], [-k / m, -c / m]],
+        D=[[0, 0], [0, 0], [1 / m, 0]],
+        inputs=("force:z", "floor:z"),
+        outputs=("tool:z", "speed:z", "accelerometer:z"),
+        states=("z", "z rate"),
+        units={"force:z": "N", "floor:z": "m s-2", "tool:z": "m", "speed:z": "m s-1", "accelerometer:z": "m s-2"},
+    )
+
+
+def chain(system, channel):
+    """An integrator before all inputs of a system."""
+    n, m = system.B.shape
+    return fc.StateSpace(
+        A=np.block([[system.A, system.B], [np.zeros((m, n + m))]]), B=np.vstack([np.zeros((n, m)), np.eye(m)]),
+        C=np.hstack([system.C, system.D]), D=np.zeros(system.D.shape), inputs=system.inputs, outputs=system.outputs,
+        states=(*system.states, *(f"sum {name}" for name in system.inputs)), units=system.units,
+    ).select(channel)  # fmt: skip
+
+
+def test_h2_of_one_mode_is_its_closed_form():
+    data = mode().h2()
+    # (1/2pi) int abs(H)^2: position 1/(2 c k), speed 1/(2 c m), m^2 of that by floors, acceleration (c^2/m + k)/(2 c)
+    exact = [[1 / (2 * C * K), M**2 / (2 * C * K)], [1 / (2 * C * M), M / (2 * C)]]
+    np.testing.assert_allclose(data.h2_norm[:2] ** 2, exact, rtol=1e-12)
+    np.testing.assert_allclose(data.h2_norm[2, 1] ** 2, (C**2 / M + K) / (2 * C), rtol=1e-12)
+    assert np.isinf(data.h2_norm[2, 0])
+    assert data.attrs["warnings"].startswith("accelerometer:z by force:z is infinite: feed-through")
+
+
+def test_h2_says_which_channel_drifts_or_lasts():
+    data = chain(mode(), "force").h2()
+    assert np.isinf(data.h2_norm.sel(output="tool:z")).all()
+    assert np.isfinite(data.h2_norm.sel(output="speed:z")) or "integrator" in data.reason.sel(output="speed:z").item()
+    assert "tool:z by force:z is infinite: an integrator: a pole at 0 Hz" in data.attrs["warnings"]
+    undamped = mode(c=0.0).h2(outputs="tool")
+    w = np.sqrt(K / M) / (2 * np.pi)
+    assert np.isinf(undamped.h2_norm).all() and f"a pole at {w:.4g} Hz" in undamped.attrs["warnings"]
+    assert "unstable" in mode(c=-C).h2(outputs="tool").attrs["warnings"]
+
+
+def test_h2_of_what_a_loop_leaves_at_rest():
+    """Under integral force feedback a wrench moves the mass without end, at a rate whose norm is finite."""
+    plant = fc.StateSpace(
+        A=[[0, 1], [-K / M, -C / M]], B=[[0, 0], [1 / M, 1 / M]], C=[[1, 0], [0, 1], [-K, -C]],
+        D=[[0, 0], [0, 0], [1, 0]], inputs=("drive:1", "wrench:Fz"),
+        outputs=("tool:z", "speed:z", "force-sensor:drive:1"), states=("z", "v"), units={},
+    )  # fmt: skip
+    g = 7.0
+    data = plant.close(fc.IFF(g)).h2("wrench", ["tool", "speed"])
+    assert np.isinf(data.h2_norm[0, 0])
+    # m z'' + (c + g m) z' + k z = F + g int F: speed (s + g) / (m s^2 + C s + k), C = c + g m, whose square integrates
+    # to (1 + g^2 m / k) / (2 C m) (James, Nichols & Phillips, table of integrals, order 2).
+    exact = (1 + g**2 * M / K) / (2 * (C + g * M) * M)
+    assert float(data.h2_norm[1, 0] ** 2) == pytest.approx(exact, rel=1e-9)
+
+
+def test_hinf_of_one_mode_is_its_closed_form():
+    zeta = C / (2 * np.sqrt(K * M))
+    data = mode().hinf("force", "tool")
+    assert float(data.hinf_norm) == pytest.approx(1 / (K * 2 * zeta * np.sqrt(1 - zeta**2)), rel=1e-9)
+    peak = np.sqrt(K / M * (1 - 2 * zeta**2)) / (2 * np.pi)
+    assert float(data.frequency) == pytest.approx(peak, rel=1e-4)  # flat there: the root of the accuracy of its size
+    stiff = mode(c=50 * np.sqrt(K * M)).hinf("force", "tool")
+    assert float(stiff.hinf_norm) == pytest.approx(1 / K, rel=1e-12) and stiff.frequency == 0
+    assert np.isinf(mode(c=0.0).hinf("force", "tool").hinf_norm)
+    assert float(mode(c=2 * M * 40).hinf("force", "accelerometer").hinf_norm) >= 1 / M  # the mass alone
+
+
+def test_norms_between_samples():
+    a, b, T = 0.93, 0.2, 1e-3
+    one = fc.StateSpace(
+        A=[[a]], B=[[b]], C=[[1.0]], D=[[0.5]], inputs=("u",), outputs=("y",), states=("x",), units={}, sample=T
+    )
+    assert one.h2().h2_norm.item() == pytest.approx(np.sqrt(b**2 / (1 - a**2) + 0.25), rel=1e-12)
+    assert float(one.hinf().hinf_norm) == pytest.approx(b / (1 - a) + 0.5, rel=1e-9)
+
+
+def test_relative_gains_of_two_by_two():
+    G = np.array([[2.0, 0.5], [0.3, 1.0]])
+    static = fc.StateSpace(
+        A=np.zeros((0, 0)), B=np.zeros((0, 2)), C=np.zeros((2, 0)), D=G, inputs=("a", "b"), outputs=("x", "y"),
+        states=(), units={},
+    )  # fmt: skip
+    data = static.rga([1.0, 10.0])
+    one = G[0, 0] * G[1, 1] / np.linalg.det(G)  # the closed form of Bristol
+    np.testing.assert_allclose(
+        data.relative_gain.sel(part="real")[:, :, 1], [[one, 1 - one], [1 - one, one]], rtol=1e-13
+    )
+    with pytest.raises(InputError, match="as many inputs as outputs"):
+        mode().rga(1.0)
+
+
+def beam(count=6):
+    """Modes of 10 Hz times squares, equal shares at one point: compliance 1 / k each."""
+    w = 2 * np.pi * 10.0 * np.arange(1, count + 1) ** 2
+    n = count
+    return fc.StateSpace(
+        A=np.block([[np.zeros((n, n)), np.eye(n)], [-np.diag(w**2), -np.diag(0.02 * w)]]),
+        B=np.vstack([np.zeros((n, 1)), np.ones((n, 1))]), C=np.hstack([np.ones((1, n)), np.zeros((1, n))]),
+        D=np.zeros((1, 1)), inputs=("f",), outputs=("y",), states=tuple(f"x{i}" for i in range(2 * n)), units={},
+    ), w  # fmt: skip
+
+
+def test_fewer_states_keep_slow_modes_and_static_compliance():
+    system, w = beam()
+    for less, states in ((system.reduce(3), 6), (system.reduce(below="200 Hz"), 8)):
+        assert len(less.A) == states
+        np.testing.assert_allclose(less.at(0)[0, 0, 0].real, (1 / w**2).sum(), rtol=1e-12)
+    less, bare = system.reduce(3), system.reduce(3, residual=False)
+    np.testing.assert_allclose(np.abs(less.poles())[::2], w[:3], rtol=1e-12)
+    hz = np.geomspace(1, 60, 40)
+    s = 2j * np.pi * hz[:, None]
+    slow = (1 / (s**2 + 0.02 * w[:3] * s + w[:3] ** 2)).sum(axis=1)
+    np.testing.assert_allclose(bare.at(hz)[0, 0], slow, rtol=1e-9)
+    np.testing.assert_allclose(less.at(hz)[0, 0], slow + (1 / w[3:] ** 2).sum(), rtol=1e-9)
+    # Between the first modes a zero: with the residual it stays within 1 %, without it moves.
+    whole = np.abs(system.zeros())[0]
+    assert abs(np.abs(less.zeros())[0] / whole - 1) < 1e-2 < 3 * abs(np.abs(bare.zeros())[0] / whole - 1)
+
+
+def test_modes_of_one_frequency_stay_together():
+    w = 30.0
+    A = np.zeros((6, 6))
+    A[:3, 3:] = np.eye(3)
+    A[3:, :3] = -np.diag([w**2, w**2, 9 * w**2])
+    pair = fc.StateSpace(
+        A=A, B=np.vstack([np.zeros((3, 1)), np.ones((3, 1))]), C=np.eye(6)[:1], D=[[0]], inputs=("f",), outputs=("y",),
+        states=tuple("abcdef"), units={},
+    )  # fmt: skip
+    assert len(pair.reduce(1).A) == 4
+    with pytest.raises(InputError, match="one of the two"):
+        pair.reduce()
