@@ -10,7 +10,8 @@ from typer.testing import CliRunner
 
 import flexapod as fx
 from flexapod.cli.cli import app
-from flexapod.kinematics import coordinates
+from flexapod.feedforward.elastic_path import elastic_compensation
+from flexapod.kinematics import coordinates, poses
 from flexapod.study import check_path
 
 SIX = ("paper-robot", "paper-robot-radii", "flight-simulator", "machine-hexapod", "small-hexapod", "nano-hexapod")
@@ -123,3 +124,30 @@ def test_what_would_have_to_jump_is_refused(change: dict[str, object], words: st
 def test_numbers_that_mean_nothing_are_refused(given: dict[str, int], key: str) -> None:
     with pytest.raises(fx.InputError, match=key):
         fx.compensate(fx.preset("paper-robot"), **given)
+
+
+def test_elastic_motion_made_up_for_leaves_less_than_inertia_alone() -> None:
+    """A way of two periods of the first mode: the march against the wanted path, which begins a little later."""
+    study = fx.preset("paper-robot")
+    motion = fx.model.AxisMotion(type="surge", amplitude=0.02, duration=0.1, profile="smooth", hold=0.1)
+    exact = study.simulation.replace(duration=None, tolerance=1e-5, output_step=5e-4)
+    study = study.replace(motion=motion, simulation=exact)
+    found = elastic_compensation(study)
+    peak = {}
+    for name, ahead, early in (
+        ("own", study, 0.0),
+        ("inertia", fx.compensate(study, 2), 0.0),
+        ("elastic", found.study, found.early),
+    ):
+        data = fx.simulate(ahead)
+        t = np.maximum(data.time.values - early, 0.0)
+        wanted = poses(study.robot, motion, t).place(study.robot.tool)
+        peak[name] = np.linalg.norm(data.tool_position.values - wanted, axis=1).max()
+    assert peak["elastic"] < 2e-3 * peak["own"]
+    assert peak["elastic"] < 0.5 * peak["inertia"]
+    assert "before the path begins" in found.study.notes[-1]
+
+
+def test_robots_whose_elastic_motion_is_not_inverted_are_refused() -> None:
+    with pytest.raises(fx.InputError, match="six motions"):
+        fx.compensate(fx.preset("tripod"), "stable-inversion")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar, cast
 
 import numpy as np
 
@@ -12,7 +12,8 @@ from flexapod.arrays import Array, Mask
 from flexapod.errors import InputError
 from flexapod.kinematics import Law
 from flexapod.kinematics.laws import spline, spline_law
-from flexapod.model import AXES, CsvMotion, Motion, Study, load
+from flexapod.model import AXES, ActuatorStudy, CsvLaw, CsvMotion, Motion, Study, load
+from flexapod.results.arguments import FileLike
 from flexapod.runtime.files import write_text
 from flexapod.schema.csv_tables import POSE, header
 
@@ -122,24 +123,40 @@ def _graded(knots: Array, count: int) -> Array:
     return found[np.append(True, np.diff(found) > 0.5 * NEAREST)]
 
 
-def saved(study: Study, path: str | Path) -> Study:
-    """The study as a file with the table of its motion beside it; the study that the file holds.
+S = TypeVar("S", bound=Study | ActuatorStudy)
+
+
+def saved(study: S, path: FileLike) -> S:
+    """The study as a file with the table of its commands beside it; the study that the file holds.
 
     Parameters
     ----------
-    study : Study
-        Its motion is a table.
+    study : Study or ActuatorStudy
+        Its motion, rotation or torque is a table.
     path : path
         ``NAME.toml``; the table is ``NAME.csv``. In the folder of the study whose other tables it names.
     """
-    place, motion = Path(path), study.motion
-    if place.suffix != ".toml" or not isinstance(motion, CsvMotion):
+    place = Path(path)
+    if place.suffix != ".toml":
         raise InputError("is no name of a study file", key="out", value=str(path), allowed="NAME.toml")
     beside = place.with_suffix(".csv")
-    rows = [",".join(map(repr, row)) for row in np.column_stack([motion.time, motion.pose]).tolist()]
-    write_text(beside, "\n".join([header(POSE), *rows]) + "\n")
-    named = study.replace(motion=motion.replace(file=beside.name), notes=study.notes)
+    named, first, columns = _named(study, beside.name)
+    rows = [",".join(map(repr, row)) for row in columns.tolist()]
+    write_text(beside, "\n".join([first, *rows]) + "\n")
     said = "".join(f"# {line}\n" for line in study.notes)
     write_text(place, said + named.source_text)
     found = load(place)
-    return found.replace(notes=study.notes) if isinstance(found, Study) else study
+    return found.replace(notes=study.notes)  # type: ignore[return-value]
+
+
+def _named(study: S, name: str) -> tuple[S, str, Array]:
+    """The study with the name of its table, that table's first line, and its columns (n, any)."""
+    if isinstance(study, Study):
+        motion = cast("CsvMotion", study.motion)
+        columns = np.column_stack([motion.time, motion.pose])
+        return study.replace(motion=motion.replace(file=name)), header(POSE), columns
+    part, key, of = (study.motion, "rotation", "angle") if study.motion.rotation else (study.load, "torque", "torque")
+    law = cast("CsvLaw", getattr(part, key))
+    changed = part.replace(**{key: law.replace(file=name)})
+    changes = {"motion" if key == "rotation" else "load": changed}
+    return study.replace(**changes), header({"value": of}), np.column_stack([law.time, law.value])

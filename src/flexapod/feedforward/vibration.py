@@ -106,13 +106,13 @@ def vibration_along(study: Study, moving: float, until: float) -> Vibration:
     return Vibration(time=np.append(edges, moving + later), tool=np.concatenate([tool, rest]))
 
 
-def followed(at: LinearPath, acting: Callable[[Array], Array]) -> tuple[Array, Array]:
+def followed(at: LinearPath, acting: Callable[[Array], Array], least: int = LEAST) -> tuple[Array, Array]:
     """Instants (T,) and motions with rates (T, 2, d, c) along a path under each of c loads (T, N, c), Eq. (T22.13)."""
     from scipy.interpolate import CubicSpline
 
     moving = float(at.time[-1])
     count = int(np.ceil(moving * FINE * np.nanmax(at.modes.frequency[:, :OF])))
-    edges = np.linspace(0.0, moving, min(MOST, max(count, LEAST)) + 1)
+    edges = np.linspace(0.0, moving, min(MOST, max(count, least)) + 1)
     h, middle = edges[1], edges[:-1] + edges[1] / 2
     flat = CubicSpline(at.time, at.flat)
     force = [-flat(t).swapaxes(1, 2) @ acting(t) for t in (middle - h * _NODE, middle + h * _NODE)]
