@@ -74,9 +74,9 @@ def beam_plant(study: ActuatorStudy) -> StateSpace:
     moving = np.r_[hub, bend : bend + shapes.beam.a.count]
     M, D, K = (x[np.ix_(moving, moving)] for x in (m.M, m.D, m.K))
     n, length = len(moving), begin["extension"]
-    solve = np.linalg.inv(M)
+    solve = np.linalg.inv(M).astype(float)
     A = np.block([[np.zeros((n, n)), np.eye(n)], [-solve @ K, -solve @ D]])
-    B = np.append(np.zeros(n), solve[:, 0])[:, None]
+    B = np.concatenate([np.zeros(n), solve[:, 0]])[:, None]
     tip = np.append(length, shapes.beam.a.tip)
     C = np.zeros((2, 2 * n))
     C[0, :n], C[1, 0] = tip, 1.0

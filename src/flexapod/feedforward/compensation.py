@@ -12,9 +12,9 @@ from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.feedforward.corrections import knots_of, lasts, refuse, refuse_beyond, static_series
 from flexapod.feedforward.loaded import LoadedPath, apart
-from flexapod.feedforward.table import Tabled, saved, tabled
+from flexapod.feedforward.table import Tabled, named, saved, tabled
 from flexapod.kinematics import Law
-from flexapod.model import AXES, Study
+from flexapod.model import Study
 from flexapod.results.arguments import RobotLike, as_study
 from flexapod.review.checks import check_path
 from flexapod.solve.modal.at_poses import locked_poses
@@ -125,10 +125,9 @@ def _told(study: Study, path: LoadedPath, tail: float, table: Tabled, periods: f
         parts = *apart(robot, loaded, wanted), off[:, :3], off[:, 3:]
         found.append([float(np.linalg.norm(part, axis=1).max()) for part in parts])
     tool, turned, way, turn = zip(*found, strict=True)
-    named = () if axes.all() else tuple(axis for axis, asked in zip(AXES, axes, strict=True) if asked)
     told = Compensation(
-        study=study, periods=periods, named=named, tool=tool, turned=turned, commanded=(way, turn), tail=tail,
-        table=table.acceleration,
+        study=study, periods=periods, named=named(axes) or (), tool=tool, turned=turned, commanded=(way, turn),
+        tail=tail, table=table.acceleration,
     )  # fmt: skip
     return replace(told, study=study.replace(motion=motion, notes=(*study.notes, told.sentence)))
 

@@ -69,7 +69,7 @@ def _converged(study: Study, middle: LinearPath, moving: float, pad: float, reac
     time = np.arange(count) * whole / count - pad
     path = _Path(study, moving, time)
     shift = SHIFT / whole
-    s = 2j * np.pi * np.fft.rfftfreq(count, whole / count) + shift
+    s = (2j * np.pi * np.fft.rfftfreq(count, whole / count) + shift).astype(complex)
     inverse = _inverse(study, middle, 0.5 * moving, s, reach)
     fading = np.exp(-shift * (time - time[0]))[:, None]  # of what still rings at the end nothing is left
     before = path.elastic(np.zeros((count, 6)))
@@ -86,7 +86,7 @@ def _converged(study: Study, middle: LinearPath, moving: float, pad: float, reac
         if _size(value + missed) < ENOUGH * _size(before):
             break
     acting = np.flatnonzero(np.abs(value).max(axis=1) > EDGE * np.abs(value).max())
-    early, late = -time[acting[0]], time[acting[-1]] - moving
+    early, late = float(-time[acting[0]]), float(time[acting[-1]] - moving)
     return Ahead(
         time=time, value=value, before=before, after=value + missed, early=max(0.0, early), late=max(0.0, late)
     )

@@ -73,13 +73,21 @@ def elastic_compensation(
     simulation = study.simulation.replace(duration=None if duration is None else duration + early + late)
     made = study.replace(motion=motion, simulation=simulation)
     refuse_beyond(made)
-    miss, turned = (
-        tuple(float(np.linalg.norm(x[:, part], axis=1).max()) for x in (found.before, found.after))
-        for part in (slice(0, 3), slice(3, 6))
+    told = Elastic(
+        study=made,
+        miss=_largest(found, slice(0, 3)),
+        turned=_largest(found, slice(3, 6)),
+        early=early,
+        late=late,
     )
-    told = Elastic(study=made, miss=miss, turned=turned, early=early, late=late)
     told = replace(told, study=made.replace(notes=(*study.notes, told.sentence)))
     return told if out is None else replace(told, study=saved(told.study, out))
+
+
+def _largest(found: Ahead, part: slice) -> tuple[float, float]:
+    """Largest size of a part of what is missed, without commands and with them."""
+    before, after = (float(np.linalg.norm(x[:, part], axis=1).max()) for x in (found.before, found.after))
+    return before, after
 
 
 def _kept(found: Ahead, moving: float) -> tuple[Array, Array, float, float]:

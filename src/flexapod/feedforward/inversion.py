@@ -74,12 +74,13 @@ def inverse(system: StateSpace, moving: float, bend: Callable[[Array], Array]) -
     step = min(moving / LEAST, 2 * np.pi / (FINE * fast) if fast else np.inf)
     count = min(MOST, int(2 ** np.ceil(np.log2(whole / step))))
     step = whole / count
-    time = step * np.arange(count) - ahead
+    time: Array = (step * np.arange(count) - ahead).astype(float)
     inside = (time >= 0) & (time <= moving)
     wanted = np.where(inside, bend(np.clip(time, 0.0, moving)), 0.0)
-    value = np.fft.irfft(np.fft.rfft(wanted) / _bends(system, np.fft.rfftfreq(count, step)), count)  # (T22.20)
+    hz = np.fft.rfftfreq(count, step).astype(float)
+    value = np.fft.irfft(np.fft.rfft(wanted) / _bends(system, hz), count)  # (T22.20)
     acting = np.flatnonzero(np.abs(value) > KEPT * np.abs(value).max())
-    first, last = time[acting[0]], time[acting[-1]]
+    first, last = float(time[acting[0]]), float(time[acting[-1]])
     kept = (time >= min(first, 0.0)) & (time <= max(last, moving))
     return Inverse(
         time=time[kept], value=value[kept], zeros=zeros, before=max(0.0, -first), after=max(0.0, last - moving)

@@ -16,10 +16,10 @@ from flexapod.control import StateSpace
 from flexapod.errors import ComputationError, InputError
 from flexapod.feedforward.drive_loads import DriveLimits, Given, limits_of
 from flexapod.feedforward.switching import Switched, switched
-from flexapod.feedforward.table import saved
+from flexapod.feedforward.table import named, saved
 from flexapod.feedforward.vibration import LinearPath, followed, forces, linear_path, vibration_along
 from flexapod.kinematics import Law
-from flexapod.model import AXES, CsvMotion, Study
+from flexapod.model import CsvMotion, Study
 from flexapod.results.arguments import FileLike, PoseLike, RobotLike, as_pose, as_study
 from flexapod.results.path import RigidPath
 from flexapod.results.poses import coordinates_of
@@ -213,10 +213,9 @@ class _Way:
         """The study that goes this way."""
         time = np.linspace(0.0, T, ROWS + 1)
         pose = self.first_pose + np.multiply.outer(self.law(c, T, time / T).position, self.change)
-        named = None if self.axes.all() else tuple(x for x, asked in zip(AXES, self.axes, strict=True) if asked)
         own = self.origin.motion
         pose = np.where(self.axes, pose, 0.0)
-        motion = CsvMotion(time=time, pose=pose, hold=own.hold, pivot=own.pivot, independent=named)
+        motion = CsvMotion(time=time, pose=pose, hold=own.hold, pivot=own.pivot, independent=named(self.axes))
         simulation = self.origin.simulation.replace(duration=None)
         return self.origin.replace(motion=motion, simulation=simulation)
 
@@ -338,11 +337,12 @@ class _Way:
         effect = self.effect(T, c)
         for _ in range(ROUNDS):
             c = self.solved(T, c, effect, SHARE * bound)
-            effect = self.effect(T, c)
-            used, left = self.used(T, c), np.abs(effect[0] @ c + effect[1]).sum()
-            if used > HOPELESS or (used <= WITHIN and left <= bound):
+            effect, used = self.effect(T, c), self.used(T, c)
+            if used <= WITHIN and np.abs(effect[0] @ c + effect[1]).sum() <= bound:
+                return c
+            if used > HOPELESS:
                 break
-        return c if used <= WITHIN and left <= bound else None
+        return None
 
 
 def _amplitudes(at: LinearPath, z: Array, v: Array) -> tuple[Array, Array]:

@@ -75,7 +75,7 @@ class LoadedPath:
             return np.broadcast_to(np.eye(6), (len(t), 6, 6))
         columns = []
         for k in asked:
-            shifted = [self._shifted(law, t, k, way)[:, asked] for way in (STEP, -STEP)]
+            shifted = [self._shifted(law, t, int(k), way)[:, asked] for way in (STEP, -STEP)]
             columns.append((shifted[0] - shifted[1]) / (2 * STEP))
         return np.stack(columns, axis=-1)
 

@@ -122,4 +122,6 @@ def _edge(made: Shaper, way: float, below: float) -> float:
     k = int(np.argmax(over))
     if k == 0:
         return 0.0
-    return float(brentq(lambda x: made.left(1.0 + way * x) - below - 1e-9, steps[k - 1], steps[k]))
+    low, high = float(steps[k - 1]), float(steps[k])
+    found = brentq(lambda x: float(made.left(1.0 + way * x)) - below - 1e-9, low, high)
+    return float(found)  # type: ignore[arg-type]

@@ -10,7 +10,7 @@ from typing import overload
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.arrays import Array
+from flexapod.arrays import Array, Mask
 from flexapod.errors import InputError
 from flexapod.feedforward.shapers import Shaper, shaper
 from flexapod.feedforward.table import saved, tabled
@@ -221,7 +221,7 @@ def _modes(study: Study, modes: Modes, pose: PoseLike | str, moving: float) -> t
     return values[:, 0], values[:, 1], values[:, 2:]
 
 
-def _delayed(motion: Motion, made: Shaper, axes: Array, length: float) -> CsvMotion:
+def _delayed(motion: Motion, made: Shaper, axes: Mask, length: float) -> CsvMotion:
     """The motion's law, delayed and added up, as a table."""
 
     def law(t: Array) -> Law:
@@ -236,11 +236,11 @@ def _delayed(motion: Motion, made: Shaper, axes: Array, length: float) -> CsvMot
 
 def _beside(study: Study, shaped: Study, moving: float) -> float:
     """How far the rigid tool is from the own path at most [m]; 0 where that is little of its way."""
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
     def tool(of: Study, until: float, count: int) -> Array:
         return kinematics.poses(of.robot, of.motion, np.linspace(0.0, until, count)).place(of.robot.tool)
 
     own = tool(study, moving, 20 * LOOKS)
-    found = float(cKDTree(own).query(tool(shaped, shaped.motion.end_time, LOOKS))[0].max())
+    found = float(KDTree(own).query(tool(shaped, shaped.motion.end_time, LOOKS))[0].max())
     return found if found > ON_PATH * np.linalg.norm(np.ptp(own, axis=0)) else 0.0

@@ -105,19 +105,19 @@ def _chain(system: StateSpace, end: Array, robust: bool) -> tuple[Array, Array, 
             allowed=f"{len(C)} numbers, of a system that stays where it is",
         )
     if not robust:
-        return A, B[:, 0], x
+        return A, B[:, 0], x.astype(float)
     values = np.linalg.eigvals(A)
     turning = np.flatnonzero(values.imag > OSCILLATES * np.abs(values).max())
     n, m = len(A), turning.size
     of_rows, left = np.linalg.eig(A.T)  # a double pole at 0 has no second vector, so that V has no inverse
-    rows = [left[:, int(np.argmin(np.abs(of_rows - values[k])))] for k in turning]
+    rows = left[:, [int(np.argmin(np.abs(of_rows - values[k]))) for k in turning]].T
     whole, force = np.zeros((n + 2 * m, n + 2 * m)), np.zeros(n + 2 * m)
     whole[:n, :n], force[:n] = A, B[:, 0]
     for i, (k, row) in enumerate(zip(turning, rows, strict=True)):
         at, s = n + 2 * i, values[k]
         whole[at : at + 2, at : at + 2] = [[s.real, -s.imag], [s.imag, s.real]]
         whole[at : at + 2, :n] = [row.real, row.imag]
-    return whole, force, np.append(x, np.zeros(2 * m))
+    return whole, force, np.concatenate([x, np.zeros(2 * m)]).astype(float)
 
 
 def _rigid(A: Array, B: Array, target: Array) -> tuple[Array, Array, Array]:
@@ -149,7 +149,7 @@ def _least(A: Array, B: Array, target: Array) -> tuple[Array, int, float]:
     signs = np.sign(u if u is not None else 0)
     places = np.flatnonzero(np.diff(signs) != 0)
     h = high / PIECES
-    start = np.array([(k + 1) * h + _inside(u, k, h) for k in places])
+    start = np.array([(k + 1) * h + _inside(u, int(k), h) for k in places])
     return _exact(A, B, target, np.append(start, high), int(signs[0]))
 
 

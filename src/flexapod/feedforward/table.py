@@ -13,11 +13,12 @@ from flexapod.errors import InputError
 from flexapod.kinematics import Law
 from flexapod.kinematics.laws import spline, spline_law
 from flexapod.model import AXES, ActuatorStudy, CsvLaw, CsvMotion, Motion, Study, load
+from flexapod.model.motion import Axis
 from flexapod.results.arguments import FileLike
 from flexapod.runtime.files import write_text
 from flexapod.schema.csv_tables import POSE, header
 
-__all__ = ["Tabled", "saved", "tabled"]
+__all__ = ["Tabled", "named", "saved", "tabled"]
 
 FEWEST, MOST = 100, 3200  # rows between first and last knot
 ENOUGH = 1e-6  # of the largest acceleration of each kind, by which that of the table may be off in the mean
@@ -97,9 +98,13 @@ def _through(law: Callable[[Array], Law], time: Array, like: Motion, axes: Mask,
     )  # fmt: skip
     least = max(change.max(), np.finfo(float).tiny)
     off = wrong.max() / least, (share * bent).sum() / max(most.max(), least / time[-1] ** 2)
-    named = None if axes.all() else tuple(axis for axis, asked in zip(AXES, axes, strict=True) if asked)
-    motion = CsvMotion(time=time, pose=pose, hold=hold, pivot=like.pivot, independent=named)
+    motion = CsvMotion(time=time, pose=pose, hold=hold, pivot=like.pivot, independent=named(axes))
     return Tabled(motion, float(off[0]), float(off[1]))
+
+
+def named(axes: Mask) -> tuple[Axis, ...] | None:
+    """Names of the coordinates (6,) that are commanded; None of all."""
+    return None if axes.all() else tuple(axis for axis, asked in zip(AXES, axes, strict=True) if asked)
 
 
 def _even(knots: Array, count: int) -> Array:
@@ -140,11 +145,11 @@ def saved(study: S, path: FileLike) -> S:
     if place.suffix != ".toml":
         raise InputError("is no name of a study file", key="out", value=str(path), allowed="NAME.toml")
     beside = place.with_suffix(".csv")
-    named, first, columns = _named(study, beside.name)
+    written, first, columns = _named(study, beside.name)
     rows = [",".join(map(repr, row)) for row in columns.tolist()]
     write_text(beside, "\n".join([first, *rows]) + "\n")
     said = "".join(f"# {line}\n" for line in study.notes)
-    write_text(place, said + named.source_text)
+    write_text(place, said + written.source_text)
     found = load(place)
     return found.replace(notes=study.notes)  # type: ignore[return-value]
 

@@ -102,7 +102,7 @@ def vibration_along(study: Study, moving: float, until: float) -> Vibration:
     at = linear_path(study, np.linspace(0.0, moving, POSES))
     edges, x = followed(at, lambda t: forces(at, kinematics.poses(study.robot, study.motion, t))[..., None])
     tool = np.einsum("txd,td->tx", CubicSpline(at.time, at.tool)(edges), x[:, 0, :, 0])
-    later, rest = _at_rest(at, *x[-1, ..., 0], until - moving)
+    later, rest = _at_rest(at, x[-1, 0, :, 0], x[-1, 1, :, 0], until - moving)
     return Vibration(time=np.append(edges, moving + later), tool=np.concatenate([tool, rest]))
 
 
@@ -139,7 +139,7 @@ def _at_rest(at: LinearPath, z: Array, v: Array, until: float) -> tuple[Array, A
     h = until / max(LEAST, int(np.ceil(until * LOOKS * at.modes.frequency[-1, 0])))
     A = np.block([[np.zeros((d, d)), np.eye(d)], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]])
     step, x, found = expm(h * A), np.append(z, v), []
-    times = h * np.arange(1, round(until / h) + 1)
+    times: Array = (h * np.arange(1, round(until / h) + 1)).astype(float)
     for _ in times:
         x = step @ x
         found.append(at.tool[-1] @ x[:d])
