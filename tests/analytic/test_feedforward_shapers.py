@@ -65,7 +65,7 @@ def test_a_motion_alone_is_its_law_delayed_and_added_up() -> None:
         for parts in zip(*(quintic(t - late) for late in (0.0, 0.04, 0.08)), strict=True)
     )
     law = coordinates(shaped, t)
-    # the table meets accelerations to 1e-6 in the mean; beside jumps of the jerk, 375 s^-3, for 10 us more
+    # the table meets accelerations to 1e-5 in the mean; beside jumps of the jerk for a millisecond more
     np.testing.assert_allclose(law.position[:, [2, 3]], place[:, None] * [0.1, 0.2], rtol=0, atol=1e-9)
     np.testing.assert_allclose(law.acceleration[:, [2, 3]], bend[:, None] * [0.1, 0.2], rtol=0, atol=2e-3 * 0.2)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple, TypeVar, cast
 
@@ -21,9 +21,9 @@ from flexapod.schema.csv_tables import POSE, header
 __all__ = ["Tabled", "named", "saved", "tabled"]
 
 FEWEST, MOST = 100, 3200  # rows between first and last knot
-ENOUGH = 1e-6  # of the largest acceleration of each kind, by which that of the table may be off in the mean
+ENOUGH = 1e-5  # of the largest acceleration of each kind, by which that of the table may be off in the mean
 JUMPS = 1e-2  # mean error of accelerations above which the law's rate jumps
-NEAREST = 1e-5  # s: rows beside a knot where the law's derivatives jump
+NEAREST = (1e-3, 2e-4, 1e-5)  # s: rows beside a knot where the law's derivatives jump, the fewer first
 GROWTH = 1.6  # of the distances of rows from there on: below the 2.6 up to which splines of graded rows stay near
 
 
@@ -73,9 +73,11 @@ def tabled(
     best: Tabled | None = None
     count = FEWEST
     while rows is not None or count <= MOST:
-        for time in (rows,) if rows is not None else (_even(knots, count), _graded(knots, count)):
+        for time in (rows,) if rows is not None else _choices(knots, count):
             found = _through(law, time, like, axes, length, hold)
             best = found if best is None or found.error < best.error else best
+            if best.acceleration <= ENOUGH:
+                break
         if rows is not None or best is None or best.acceleration <= ENOUGH:
             break
         count *= 2
@@ -115,17 +117,23 @@ def _even(knots: Array, count: int) -> Array:
     return np.append(np.concatenate(parts), knots[-1])
 
 
-def _graded(knots: Array, count: int) -> Array:
-    """The same, and more rows towards each knot."""
+def _choices(knots: Array, count: int) -> Iterator[Array]:
+    """Rows that may do, the fewest first."""
+    yield _even(knots, count)
+    yield from (_graded(knots, count, nearest) for nearest in NEAREST)
+
+
+def _graded(knots: Array, count: int, nearest: float) -> Array:
+    """Rows evenly, and more towards each knot."""
     even = _even(knots, count)
     far = float(np.diff(even).max())
-    near = np.cumsum(NEAREST * GROWTH ** np.arange(np.ceil(np.log(max(far / NEAREST, 1.0)) / np.log(GROWTH))))
+    near = np.cumsum(nearest * GROWTH ** np.arange(np.ceil(np.log(max(far / nearest, 1.0)) / np.log(GROWTH))))
     more = np.concatenate([np.add.outer(knots, near).ravel(), np.subtract.outer(knots, near).ravel()])
     reach = near[-1] if near.size else 0.0
     apart = np.abs(even[:, None] - knots).min(axis=1)
     kept = even[(apart == 0) | (apart > reach)]
     found = np.unique(np.concatenate([kept, more[(more > knots[0]) & (more < knots[-1])]]))
-    return found[np.append(True, np.diff(found) > 0.5 * NEAREST)]
+    return found[np.append(True, np.diff(found) > 0.5 * nearest)]
 
 
 S = TypeVar("S", bound=Study | ActuatorStudy)
