@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from flexapod.elements.frame import Energies
     from flexapod.errors import ComputationError, FlexapodError, InputError
     from flexapod.exchange.formats import export
+    from flexapod.feedforward import compensate, shape, time_optimal
     from flexapod.model import ActuatorStudy, Study, load, loads, open_values, preset
     from flexapod.paper.study import replicate
     from flexapod.schema.base import Key, Quantity
@@ -54,6 +55,7 @@ _HOMES = {
     "flexapod.citations": ("cite",),
     "flexapod.control.measured": ("read_frf",),
     "flexapod.exchange.formats": ("export",),
+    "flexapod.feedforward": ("compensate", "shape", "time_optimal"),
     "flexapod.model": ("ActuatorStudy", "Study", "load", "loads", "open_values", "preset"),
     "flexapod.paper.study": ("replicate",),
     "flexapod.study": (
@@ -102,6 +104,7 @@ __all__ = [
     "accuracy",
     "budget",
     "cite",
+    "compensate",
     "compliance",
     "control",
     "converge",
@@ -125,12 +128,14 @@ __all__ = [
     "read_frf",
     "replicate",
     "run",
+    "shape",
     "simulate",
     "simulate_actuator",
     "simulate_solid",
     "stiffness",
     "study",
     "sweep",
+    "time_optimal",
     "transmissibility",
     "vibration",
     "workspace_map",

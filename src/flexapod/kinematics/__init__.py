@@ -29,6 +29,7 @@ from flexapod.kinematics.motions import independent_axes, mobility_words, motion
 from flexapod.kinematics.robot import (
     carriage_limits,
     carriages,
+    commanded_axes,
     drive_jacobian,
     drive_positions,
     energies,
@@ -45,6 +46,7 @@ from flexapod.kinematics.robot import (
     places,
     poses,
     poses_from_home,
+    poses_of_law,
     posture,
     postures,
     pull_out,
@@ -56,7 +58,7 @@ from flexapod.kinematics.robot import (
     strokes,
 )
 from flexapod.kinematics.schedule import load_law, motion_law, wrench
-from flexapod.kinematics.trajectory import Poses, poses_from_coordinates, rotation_matrix
+from flexapod.kinematics.trajectory import Poses, coordinates, poses_from_coordinates, rotation_matrix
 from flexapod.kinematics.workspace import Excess, WorkspaceMap, reachable_map
 
 __all__ = [
@@ -93,6 +95,8 @@ __all__ = [
     "built_poses",
     "carriage_limits",
     "carriages",
+    "commanded_axes",
+    "coordinates",
     "displaced",
     "drive_jacobian",
     "drive_positions",
@@ -131,6 +135,7 @@ __all__ = [
     "poses",
     "poses_from_coordinates",
     "poses_from_home",
+    "poses_of_law",
     "posture",
     "postures",
     "pull_out",

@@ -136,11 +136,37 @@ def poses(robot: Robot, motion: Motion, t: ArrayLike) -> Poses:
         The robot does not have a motion that is asked for, or cannot take a pose.
     """
     legs, t = rigid_limbs(robot), trajectory.instants(t)
-    law = trajectory.coordinates(motion, t)
+    if legs.guides:
+        return poses_of_law(robot, motion, trajectory.coordinates(motion, t), t)
+    mechanism.refuse_far(legs, trajectory.coordinates(motion, t), motion.pivot, t)
+    return trajectory.sample(home_pose(robot), motion, t)
+
+
+def poses_of_law(robot: Robot, motion: Motion, law: Law, t: Array) -> Poses:
+    """Poses at instants `t` (T,) [s] where another law (T, 6) takes the place of a motion's own.
+
+    Raises
+    ------
+    InputError
+        As `poses`.
+    """
+    legs = rigid_limbs(robot)
     mechanism.refuse_far(legs, law, motion.pivot, t)
     if legs.guides:
-        return _following(robot, motions.commanded(legs, motion, _mobility(robot)), law, motion.pivot, t)
-    return trajectory.sample(home_pose(robot), motion, t)
+        return _following(robot, commanded_axes(robot, motion), law, motion.pivot, t)
+    return trajectory.poses_from_coordinates(home_pose(robot), law, motion.pivot)
+
+
+def commanded_axes(robot: Robot, motion: Motion) -> Mask:
+    """Coordinates of the platform (6,) that a motion commands; the others follow, or stay.
+
+    Raises
+    ------
+    InputError
+        The robot does not have a motion that is asked for.
+    """
+    legs = rigid_limbs(robot)
+    return motions.commanded(legs, motion, _mobility(robot)) if legs.guides else ~legs.hub_held
 
 
 def first_looks(robot: Robot, motion: Motion, t: Array) -> Iterator[NDArray[np.intp]]:

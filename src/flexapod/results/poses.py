@@ -12,6 +12,7 @@ from flexapod.errors import InputError
 from flexapod.results.arguments import POSE_KEYS, PoseLike
 from flexapod.words import number
 
+ORIGIN = np.zeros(3)  # of the platform frame
 BATCH = 200  # poses computed together: their matrices stay in the processor's cache
 
 
@@ -65,15 +66,16 @@ def from_home(robot: model.Robot, values: Array) -> kinematics.Poses:
     return kinematics.poses_from_home(robot, values)
 
 
-def coordinates_of(robot: model.Robot, path: kinematics.Poses) -> Array:
-    """Surge, sway, heave [m], roll, pitch, yaw [rad] of the platform frame from home, (P, 6); inverse of (T2.9)."""
-    R = path.rotation @ kinematics.home_pose(robot).rotation[0].T
+def coordinates_of(robot: model.Robot, path: kinematics.Poses, pivot: Array = ORIGIN) -> Array:
+    """Surge to heave [m] of a pivot, roll, pitch, yaw [rad] of the platform from home, (P, 6); inverse of (T2.9)."""
+    home = kinematics.home_pose(robot)
+    R = path.rotation @ home.rotation[0].T
     angles = [
         np.arctan2(R[:, 2, 1], R[:, 2, 2]),
         -np.arcsin(np.clip(R[:, 2, 0], -1.0, 1.0)),
         np.arctan2(R[:, 1, 0], R[:, 0, 0]),
     ]
-    return np.concatenate([path.position - kinematics.home_pose(robot).position, np.stack(angles, axis=1)], axis=1)
+    return np.concatenate([path.place(pivot) - home.place(pivot), np.stack(angles, axis=1)], axis=1)
 
 
 def coordinate_words(at: Mapping[str, float]) -> str:

@@ -13,6 +13,7 @@ from flexapod.verify.cases import (
     exports,
     exudyn,
     exudyn_parts,
+    feed_forward,
     four_bar,
     frequencies,
     hexapods,
@@ -35,17 +36,18 @@ __all__ = ["CASES"]
 _SUBJECTS = (
     bending, solids, turning, sliding, integration, hexapods, frequencies, stiffness, mechanisms,
     slider_crank, squeezer, four_bar, bricard, real_parts, machines, linear, control,
+    slider_crank, squeezer, four_bar, bricard, real_parts, machines, feed_forward,
     mujoco_forces, calculix_beams, calculix_robots, exudyn,
     exudyn_parts, exports,
 )  # fmt: skip
 
 NOT_MODELLED = Case(
     name="not-modelled",
-    statement="Impulses and insensitivity of the shapers ZV, ZVD, ZVDD and EI; damping by integral force feedback",
-    source="Singer & Seering 1990, Singhose et al. 1994; Preumont et al. 2007",
+    statement="Damping by integral force feedback",
+    source="Preumont et al. 2007",
     argument="half a unit of the printed digits",
     compute=list,
-    not_run="the software has neither shapers nor force feedback",
+    not_run="the software has no force feedback",
 )
 
 

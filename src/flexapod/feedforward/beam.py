@@ -1,0 +1,166 @@
+"""A single actuator whose tip follows what its rigid beam would do, Eqs. (T22.23)-(T22.24)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from flexapod import kinematics
+from flexapod.control import StateSpace
+from flexapod.errors import InputError
+from flexapod.feedforward.inversion import Inverse, answer, inverse
+from flexapod.feedforward.table import saved
+from flexapod.model import ActuatorStudy, CsvLaw, MotionLaw, RateLaw
+from flexapod.solve.shapes import home, places
+from flexapod.solve.system import State
+from flexapod.solve.time.actuator_march import actuator_system
+from flexapod.words import text
+
+__all__ = ["TipStudy", "beam_plant", "tip_inversion"]
+
+Drives = Literal["given", "force"]
+ROWS = 4000  # of a table at most
+
+
+@dataclass(frozen=True, kw_only=True)
+class TipStudy:
+    """An actuator study whose tip follows the path of the rigid beam, and what that costs.
+
+    ``inverse``: input of the linear beam; ``miss`` (before, after) [m]: of the tip, at most, by the linear model;
+    ``longer`` [s]: of the whole motion.
+    """
+
+    study: ActuatorStudy
+    drives: Drives
+    inverse: Inverse
+    miss: tuple[float, float]
+
+    @property
+    def longer(self) -> float:
+        """By how much longer the hub or its motor acts than the tip moves [s]."""
+        return self.inverse.before + self.inverse.after
+
+    @property
+    def sentence(self) -> str:
+        """Benefit, cost and effect in words."""
+        what = "the hub's motor pushes" if self.drives == "force" else "the hub turns"
+        early, late = (f"{text(x, 's')}" for x in (self.inverse.before, self.inverse.after))
+        return (
+            f"{what} so that the tip follows the path of the rigid beam: from {early} before the tip moves to {late} "
+            f"after it has arrived, so that the motion takes {text(self.longer, 's')} more. By the linear model the "
+            f"tip misses by {text(self.miss[1], 'm')} at most in place of {text(self.miss[0], 'm')}"
+        )
+
+    def __repr__(self) -> str:
+        return f"TipStudy({self.sentence})"
+
+
+def beam_plant(study: ActuatorStudy) -> StateSpace:
+    """A straight beam on a free hub: ``torque`` [N m]; ``tip`` [m] across the beam, ``angle`` [rad], Eq. (T22.23)."""
+    system = actuator_system(study.actuator, study.simulation, rotation=False)
+    shapes, begin = system.kernel.shapes, home(study.actuator)
+    q = np.zeros((1, system.n))
+    for name, at in places(shapes).items():
+        q[0, at] = begin[name]
+    none = np.zeros(system.n)
+    straight = State(
+        q=q, pose=np.zeros(7), v=none, v_dot=none, lam=np.zeros((1, 0)), drive=np.zeros((1, system.ports.size))
+    )
+    m = system.matrices(straight, np.zeros(system.load_size))
+    hub, bend = places(shapes)["rotation"], shapes.index("a")
+    moving = np.r_[hub, bend : bend + shapes.beam.a.count]
+    M, D, K = (x[np.ix_(moving, moving)] for x in (m.M, m.D, m.K))
+    n, length = len(moving), begin["extension"]
+    solve = np.linalg.inv(M).astype(float)
+    A = np.block([[np.zeros((n, n)), np.eye(n)], [-solve @ K, -solve @ D]])
+    B = np.concatenate([np.zeros(n), solve[:, 0]])[:, None]
+    tip = np.append(length, shapes.beam.a.tip)
+    C = np.zeros((2, 2 * n))
+    C[0, :n], C[1, 0] = tip, 1.0
+    names = ["hub", *(f"a{k + 1}" for k in range(n - 1))]
+    return StateSpace(
+        A=A, B=B, C=C, D=np.zeros((2, 1)), inputs=("torque",), outputs=("tip", "angle"),
+        states=(*names, *(f"{name} rate" for name in names)), units={"torque": "N m", "tip": "m", "angle": "rad"},
+    )  # fmt: skip
+
+
+def _held(plant: StateSpace) -> StateSpace:
+    """The same beam on a hub that is turned: its angular acceleration in, Eq. (T22.24)."""
+    n = len(plant.A) // 2
+    torque = plant.B[n, 0]
+    A, B = plant.A.copy(), plant.B / torque
+    A = A - B @ A[n : n + 1]  # the torque that makes the hub do what it is told
+    return replace(plant, A=A, B=B, inputs=("command",), units={**plant.units, "command": "rad/s^2"})
+
+
+def tip_inversion(study: ActuatorStudy, drives: Drives = "given", out: str | Path | None = None) -> TipStudy:
+    """A study whose tip follows the path that a rigid beam would have; see `compensate`."""
+    law, moving = _refuse(study, drives)
+    plant = beam_plant(study)
+    turned, length = _held(plant), float(plant.C[0, 0])
+    used = turned if drives == "given" else plant
+    found = inverse(used.select(outputs="tip"), moving, lambda t: length * kinematics.motion_law(law, t).acceleration)
+    wanted = kinematics.motion_law(law, np.clip(found.time, 0.0, moving))
+    bend = np.where((found.time >= 0) & (found.time <= moving), wanted.acceleration, 0.0)
+    own, new = (
+        np.abs(answer(system, found.time, value)[0] - length * wanted.position).max()
+        for system, value in ((turned, bend), (used, found.value))
+    )
+    made = TipStudy(study=study, drives=drives, inverse=found, miss=(float(own), float(new)))
+    return _told(made, law, out)
+
+
+def _told(made: TipStudy, law: MotionLaw, out: str | Path | None) -> TipStudy:
+    """The study that does it, with what it brings."""
+    from scipy.interpolate import CubicSpline
+
+    study, found = made.study, made.inverse
+    time = found.time - found.time[0]
+    some = np.unique(np.linspace(0, len(time) - 1, min(len(time), ROWS + 1)).astype(int))
+    duration = None if study.simulation.duration is None else study.simulation.duration + made.longer
+    simulation = study.simulation.replace(duration=duration or float(time[-1]))
+    if made.drives == "force":
+        motion = study.motion.replace(rotation=None)
+        load = study.load.replace(torque=CsvLaw(time=time[some], value=found.value[some]))
+    else:
+        angle = CubicSpline(time, found.value).antiderivative(2)(time)
+        motion, load = study.motion.replace(rotation=CsvLaw(time=time[some], value=angle[some])), study.load
+    notes = (*study.notes, made.sentence)
+    told = replace(made, study=study.replace(motion=motion, load=load, simulation=simulation, notes=notes))
+    return told if out is None else replace(told, study=saved(told.study, out))
+
+
+def _refuse(study: ActuatorStudy, drives: str) -> tuple[MotionLaw, float]:
+    """The law of the hub, and how long it moves [s]; what has no linear model is refused."""
+    actuator, motion = study.actuator, study.motion
+    if drives not in ("given", "force"):
+        raise InputError("is not a way to take drives", key="drives", value=drives, allowed='"given", "force"')
+    if motion.rotation is None or isinstance(motion.rotation, RateLaw) or motion.rotation.law == "spin-up":
+        raise InputError(
+            "does not bring the hub from rest to rest",
+            file=study.path,
+            key="motion.rotation",
+            allowed='a profile, as { law = "smooth", amplitude = "20 deg", duration = "2 s" }, or a table',
+        )
+    extension = motion.extension
+    moves = extension is not None and np.ptp(kinematics.motion_law(extension, np.linspace(0, study.duration, 101))[0])
+    wrong = {
+        "actuator.space": actuator.space,
+        "actuator.gravity": actuator.gravity != 0,
+        "motion.extension": bool(moves) or extension is None,
+        "load": study.load.wrench is not None,
+        "simulation.fidelity": not study.simulation.lateral_shapes,
+    }
+    for key, bad in wrong.items():
+        if bad:
+            raise InputError(
+                "has no linear model that stays what it is along the motion",
+                file=study.path,
+                key=key,
+                allowed="a beam that bends in its plane, of a length that stays, without gravity and loads",
+            )
+    law = motion.rotation
+    return law, float(law.time[-1] if isinstance(law, CsvLaw) else law.duration)
