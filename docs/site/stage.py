@@ -59,7 +59,7 @@ def _relinked(text: str, page: Path, place: Path, files: set[Path]) -> str:
         files.add(target)
         return f"[{words}]({_to(place, f'files/{name}')})"
 
-    text = re.sub(r"^(\S*\*)$", lambda found: _named(found[1], page), text, flags=re.MULTILINE)
+    text = re.sub(r"^(\S+\*)(?=\n```)", lambda found: _named(found[1], page), text, flags=re.MULTILINE)
     parts = re.split(r"(^```.*?^```)", text, flags=re.MULTILINE | re.DOTALL)
     return "".join(part if part.startswith("```") else LINK.sub(led, part) for part in parts)
 
