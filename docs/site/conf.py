@@ -22,6 +22,7 @@ extensions = [
     "numpydoc",
     "sphinx.ext.autodoc",
     "sphinx_copybutton",
+    "sphinx_design",
     "docs.site.equations",
     "docs.site.finish",
     "docs.site.katex",
@@ -41,6 +42,7 @@ myst_dmath_allow_labels = False
 myst_fence_as_directive = ["math"]
 myst_heading_anchors = 4
 myst_links_external_new_tab = False
+nb_custom_formats = {".py": ["jupytext.reads", {"fmt": "py:percent"}]}
 nb_execution_mode = "cache"
 nb_execution_cache_path = str(ROOT / "build" / "site-notebooks")
 nb_execution_raise_on_error = True

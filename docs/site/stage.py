@@ -7,7 +7,7 @@ import shutil
 from os.path import normpath, relpath
 from pathlib import Path
 
-from docs.site import commands, python, studyfile, variables
+from docs.site import commands, gallery, python, studyfile, variables
 
 ROOT = Path(__file__).parents[2]
 #: Pages that lie outside of docs/, with their places in the site.
@@ -16,8 +16,10 @@ OUTSIDE = {
     "CHANGELOG.md": "changelog.md",
     "benchmarks/RESULTS.md": "benchmarks.md",
 }
+#: Pages that the site makes anew of the same source.
+ANEW = {"docs/study-file.md": "reference/study-file/index.md", "docs/gallery.md": "gallery/index.md"}
 LINK = re.compile(r"\[([^\]\n]*)\]\((?!https?:|mailto:|#)([^)#\s]+)(#[^)\s]*)?\)")
-MADE = (studyfile.pages, commands.pages, variables.pages, python.pages)
+MADE = (gallery.pages, studyfile.pages, commands.pages, variables.pages, python.pages)
 
 
 def staged(folder: Path) -> Path:
@@ -25,7 +27,8 @@ def staged(folder: Path) -> Path:
     written: set[Path] = set()
     pages = {path: path.relative_to(ROOT / "docs") for path in sorted((ROOT / "docs").rglob("*.md"))}
     pages |= {ROOT / name: Path(place) for name, place in OUTSIDE.items()}
-    pages.pop(ROOT / "docs" / "study-file.md")  # one long page: in the site it is a page for each table
+    for name in ANEW:
+        pages.pop(ROOT / name)
     for path, place in pages.items():
         files: set[Path] = set()
         text = _relinked(path.read_text(encoding="utf-8"), path, place, files)
@@ -33,10 +36,13 @@ def staged(folder: Path) -> Path:
         written |= {_copy(file, folder / "files" / file.relative_to(ROOT)) for file in files}
     for make in MADE:
         written |= {_write(folder / place, text) for place, text in make().items()}
+    written |= gallery.pictures(folder)
+    notebooks = ROOT / "src" / "flexapod" / "notebooks"
+    written |= {_copy(path, folder / "notebooks" / path.name) for path in notebooks.glob("*.py")}
     for image in (ROOT / "docs").rglob("*.png"):
         written.add(_copy(image, folder / image.relative_to(ROOT / "docs")))
     for old in set(folder.rglob("*.*")) - written:
-        if old.is_file() and "gallery" not in old.relative_to(folder).parts:
+        if old.is_file():
             old.unlink()
     return folder
 
@@ -50,10 +56,8 @@ def _relinked(text: str, page: Path, place: Path, files: set[Path]) -> str:
         name = target.relative_to(ROOT).as_posix()
         if target.is_dir():
             return f"[{words}]({_to(place, f'{target.name}/index.md')})" if (target / "index.md").exists() else words
-        if name == "docs/study-file.md":
-            return f"[{words}]({_to(place, 'reference/study-file/index.md')})"
-        if name in OUTSIDE:
-            return f"[{words}]({_to(place, OUTSIDE[name])}{anchor})"
+        if name in OUTSIDE | ANEW:
+            return f"[{words}]({_to(place, (OUTSIDE | ANEW)[name])}{anchor})"
         if name.startswith("docs/"):
             return f"[{words}]({_to(place, name.removeprefix('docs/'))}{anchor})"
         files.add(target)

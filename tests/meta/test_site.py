@@ -3,10 +3,11 @@
 import re
 
 import pytest
-from docs.site import commands, python, stage, studyfile, variables
+from docs.site import commands, gallery, python, stage, studyfile, variables
 
 import flexapod as fx
 from flexapod.cli.cli import _ALL
+from flexapod.cli.examples import titles
 from flexapod.results.names import VARIABLES
 from flexapod.schema.reference import reference
 
@@ -60,4 +61,12 @@ def test_every_page_is_in_a_table_of_contents(sources):
                 re.sub(r".*<(.*)>", r"\1", line) for line in block.splitlines() if line and not line.startswith(":")
             ]
             listed |= {stage.to_root(name, found) for found in names}
+    listed |= {path.relative_to(sources).with_suffix("").as_posix() for path in sources.rglob("*.py")}
     assert not sorted(set(pages) - listed)
+
+
+def test_every_example_is_in_the_gallery():
+    names = [name for section in gallery.SECTIONS.values() for name in section]
+    assert len(names) == len(set(names)) and set(names) == set(titles("--example"))
+    page = (stage.ROOT / "docs" / "gallery.md").read_text(encoding="utf-8")
+    assert not [name for name in names if f"`{name}`" not in page]

@@ -7,9 +7,9 @@ from axe_playwright_python.sync_playwright import Axe
 
 SITE = Path(__file__).parents[2] / "build" / "site"
 PAGES = (
-    "index.html", "start.html", "gallery.html", "how-to/index.html", "theory/T3-leg.html",
-    "reference/commands/run.html",
-    "reference/python/simulation.html", "reference/study-file/leg.html", "reference/variables/energies.html",
+    "index.html", "start.html", "gallery/index.html", "gallery/sag_by_hand.html", "how-to/index.html",
+    "theory/T3-leg.html", "reference/commands/run.html", "reference/python/simulation.html", 
+    "reference/study-file/leg.html", "reference/variables/energies.html",
 )  # fmt: skip
 
 pytestmark = pytest.mark.skipif(not SITE.exists(), reason="there is no build/site: make docs")
