@@ -132,8 +132,8 @@ def _notebooks() -> str:
     listed = "\n".join(titles("--notebook"))
     return f"""# Notebooks
 
-They are run when this site is built. `flexapod new --notebook first_robot` writes one as a Python file whose cells Jupyter
-opens with jupytext (`pip install jupytext`); `jupytext --to ipynb first_robot.py` makes a notebook of it.
+They are run when this site is built. `flexapod new --notebook first_robot` writes one as a Python file whose cells
+Jupyter opens with jupytext (`pip install jupytext`); `jupytext --to ipynb first_robot.py` makes a notebook of it.
 
 {_notebook_table("")}
 
