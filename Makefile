@@ -6,6 +6,7 @@ BIN := .venv/bin
 PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt
 RUN := .venv/.installed-to-run
 DEV := .venv/.installed-to-develop
+DOCS := .venv/.installed-to-document
 COMPILER ?= $(shell command -v cc || command -v gcc || command -v clang)
 COMMA := ,
 PARTS = page,verify,control$(if $(COMPILER),,$(COMMA)compiler)
@@ -13,7 +14,7 @@ PARTS = page,verify,control$(if $(COMPILER),,$(COMMA)compiler)
 PYTEST = $(BIN)/python -m pytest -n 2 --dist loadgroup
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo check test test-all style lint format bench clean
+.PHONY: help setup demo docs check test test-all style lint format bench clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## ?/  make \1\t/' | expand -t 18
@@ -31,9 +32,16 @@ $(DEV): $(RUN)
 	$(PIP) --group dev
 	touch $@
 
+$(DOCS): $(RUN)
+	$(PIP) --group docs
+	touch $@
+
 demo: $(RUN)  ## the paper's whole study: figures, data and report in build/demo
 	rm -rf build/demo
 	$(BIN)/flexapod replicate --out build/demo
+
+docs: $(DOCS)  ## the documentation as a site: build/site/index.html
+	$(BIN)/python -m docs.site
 
 check: style  ## style, types, import layers, tests of functions and contracts: within 90 s
 	$(PYTEST) -m "not whole" tests/unit tests/contract tests/meta/test_types.py

@@ -108,6 +108,11 @@ def cite(*names: str) -> tuple[str, ...]:
     ------
     InputError
         If a name is not in `CITATIONS`.
+
+    Examples
+    --------
+    >>> print(fx.cite("chung-hulbert")[0][:23])
+    J. Chung, G. M. Hulbert
     """
     for name in names:
         if name not in CITATIONS:

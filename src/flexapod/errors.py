@@ -10,7 +10,13 @@ __all__ = ["ComputationError", "FlexapodError", "InputError", "Malformed", "clos
 
 
 class FlexapodError(Exception):
-    """Base of every error that flexapod raises on purpose; `exit_code` is what a command returns."""
+    """Base of every error that flexapod raises on purpose; `exit_code` is what a command returns.
+
+    Examples
+    --------
+    >>> issubclass(fx.InputError, fx.FlexapodError) and issubclass(fx.ComputationError, fx.FlexapodError)
+    True
+    """
 
     exit_code = 1
 
@@ -24,6 +30,14 @@ class ComputationError(FlexapodError):
         What failed, where and when, in the user's words.
     next_step : str, optional
         What the user can do about it.
+
+    Examples
+    --------
+    >>> try:
+    ...     fx.forward_kinematics(fx.preset("paper-robot"), [0.8, 1.2, 0.8, 1.2, 0.8, 1.2])
+    ... except fx.ComputationError as error:
+    ...     print(error.exit_code)
+    1
     """
 
     exit_code = 1
@@ -53,6 +67,14 @@ class InputError(FlexapodError):
         What is allowed.
     next_step : str, optional
         What the user can do.
+
+    Examples
+    --------
+    >>> try:
+    ...     fx.preset("hexapod")
+    ... except fx.InputError as error:
+    ...     print(error.key, error.value, error.exit_code)
+    preset hexapod 2
     """
 
     exit_code = 2

@@ -24,7 +24,14 @@ SKIPPED = {
 
 def functions(tree: ast.AST) -> list[tuple[str, int]]:
     kinds = (ast.FunctionDef, ast.AsyncFunctionDef)
-    return [(n.name, (n.end_lineno or n.lineno) - n.lineno + 1) for n in ast.walk(tree) if isinstance(n, kinds)]
+    found = [n for n in ast.walk(tree) if isinstance(n, kinds)]
+    return [(n.name, (n.end_lineno or n.lineno) - n.lineno + 1 - example_lines(n)) for n in found]
+
+
+def example_lines(function: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
+    """Lines of the example in a docstring: it is read on the page of the call, and run, but is not of the function."""
+    _, head, example = (ast.get_docstring(function) or "").partition("\n\nExamples\n--------\n")
+    return len(example.splitlines()) + 3 if head else 0
 
 
 def project_files() -> list[Path]:

@@ -19,7 +19,7 @@ from flexapod.runtime.files import write_text
 if TYPE_CHECKING:
     from flexapod.model.page import Listed
 
-Name = Annotated[Path, typer.Argument(metavar="NAME.toml", help="File to write.")]
+Name = Annotated[Path | None, typer.Argument(metavar="NAME.toml", help="File to write.")]
 Preset = Annotated[
     str | None,
     typer.Option(
@@ -44,12 +44,32 @@ Ideal = Annotated[
 ]
 
 
+Example = Annotated[
+    str | None, typer.Option("--example", metavar="E", help="An example of the gallery, in Python: E.py here.")
+]
+Notebook = Annotated[
+    str | None, typer.Option("--notebook", metavar="N", help="A notebook, as N.py for Jupyter with jupytext.")
+]
+List = Annotated[bool, typer.Option("--list", help="Name all presets, examples and notebooks.")]
+
+
 @guarded
 def new(
-    name: Name, preset: Preset = None, request: From = None, ideal: Ideal = False, force: Force = False,
-    json: Json = False,
+    name: Name = None, preset: Preset = None, request: From = None, ideal: Ideal = False, example: Example = None,
+    notebook: Notebook = None, listed: List = False, force: Force = False, json: Json = False,
 ) -> None:  # fmt: skip
-    """Write a commented study file to edit."""
+    """Write a commented study file to edit, or an example in Python; --list names what there is."""
+    if listed:
+        return _list(json=json)
+    given = {"--preset": preset, "--from": request, "--example": example, "--notebook": notebook}
+    chosen = [option for option in ("--example", "--notebook") if given[option] is not None]
+    if chosen:
+        others = [option for option in given if given[option] is not None and option != chosen[0]]
+        if others:
+            raise InputError(f"is given together with {others[0]}", key=chosen[0], allowed="one of the two")
+        return _example(chosen[0], given[chosen[0]] or "", name, force=force, json=json)
+    if name is None:
+        raise InputError("is missing", key="NAME.toml", next_step="Give the name of the file to write: robot.toml")
     path = name if name.suffix or name.is_dir() else name.with_suffix(".toml")
     if path.is_dir():
         raise InputError("is a folder", file=path, next_step="Give the name of a file")
@@ -64,6 +84,28 @@ def new(
     words = f", from the preset {source['preset']}" if "preset" in source else ""
     data = {"file": path, **source, **({} if request is None else {"remarks": remarks})}
     tell([*remarks, f"{path} written{words}. Edit it, then: flexapod check {path}"], lambda: data, json=json)
+
+
+def _list(*, json: bool) -> None:
+    from flexapod.cli.examples import titles
+    from flexapod.model import PRESETS
+
+    found = {
+        "--preset": dict.fromkeys(PRESETS, ""),
+        **{option: titles(option) for option in ("--example", "--notebook")},
+    }
+    items = [f"{option} {name}".ljust(40) + title for option, names in found.items() for name, title in names.items()]
+    tell(items, lambda: {option.strip("-"): names for option, names in found.items()}, json=json)
+
+
+def _example(option: str, wanted: str, name: Path | None, *, force: bool, json: bool) -> None:
+    from flexapod.cli.examples import place, text
+
+    written, path = text(option, wanted), place(option, wanted, name)
+    refuse_existing(path, force)
+    write_text(path, written)
+    run = f"python {path}" if option == "--example" else f"jupytext --to ipynb {path}, or open it in Jupyter"
+    tell([f"{path} written. Run it: {run}"], lambda: {"file": path, option.strip("-"): wanted}, json=json)
 
 
 def _preset(name: str) -> tuple[str, dict[str, object], list[str]]:

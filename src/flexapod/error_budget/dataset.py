@@ -66,6 +66,12 @@ def budget(
         A pose out of reach, a pose and a motion, a platform that is fixed, a pure force drive.
     ComputationError
         There is no equilibrium, or the pose is singular.
+
+    Examples
+    --------
+    >>> data = fx.budget(fx.preset("machine-hexapod"))
+    >>> print((100 * data.share.sel(part=["base_joints tolerance", "heat_piston", "base_joint"])).round(1).values)  # %
+    [33.9  4.9  1.3]
     """
     if motion and pose is not None:
         raise InputError("is given together with a motion", key="pose", next_step="Choose either of the two")

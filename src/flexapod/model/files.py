@@ -69,6 +69,14 @@ def load(path: str | Path) -> Study | ActuatorStudy:
     ------
     InputError
         With file, key path, value, what is allowed, and the next step.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> _ = Path("robot.toml").write_text(fx.preset("paper-robot").source_text)  # as `flexapod new robot.toml`
+    >>> study = fx.load("robot.toml")
+    >>> study.robot.payload.mass
+    100.0
     """
     path = Path(path)
     check_name(path)
@@ -105,6 +113,12 @@ def loads(text: str, *, path: str | Path | None = None) -> Study | ActuatorStudy
     ------
     InputError
         As of `load`.
+
+    Examples
+    --------
+    >>> study = fx.loads(fx.preset("paper-robot").source_text.replace("100 kg", "50 kg"))
+    >>> study.robot.payload.mass
+    50.0
     """
     return read_study(_tables(text, path), text)
 
@@ -153,6 +167,12 @@ def preset(name: str) -> Study | ActuatorStudy:
     ------
     InputError
         A name that is not known.
+
+    Examples
+    --------
+    >>> study = fx.preset("machine-hexapod")
+    >>> study.robot.legs[0].drive.lead
+    0.01
     """
     return loads(preset_text(name), path=f"{name}.toml")
 
@@ -191,6 +211,11 @@ def open_values(name: str) -> tuple[OpenValue, ...]:
     ------
     InputError
         A name that is not known.
+
+    Examples
+    --------
+    >>> [value.key for value in fx.open_values("paper-robot")][:2]
+    ['robot.base.half_angle', 'robot.platform.half_angle']
     """
     text = preset_text(name)
     data, found, section = tomllib.loads(text), [], ""

@@ -84,6 +84,13 @@ class Study(_Documented):
 
     `source_text`: the whole study as TOML, the file as it was read or, where it was built or changed in Python, written
     anew; `path`: where it was read; `notes`: remarks made on reading it.
+
+    Examples
+    --------
+    >>> study = fx.preset("paper-robot")
+    >>> stiff = study.replace(simulation=study.simulation.replace(fidelity="lumped"))
+    >>> study.simulation.fidelity, stiff.simulation.fidelity
+    ('assumed-modes', 'lumped')
     """
 
     robot: Robot
@@ -198,7 +205,14 @@ class Study(_Documented):
 
 
 class ActuatorStudy(_Documented):
-    """A single actuator, its motion or load, start and simulation settings."""
+    """A single actuator, its motion or load, start and simulation settings.
+
+    Examples
+    --------
+    >>> study = fx.preset("paper-actuator")
+    >>> study.actuator.EI, study.actuator.rhoA  # N m^2, kg/m
+    (756.65, 4.02)
+    """
 
     actuator: Actuator
     motion: ActuatorMotion = ActuatorMotion()

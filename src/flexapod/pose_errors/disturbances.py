@@ -65,6 +65,14 @@ def vibration(robot: RobotLike, pose: PoseLike = None) -> Dataset:
         of drives that hold their positions.
     ComputationError
         No equilibrium at this pose.
+
+    Examples
+    --------
+    >>> text = fx.preset("machine-hexapod").source_text
+    >>> study = fx.loads(chr(10).join(['disturbance = { floor = "VC-C" }', text]))
+    >>> data = fx.vibration(study)
+    >>> data.vibration_rms.dims, data.vibration_psd.dims
+    (('component',), ('spectrum_frequency', 'component'))
     """
     study = at_pose(robot)
     path = as_pose(study.robot, pose)

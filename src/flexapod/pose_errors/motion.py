@@ -47,6 +47,12 @@ def play(robot: RobotLike, motion: model.Motion | None = None, *, load: LoadLike
     ------
     InputError
         As `inverse_dynamics`.
+
+    Examples
+    --------
+    >>> data = fx.play(fx.preset("machine-hexapod"))
+    >>> int(data.sign_changes.sum())  # no joint is pulled and pushed by turns
+    0
     """
     study = as_study(robot, motion, load)
     path = RigidPath(study)

@@ -59,6 +59,12 @@ def accuracy(robot: RobotLike, pose: PoseLike = None, *, draws: int = 0, seed: i
         A pose out of reach; a number of draws that is not one.
     ComputationError
         The pose is singular.
+
+    Examples
+    --------
+    >>> data = fx.accuracy(fx.preset("machine-hexapod"))
+    >>> print((1e6 * data.pose_sigma[:3]).round(1).values)  # um, x y z
+    [37.6 37.6 13.9]
     """
     if isinstance(draws, bool) or not isinstance(draws, int) or not 0 <= draws <= MOST_DRAWS:
         raise InputError("is not a number of draws", key="draws", value=draws, allowed=f"0 to {MOST_DRAWS}")

@@ -285,11 +285,15 @@ _ACTUATOR = {
     "tip_twist": Variable(_T, "rad", "twist of the tip about the beam, 0 without GJ"),
 }
 
-#: Every variable of every Dataset, by name.
-VARIABLES: Mapping[str, Variable] = {
-    **_PATH, **_COMMAND, **_LEGS, **_ENERGY, **_STATIC, **_MOBILITY, **_ACCURACY, **_PLAY, **_BUDGET,
-    **_DISTURBED, **_ACTUATOR,
+#: The variables by what they tell of.
+GROUPS: Mapping[str, Mapping[str, Variable]] = {
+    "Paths and deviations": _PATH, "Commands": _COMMAND, "Legs and drives": _LEGS, "Energies": _ENERGY,
+    "Stiffness and modes": _STATIC, "Mobility": _MOBILITY, "Accuracy of a pose": _ACCURACY, "Play": _PLAY,
+    "Error budget": _BUDGET, "Vibration": _DISTURBED, "Single actuator": _ACTUATOR,
 }  # fmt: skip
+
+#: Every variable of every Dataset, by name.
+VARIABLES: Mapping[str, Variable] = {name: form for group in GROUPS.values() for name, form in group.items()}
 
 #: The actuator's own form of variables that a robot has per leg or with another zero.
 ACTUATOR_FORMS = {

@@ -79,6 +79,12 @@ def simulate_actuator(
         The first steps fail.
     Interrupted
         By Ctrl-C, with what was computed.
+
+    Examples
+    --------
+    >>> data = fx.simulate_actuator(fx.preset("paper-actuator"), modes=2)
+    >>> print(f"{1e3 * float(abs(data.tip_deflection).max()):.1f} mm")
+    13.8 mm
     """
     settings = {
         "fidelity": fidelity, "modes": modes, "basis": basis, "tolerance": tolerance, "step": step,

@@ -48,6 +48,12 @@ def mobility(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     ------
     InputError
         A pose that the legs do not reach.
+
+    Examples
+    --------
+    >>> data = fx.mobility(fx.preset("tripod"))
+    >>> int(data.mobility), [str(name) for name in data.motions.values]
+    (3, ['heave', 'roll', 'pitch'])
     """
     study = at_pose(robot)
     legs = kinematics.rigid_limbs(study.robot)
@@ -101,6 +107,12 @@ def inverse_kinematics(
     ------
     InputError
         The path leaves a stroke, pulls a piston out, folds a universal joint or is singular.
+
+    Examples
+    --------
+    >>> data = fx.inverse_kinematics(fx.preset("paper-robot"))
+    >>> print(f"{1e3 * float(data.leg_length_command.sel(leg=1)[0]):.1f} mm")
+    915.2 mm
     """
     path, remarks = _path(_study(robot, motion, None, duration, output_step))
     return _named(path, _legs_and_payload(path), remarks)
@@ -138,6 +150,12 @@ def inverse_dynamics(
     ------
     InputError
         As `inverse_kinematics`.
+
+    Examples
+    --------
+    >>> data = fx.inverse_dynamics(fx.preset("machine-hexapod"))
+    >>> data.actuator_force_rigid.dims, data.actuator_force_rigid.units
+    (('time', 'leg'), 'N')
     """
     path, remarks = _path(_study(robot, motion, load, duration, output_step))
     refuse_tables(path.robot.legs, "the rigid robot")
@@ -179,6 +197,12 @@ def forward_kinematics(
         Lengths that are not a number for each drive, a guess that is not a pose, or instants that do not fit.
     ComputationError
         No pose near the guess fits.
+
+    Examples
+    --------
+    >>> data = fx.forward_kinematics(fx.preset("paper-robot"), [1, 1, 1, 1, 1, 1])
+    >>> print(f"{1e3 * float(data.platform_position.sel(axis='z')):.1f} mm")
+    986.1 mm
     """
     study = at_pose(robot)
     given = _numbers(lengths, "lengths", "lengths [m] or places of carriages [m, rad], one for each drive")

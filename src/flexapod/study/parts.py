@@ -47,6 +47,14 @@ def parts(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     ------
     InputError
         A pose out of reach, or with the nut outside the screw.
+
+    Examples
+    --------
+    >>> data = fx.parts(fx.preset("machine-hexapod"))
+    >>> float((1e-6 * data.leg_stiffness.sel(leg=1)).round(1))  # N/um
+    54.0
+    >>> str(data.part[int(data.part_stiffness.sel(leg=1).argmin("part"))].values)  # what is softest
+    'base_joint'
     """
     study = at_pose(robot)
     path = as_pose(study.robot, pose)

@@ -160,8 +160,18 @@ def simulate(
     ------
     InputError
         The path leaves a stroke, pulls a piston out or is singular; settings do not fit.
-    ComputationError, Interrupted
-        There is no equilibrium to start from, or the first steps fail; by Ctrl-C, with what was computed.
+    ComputationError
+        There is no equilibrium to start from, or the first steps fail.
+    Interrupted
+        By Ctrl-C, with what was computed.
+
+    Examples
+    --------
+    >>> data = fx.simulate(fx.preset("paper-robot"), fidelity="lumped")
+    >>> data.com_deviation.dims, data.com_deviation.units
+    (('time', 'axis'), 'm')
+    >>> print((1e6 * abs(data.com_deviation).max("time")).round(1).values)  # um, x y z
+    [ 4.4  9.4 19.3]
     """
     study = model.override(
         as_study(robot, motion, load, initial), fidelity=fidelity, modes=modes, axial_modes=axial_modes, basis=basis,
@@ -198,6 +208,12 @@ def run(
     ------
     InputError, ComputationError, Interrupted
         As `simulate`.
+
+    Examples
+    --------
+    >>> data = fx.run(fx.preset("paper-actuator"))  # of a robot or of a single actuator
+    >>> print(f"{1e3 * float(abs(data.tip_deflection).max()):.1f} mm")
+    13.7 mm
     """
     study = read(study)
     if isinstance(study, model.ActuatorStudy | model.Actuator):

@@ -85,6 +85,12 @@ def simulate_solid(
         Degenerate meshes, a motion or load that the solid does not take, a beam that leaves its hub.
     Interrupted
         By Ctrl-C, with what was computed.
+
+    Examples
+    --------
+    >>> data = fx.simulate_solid(fx.preset("paper-actuator"), size=0.02, duration=0.05, step=0.005)
+    >>> data.tip_deflection.dims, data.frequency.units
+    (('time',), 'Hz')
     """
     study = _only_prescribed(read(study))
     _check_numbers(size=size, poisson=poisson, step=step, spacing=size if spacing is None else spacing)

@@ -76,6 +76,12 @@ def modes(
         A pose out of reach, rigid legs on prescribed strokes (nothing can move), or a pure force drive.
     ComputationError
         No equilibrium at this pose.
+
+    Examples
+    --------
+    >>> data = fx.modes(fx.preset("machine-hexapod"))
+    >>> print(data.frequency[:3].round(1).values, data.kind[:3].values)
+    [56.2 56.2 83.2] ['payload' 'payload' 'payload']
     """
     settings = {"fidelity": fidelity, "modes": modes, "axial_modes": axial_modes, "basis": basis, "friction": friction}
     if isinstance(robot := read(robot), model.ActuatorStudy):
@@ -138,6 +144,12 @@ def stiffness(
         A pose out of reach, no compliance (rigid legs on prescribed strokes), or a pure force drive.
     ComputationError
         No equilibrium at this pose.
+
+    Examples
+    --------
+    >>> K = fx.stiffness(fx.preset("machine-hexapod")).stiffness
+    >>> print([f"{1e-6 * float(K[i, i]):.1f} N/um" for i in range(3)])
+    ['35.6 N/um', '35.6 N/um', '252.7 N/um']
     """
     settings = {"fidelity": fidelity, "modes": modes, "axial_modes": axial_modes, "basis": basis, "friction": friction}
     study, path = _problem(robot, pose, load, settings)

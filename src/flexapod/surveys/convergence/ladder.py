@@ -67,6 +67,13 @@ def ladder(
         A study that `flexapod.run` refuses.
     ConvergenceStopped
         By Ctrl-C, with what was computed.
+
+    Examples
+    --------
+    >>> study = fx.preset("paper-actuator").replace(simulation={"modes": 1, "step": 2e-3, "duration": 0.1})
+    >>> data = fx.ladder(study)
+    >>> [str(name) for name in data.fidelity.values[:2]]
+    ['rigid', 'finite-segment']
     """
     trials = checked_trials(study, trials, progress)
     settings, reference, second = rungs(trials.study, step)

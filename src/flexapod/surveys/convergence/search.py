@@ -274,6 +274,13 @@ def converge(
         No step gives a result.
     ConvergenceStopped
         By Ctrl-C, with what was computed.
+
+    Examples
+    --------
+    >>> study = fx.preset("paper-actuator").replace(simulation={"modes": 1, "step": 2e-3, "duration": 0.1})
+    >>> data = fx.converge(study, accuracy=0.2)
+    >>> data.error_tip.dims
+    ('setting',)
     """
     check_accuracy(accuracy)
     trials = checked_trials(study, trials, progress)

@@ -86,6 +86,12 @@ def workspace_map(
     ------
     InputError
         Axes, direction or acceleration that are none; rigid legs on prescribed strokes; a pure force drive.
+
+    Examples
+    --------
+    >>> data = fx.workspace_map(fx.preset("machine-hexapod"), {"heave": [-0.05, 0, 0.05]})
+    >>> data.stiffness.dims, (1e-6 * data.stiffness).round(0).values.tolist()  # N/um, along z
+    (('heave',), [250.0, 253.0, 254.0])
     """
     study = model.override(at_pose(robot, load), fidelity=fidelity, modes=modes, axial_modes=axial_modes, basis=basis)
     poses = grid(study.robot, axes, at)

@@ -35,8 +35,7 @@ __all__ = ["CASES"]
 
 _SUBJECTS = (
     bending, solids, turning, sliding, integration, hexapods, frequencies, stiffness, mechanisms,
-    slider_crank, squeezer, four_bar, bricard, real_parts, machines, linear, control,
-    slider_crank, squeezer, four_bar, bricard, real_parts, machines, feed_forward,
+    slider_crank, squeezer, four_bar, bricard, real_parts, machines, linear, control, feed_forward,
     mujoco_forces, calculix_beams, calculix_robots, exudyn,
     exudyn_parts, exports,
 )  # fmt: skip

@@ -1,0 +1,72 @@
+"""The sources of the site: links lead inside; every public name, command, table and variable has a page."""
+
+import re
+
+import pytest
+from docs.site import commands, gallery, python, stage, studyfile, variables
+
+import flexapod as fx
+from flexapod.cli.cli import _ALL
+from flexapod.cli.examples import titles
+from flexapod.results.names import VARIABLES
+from flexapod.schema.reference import reference
+
+
+@pytest.fixture(scope="module")
+def sources(tmp_path_factory):
+    return stage.staged(tmp_path_factory.mktemp("site"))
+
+
+def test_every_public_name_is_on_a_page_and_nothing_else_is_public():
+    public = {name for name in dir(fx) if not name.startswith("__")} | {"__version__"}
+    assert public == set(fx.__all__) == python.on_pages()
+    assert len(python.FIRST) == 10 and set(python.FIRST) <= python.on_pages()
+
+
+def test_every_command_has_a_page():
+    assert len(commands.pages()) == len(_ALL) + 1
+    text = commands.pages()[commands.FOLDER / "run.md"]
+    assert "`--format FORMATS`" in text and "`png,svg`" in text
+
+
+def test_every_table_of_the_study_file_is_on_one_page():
+    text = "\n".join(studyfile.pages().values())
+    missing = [e.table for e in reference().entries if f"`{e.table}`" not in text]
+    assert not missing
+
+
+def test_every_variable_is_on_one_page():
+    rows = [
+        row
+        for page in variables.pages().values()
+        for row in re.findall(r"^\| `(\w+)` \|.*\| .* \|", page, re.MULTILINE)
+    ]
+    assert set(VARIABLES) <= set(rows)
+
+
+def test_links_between_pages_lead_somewhere(sources):
+    for page in sources.rglob("*.md"):
+        for link in re.findall(r"\]\((?!https?:|mailto:|#)([^)#\s]+)", page.read_text(encoding="utf-8")):
+            assert (page.parent / link).exists(), f"{page.relative_to(sources)}: {link}"
+
+
+def test_every_page_is_in_a_table_of_contents(sources):
+    pages = {
+        p.relative_to(sources).with_suffix("").as_posix(): p.read_text(encoding="utf-8") for p in sources.rglob("*.md")
+    }
+    listed = {"index"}
+    for name, text in pages.items():
+        for block in re.findall(r"```\{toctree\}\n(.*?)```", text, re.DOTALL):
+            names = [
+                re.sub(r".*<(.*)>", r"\1", line) for line in block.splitlines() if line and not line.startswith(":")
+            ]
+            listed |= {stage.to_root(name, found) for found in names}
+    listed |= {path.relative_to(sources).with_suffix("").as_posix() for path in sources.rglob("*.py")}
+    assert not sorted(set(pages) - listed)
+
+
+def test_every_example_is_in_the_gallery():
+    names = [name for section in gallery.SECTIONS.values() for name in section]
+    assert len(names) == len(set(names)) and set(names) == set(titles("--example"))
+    page = (stage.ROOT / "docs" / "gallery.md").read_text(encoding="utf-8")
+    assert not [name for name in names if f"`{name}`" not in page]
