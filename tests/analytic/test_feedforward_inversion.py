@@ -79,7 +79,7 @@ def test_zeros_from_torque_to_tip_of_a_beam(inertia: float) -> None:
     study = beam(simulation=fx.model.Simulation(fidelity="beam-fem", modes=12))
     study = study.replace(actuator=study.actuator.replace(hub_inertia=inertia))
     b = study.actuator
-    zeros = beam_plant(study).select(outputs="tip").zeros()
+    zeros = beam_plant(study, "force").zeros()
     unit = np.sqrt(b.EI / (b.rhoA * b.free_length**4))
     a = [brentq(lambda x: np.tan(x) + np.tanh(x), (k - 0.5) * np.pi + 1e-9, k * np.pi) for k in (1, 2)]
     real = np.sort(zeros[(np.abs(zeros.imag) < 1e-6 * np.abs(zeros)) & (zeros.real > 0)].real) / unit
