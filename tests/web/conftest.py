@@ -3,6 +3,7 @@
 import os
 import shutil
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -198,7 +199,9 @@ class Reports(dict):
     def __missing__(self, name: str) -> Path:
         file = self.place / f"{name}.html"
         if name == "verification":
-            _write(list(verify(["cubic-hexapod", "not-modelled"])), file, None)
+            (done,) = verify(["cubic-hexapod"])
+            absent = replace(done, checks=(), not_run="Nastran is not installed: buy it")
+            _write([done, absent], file, None)
         elif name == "replication":
             file.write_text(self._replication(), encoding="utf-8")
         else:

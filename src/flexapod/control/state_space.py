@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexapod.arrays import Array
-from flexapod.control.channels import Names, chosen
+from flexapod.control.channels import Names, chosen, groups
 from flexapod.control.frequency import response
 from flexapod.control.histories import histories, instants
 from flexapod.control.norms import h2_norms, hinf_norm, relative_gains
@@ -31,7 +31,7 @@ __all__ = ["StateSpace"]
 Complex = NDArray[np.complex128]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class StateSpace:
     """x' = A x + B u, y = C x + D u, Eq. (T21.1), or from sample to sample x_next = A x + B u.
 
@@ -69,6 +69,15 @@ class StateSpace:
             object.__setattr__(self, name, value)
         if self.sample is not None and not self.sample > 0:
             raise InputError("is not a time", key="sample", value=self.sample, allowed="above 0 s, or None")
+
+    def __repr__(self) -> str:
+        """How large it is, and its channels by group."""
+        return f"{type(self).__name__}({self._told()})"
+
+    def _told(self) -> str:
+        kind = "" if self.sample is None else f", every {self.sample:g} s"
+        into, out = (f"{len(names)} ({', '.join(groups(names))})" for names in (self.inputs, self.outputs))
+        return f"{len(self.states)} states{kind}, inputs {into}, outputs {out}"
 
     def select(self, inputs: Names = None, outputs: Names = None) -> StateSpace:
         """The same states with some channels, by names or groups, in the order given."""

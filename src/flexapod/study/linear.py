@@ -64,8 +64,7 @@ class LinearModel(StateSpace):
 
     def __repr__(self) -> str:
         """How large it is, and of what."""
-        size = f"{len(self.states)} states, {len(self.inputs)} inputs, {len(self.outputs)} outputs"
-        return f"LinearModel({self.study}: {size}; drives {self.drives}, friction {self.friction})"
+        return f"LinearModel({self.study}: {self._told()}; drives {self.drives}, friction {self.friction})"
 
     def descriptor(self) -> Descriptor:
         """M, D, K, G, B, C in the flat coordinates of the equations, with names, Eq. (T20.1)."""

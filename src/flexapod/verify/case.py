@@ -51,8 +51,7 @@ class Check:
 class Case:
     """A case: short `name`, `statement`, `source` of the reference, `argument` for the tolerance, how to compute it.
 
-    `engine` is the independent program it needs; a `slow` one (half a minute and more) is computed on demand only;
-    `not_run` says why it cannot be computed at all.
+    `engine` is the independent program it needs; a `slow` one (half a minute and more) is computed on demand only.
     """
 
     name: str
@@ -62,14 +61,13 @@ class Case:
     compute: Callable[[], Iterable[Check]]
     engine: Engine | None = None
     slow: bool = False
-    not_run: str = ""
 
     @property
     def obstacle(self) -> str:
         """Why it cannot be computed here; empty if it can."""
         if self.engine is not None and not self.engine.found():
             return f"{self.engine.name} is not installed: {self.engine.install}"
-        return self.not_run
+        return ""
 
 
 def case(

@@ -1,4 +1,4 @@
-"""The cases, from the parts to the whole, then the independent engines and what is left out."""
+"""The cases, from the parts to the whole, then the independent engines."""
 
 from collections.abc import Iterator
 from types import ModuleType
@@ -40,15 +40,6 @@ _SUBJECTS = (
     exudyn_parts, exports,
 )  # fmt: skip
 
-NOT_MODELLED = Case(
-    name="not-modelled",
-    statement="Damping by integral force feedback",
-    source="Preumont et al. 2007",
-    argument="half a unit of the printed digits",
-    compute=list,
-    not_run="the software has no force feedback",
-)
-
 
 def _rows(module: ModuleType) -> Iterator[Case]:
     """The cases of a subject in the order in which they are written, alone or as a list."""
@@ -56,4 +47,4 @@ def _rows(module: ModuleType) -> Iterator[Case]:
         yield from (case for case in (value if isinstance(value, list) else [value]) if isinstance(case, Case))
 
 
-CASES = (*(case for module in _SUBJECTS for case in _rows(module)), NOT_MODELLED)
+CASES = tuple(case for module in _SUBJECTS for case in _rows(module))
