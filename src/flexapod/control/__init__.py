@@ -36,7 +36,8 @@ if TYPE_CHECKING:
         positive_feedback,
         rate,
     )
-    from flexapod.control.loops import best_gain, margins, root_locus
+    from flexapod.control.limits import margins
+    from flexapod.control.loops import best_gain, root_locus
     from flexapod.control.scheduled import Scheduled
     from flexapod.control.state_space import StateSpace
 
@@ -67,7 +68,8 @@ _HOMES = {
         "positive_feedback",
         "rate",
     ),
-    "loops": ("best_gain", "margins", "root_locus"),
+    "loops": ("best_gain", "root_locus"),
+    "limits": ("margins",),
     "scheduled": ("Scheduled",),
     "state_space": ("StateSpace",),
 }

@@ -237,8 +237,9 @@ class Together(Controller):
         actuators = tuple(dict.fromkeys(name for part in each for name in part.outputs))
         reads = [np.array([[float(a == b) for b in readings] for a in part.inputs]) for part in each]
         drives = [np.array([[float(a == b) for b in part.outputs] for a in actuators]) for part in each]
+        n = sum(len(part.A) for part in each)
         return StateSpace(
-            A=block_diag(*(part.A for part in each)).reshape(-1, sum(len(part.A) for part in each)),
+            A=block_diag(*(part.A for part in each)).reshape(n, n),
             B=np.vstack([part.B @ read for part, read in zip(each, reads, strict=True)]),
             C=np.hstack([drive @ part.C for part, drive in zip(each, drives, strict=True)]),
             D=sum(d @ part.D @ r for part, r, d in zip(each, reads, drives, strict=True)),

@@ -9,6 +9,7 @@ from flexapod.verify.cases import (
     bricard,
     calculix_beams,
     calculix_robots,
+    control,
     exudyn,
     exudyn_parts,
     four_bar,
@@ -32,7 +33,7 @@ __all__ = ["CASES"]
 
 _SUBJECTS = (
     bending, solids, turning, sliding, integration, hexapods, frequencies, stiffness, mechanisms,
-    slider_crank, squeezer, four_bar, bricard, real_parts, machines, linear,
+    slider_crank, squeezer, four_bar, bricard, real_parts, machines, linear, control,
     mujoco_forces, calculix_beams, calculix_robots, exudyn,
     exudyn_parts,
 )  # fmt: skip
