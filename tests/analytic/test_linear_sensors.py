@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from tests.consistency import test_motor_loops as motors
-from tests.machines import study
+from tests.consistency.test_mounts import BASE
+from tests.machines import machine, study
 
 import flexapod as fx
 from flexapod.verify.cases.linear import stewart
@@ -97,3 +98,16 @@ def test_a_command_is_followed_slowly():
     step = (up[0] - up[1]) / 2e-4
     # the whole robot as straight legs have it, but for what 16 um of sag turn
     assert (H[6:] @ step).real == pytest.approx(np.eye(6)[2], abs=1e-3)
+
+
+def test_a_tool_is_seen_from_the_base_plate_too():
+    # the plate turned and displaced as one with the rigid machine on it: seen from the plate nothing moves
+    given = study(machine().replace(base_mount=BASE), fidelity="lumped")
+    lin = fx.linearize(given, inputs="wrench", outputs=["tool", "tool-base", "com", "com-base"])
+    H = lin.at([0.01])[:, :, 0].real
+    stiff = fx.linearize(study(machine(), fidelity="lumped"), inputs="wrench", outputs=["tool", "com"])
+    alone = stiff.at([0.01])[:, :, 0].real
+    # weight of a ton on a base that has sagged by 3e-5 turns forces by as much
+    assert H[6:12] == pytest.approx(alone[:6], abs=1e-3 * np.abs(alone[:6]).max())
+    assert H[15:18] == pytest.approx(alone[6:], abs=1e-3 * np.abs(alone[6:]).max())
+    assert np.abs(H[:6] - alone[:6]).max() > 0.1 * np.abs(alone[:6]).max()

@@ -97,10 +97,10 @@ def linearize(
         ``wrench`` [N, N m] at the tool, ``drive`` [N, N m], ``command`` [m/s^2, rad/s^2], second derivative of what a
         drive is told, ``floor`` [m/s^2, rad/s^2] about the point of `base_motion` or the origin, ``force:POINT`` [N].
     outputs : str or sequence of str
-        ``tool`` [m, rad], ``com`` [m], ``stroke`` and ``encoder`` [m, rad], ``drive-force`` [N, N m], ``joint-force``,
-        ``force-sensor:base``, ``:drive``, ``:platform`` [N], ``accelerometer:POINT`` [m/s^2], ``geophone:POINT`` [m/s].
-        POINT: ``tool``, ``com``, ``platform``, ``joint-3``, or in platform axes ``(0.1, 0, 0.05)`` [m]. Single
-        channels: ``wrench:fx``, ``drive:3``, ``tool:rz``, ``force:tool:x``.
+        ``tool`` [m, rad], ``com`` [m], from a base plate ``tool-base``, ``com-base``; ``stroke``, ``encoder``;
+        ``drive-force``, ``joint-force``, ``force-sensor:base``, ``:drive``, ``:platform`` [N]; ``accelerometer:POINT``
+        [m/s^2], ``geophone:POINT`` [m/s]. POINT: ``tool``, ``com``, ``platform``, ``joint-3``, or in platform axes
+        ``(0.1, 0, 0.05)`` [m]. Single channels: ``wrench:fx``, ``drive:3``, ``tool:rz``, ``force:tool:x``.
     drives : {"given", "force"}
         "force" releases the drives at the equilibrium that they hold, with the force that holds them: neither springs
         nor loops of theirs are left. Pure force drives are linearised so.

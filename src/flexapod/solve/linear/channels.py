@@ -21,12 +21,12 @@ WRENCH = ("fx", "fy", "fz", "mx", "my", "mz")
 #: Groups and their single channels; "legs": one a leg.
 INPUTS = {"wrench": WRENCH, "drive": "legs", "command": "legs", "floor": COMPONENTS, "force": AXES}
 OUTPUTS = {
-    "tool": COMPONENTS, "com": AXES, "stroke": "legs", "drive-force": "legs", "joint-force": "legs axes",
-    "force-sensor:base": "legs", "force-sensor:drive": "legs", "force-sensor:platform": "legs", "encoder": "legs",
-    "accelerometer": AXES, "geophone": AXES,
+    "tool": COMPONENTS, "com": AXES, "tool-base": COMPONENTS, "com-base": AXES, "stroke": "legs",
+    "drive-force": "legs", "joint-force": "legs axes", "force-sensor:base": "legs", "force-sensor:drive": "legs",
+    "force-sensor:platform": "legs", "encoder": "legs", "accelerometer": AXES, "geophone": AXES,
 }  # fmt: skip
 AT_POINTS = ("force", "accelerometer", "geophone")
-ON_PLATFORM = (*AT_POINTS, "wrench", "tool", "com")
+ON_PLATFORM = (*AT_POINTS, "wrench", "tool", "com", "tool-base", "com-base")
 #: Geophone of which nothing is said: a corner of 4.5 Hz, 0.7 of critical damping, and an output that is the velocity.
 USUAL = (4.5, 0.7, 1.0)
 

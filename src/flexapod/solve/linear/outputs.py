@@ -10,7 +10,7 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.arrays import Array
-from flexapod.kinematics.rotations import matrix
+from flexapod.kinematics.rotations import exponential, matrix
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.solve.batch import matrices_at_rest
 from flexapod.solve.kernel import evaluate
@@ -41,6 +41,8 @@ class Seen:
                 return (tool_motion(self.plant.robot, self.plant.x.pose)[0] @ self._hub(self.first.place))[axis]
             case "com":
                 return self._hub(self.first.place)[axis]
+            case "tool-base" | "com-base":
+                return self._from_base(channel.group == "tool-base")[axis]
             case "stroke":
                 return self._leg(self.place, i)[self._moved(i)]
             case "encoder":
@@ -58,6 +60,24 @@ class Seen:
 
     def _hub(self, of: Array) -> Array:
         return self.second.flat[0, self.plant.system.legs * self.plant.system.n :] @ of
+
+    def _from_base(self, tool: bool) -> Array:
+        """Displacement and turn of the tool, or the centre of mass, from the base plate on its mount, world axes."""
+        robot, x = self.plant.robot, self.plant.x
+        motion = tool_motion(robot, x.pose)[0]
+        found = motion @ self._hub(self.first.place) if tool else np.zeros((6, self.balance.shape[1]))
+        found[:3] = found[:3] if tool else self._hub(self.first.place)[:3]
+        if robot.base_mount is None:
+            return found
+        f = self.plant.system.kernel.shapes.index("f")
+        base, at, (_, pitch, yaw) = self._leg(self.place, 0)[f : f + 6], x.q[0, 0, f : f + 3], x.q[0, 0, f + 3 : f + 6]
+        turns = exponential(np.array([[0, 0, yaw], [0, pitch, 0]]))
+        axes = np.stack([turns[0] @ turns[1][:, 0], turns[0][:, 1], [0.0, 0.0, 1.0]], axis=1)  # of roll, pitch, yaw
+        arm = matrix(x.pose[:, 3:])[0] @ (robot.tool - robot.com) if tool else np.zeros(3)
+        turn = axes @ base[3:]
+        found[:3] -= base[:3] + np.cross(turn.T, x.pose[0, :3] + arm - robot.base_mount.at - at).T
+        found[3:] -= turn
+        return found
 
     def _leg(self, flat: Array, i: int) -> Array:
         n = self.plant.system.n

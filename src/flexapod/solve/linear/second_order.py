@@ -12,7 +12,8 @@ from flexapod.errors import InputError
 from flexapod.kinematics.rotations import matrix
 from flexapod.solve.batch import residual
 from flexapod.solve.linear.channels import Channel
-from flexapod.solve.linear.floor import gravity_forces, tilt_stiffness, turning_forces
+from flexapod.solve.linear.floor import tilt_stiffness, turning_forces
+from flexapod.solve.linear.gravity import gravity_forces
 from flexapod.solve.linear.motions import coordinate_names, held_motions, on_motions
 from flexapod.solve.linear.plant import Plant
 from flexapod.solve.modal.modes import mass_on_motions, no_mass

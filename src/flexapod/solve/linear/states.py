@@ -137,7 +137,7 @@ def _unit(robot: Robot, channel: Channel) -> str:
     match channel.group:
         case "wrench":
             return "N" if channel.axis < 3 else "N m"
-        case "tool":
+        case "tool" | "tool-base":
             return "m" if channel.axis < 3 else "rad"
         case "floor":
             return "m/s^2" if channel.axis < 3 else "rad/s^2"
@@ -147,7 +147,7 @@ def _unit(robot: Robot, channel: Channel) -> str:
             return "rad/s^2" if crank else "m/s^2"
         case "stroke" | "encoder":
             return "rad" if crank else "m"
-        case "com":
+        case "com" | "com-base":
             return "m"
         case "accelerometer":
             return "m/s^2"
@@ -168,7 +168,7 @@ def descriptor_of(plant: Plant, inputs: Sequence[Channel], outputs: Sequence[Cha
     M, D, K = (x[0] for x in on_motions(system, plant.m, np.eye(system.size)[None]))
     m = len(inputs)
     seen = Seen(plant=plant, second=second, first=condensed(second), inputs=inputs)
-    places = [c for c in outputs if c.group in ("tool", "com", "stroke", "encoder")]
+    places = [c for c in outputs if c.group in ("tool", "com", "tool-base", "com-base", "stroke", "encoder")]
     B, B_rate = second.forces[0].copy(), np.zeros((system.size, m))
     for k, channel in enumerate(inputs):
         if channel.group == "command" and not system.held[channel.leg, plant.port[channel.leg]]:
