@@ -283,11 +283,23 @@ class TestRefused:
         ("wrench", "geophone:tool[-1 Hz]", "is no geophone"),
         ("force:joint-9", "tool", "joint-1 to joint-6"),
         ([], "tool", "are none"),
+        ("force-sensor", "tool", "is not a channel"),
         ("drive", "tool", "hold their positions.*drives = \"force\""),
     ])  # fmt: skip
     def test_names(self, inputs, outputs, words):
         with pytest.raises(fx.InputError, match=words):
             fx.linearize(fx.preset("paper-robot"), inputs=inputs, outputs=outputs)
+
+    def test_a_base_that_turns_in_a_plane(self):
+        planar = fx.load("examples/mechanisms/planar.toml")
+        assert fx.linearize(planar, inputs="floor", outputs="tool").inputs == AXES
+        with pytest.raises(fx.InputError, match="floor:x to floor:z"):
+            fx.linearize(planar, inputs="floor:rz", outputs="tool")
+
+    def test_channels_of_a_platform_that_is_fixed(self):
+        strut = fx.load("examples/mechanisms/strut.toml")
+        with pytest.raises(fx.InputError, match="platform is fixed"):
+            fx.linearize(strut, inputs="wrench", outputs="stroke")
 
     def test_settings(self):
         with pytest.raises(fx.InputError, match="drives"):

@@ -47,6 +47,8 @@ class LinearModel(StateSpace):
     friction : {"sliding", "stuck"}
     position, quaternion : ndarray, shapes (3,), (4,)
         Of the payload's centre of mass [m] and its attitude, at the equilibrium.
+    about : ndarray, shape (3,)
+        Point about which the floor turns [m].
     plant : Plant
         The robot that it is of, in arrays.
     """
@@ -57,6 +59,7 @@ class LinearModel(StateSpace):
     friction: Friction
     position: Array
     quaternion: Array
+    about: Array
     plant: Plant
 
     def __repr__(self) -> str:
@@ -67,7 +70,8 @@ class LinearModel(StateSpace):
     def descriptor(self) -> Descriptor:
         """M, D, K, G, B, C in the flat coordinates of the equations, with names, Eq. (T20.1)."""
         robot = self.plant.robot
-        return descriptor_of(self.plant, asked(self.inputs, robot, "inputs"), asked(self.outputs, robot, "outputs"))
+        inputs, outputs = asked(self.inputs, robot, "inputs"), asked(self.outputs, robot, "outputs")
+        return descriptor_of(self.plant, inputs, outputs, self.about)
 
 
 @one_thread()
@@ -218,7 +222,7 @@ def _grid(
     )
 
 
-#: Matrices of a grid: their field of `Grid`, and dimensions.
+#: Matrices of a grid: their field of `PoseMatrices`, and dimensions.
 MATRICES = {
     "mass": ("M", ("pose", "motion", "motion_by")),
     "damping": ("D", ("pose", "motion", "motion_by")),
@@ -243,7 +247,7 @@ def _model(study: model.Study, plant: Plant, **matrices: object) -> LinearModel:
         **matrices,  # type: ignore[arg-type]
         study=_name(study), pose=dict(zip(model.AXES, pose.tolist(), strict=True)), drives=plant.drives,
         friction=plant.locked.simulation.friction, position=plant.x.pose[0, :3], quaternion=plant.x.pose[0, 3:],
-        plant=plant,
+        about=_about(study), plant=plant,
     )  # fmt: skip
 
 
