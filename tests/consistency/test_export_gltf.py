@@ -6,21 +6,29 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.consistency.test_mounts import BASE, TOP
 from tests.readers import GlbReader, z_up
 
 import flexapod as fx
 from flexapod.kinematics.rotations import matrix
-from flexapod.model import override
+from flexapod.model import Guide, override
 from flexapod.results.names import VARIABLES
 from flexapod.scene.geometry import RobotMotion
 
 SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 SIDES, STATIONS = 16, 25
 FLOAT32 = 2.0**-23  # of a number: what its storage may lose; half of it by rounding
-ROBOTS = ("paper-robot", "tripod", "hexaglide", "delta", "planar")
+ROBOTS = ("paper-robot", "tripod", "hexaglide", "delta", "planar", "in bushings", "on mounts")
 
 
 def study_of(name):
+    study = fx.preset("paper-robot")
+    robot = study.robot
+    if name == "in bushings":
+        legs = tuple(leg.replace(guide=Guide(gland=2e8, head=2e8)) for leg in robot.legs)
+        return override(study.replace(robot=robot.replace(legs=legs)), output_step=0.05)
+    if name == "on mounts":
+        return override(study.replace(robot=robot.replace(base_mount=BASE, platform_mount=TOP)), output_step=0.05)
     study = fx.load(SAMPLES / f"{name}.toml") if (SAMPLES / f"{name}.toml").exists() else fx.preset(name)
     return override(study, output_step=0.02)
 
@@ -67,7 +75,11 @@ def test_tips_meet_the_platform_and_pistons_lie_where_the_page_draws_them(motion
     lost = 8 * FLOAT32 * size
     second = np.abs(data.tip_deflection.values).max() ** 2 / size
     for k in instants(data):
-        tips = centre[k] + study.robot.platform_joints @ R[k].T
+        joints = study.robot.platform_joints
+        if study.robot.platform_mount is not None:  # they give way in platform axes
+            arms, turn = joints - study.robot.platform_mount.at, data.platform_mount_rotation.values[k]
+            joints = joints + data.platform_mount_displacement.values[k] + np.cross(turn, arms)
+        tips = centre[k] + joints @ R[k].T
         flexible = drawn.at(float(data.time[k]), 1.0).flexible
         for i in range(study.robot.count):
             line = rings(z_up(file.vertices(f"piston_{i + 1}", k)))

@@ -102,6 +102,18 @@ def test_pyuff_reads_them(model, tmp_path):
         assert one["data"] == pytest.approx(values[i, j], rel=2e-12)
 
 
+def test_read_frf_has_them_back(model, tmp_path):
+    """By the package's own reader of measurements: names, units, numbers."""
+    data = model.frequency_response(np.linspace(5, 200, 40))
+    path = tmp_path / "robot.uff"
+    path.write_text(uff(data), encoding="ascii")
+    read = fx.read_frf(path).sel(output=data.output.values, input=data.input.values)
+    assert read.output_units.values.tolist() == data.output_units.values.tolist()
+    assert read.input_units.values.tolist() == data.input_units.values.tolist()
+    ours, theirs = (x.frequency_response.transpose("output", "input", "frequency", "part").values for x in (data, read))
+    assert theirs == pytest.approx(ours, rel=1e-11, abs=1e-12 * np.abs(ours).max())
+
+
 def test_other_results_are_no_responses():
     with pytest.raises(fx.InputError, match="no response over frequency"):
         uff(fx.stiffness(STUDY))

@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.kinematics import rigid_limbs
-from flexapod.model import AxisMotion, ConstantWrench, ForceDrive, Guide, Load
+from flexapod.kinematics import poses, rigid_limbs
+from flexapod.model import AxisMotion, CombinedMotion, ConstantWrench, ForceDrive, Guide, Load, override
 from flexapod.results.names import VARIABLES
+from flexapod.verify.engines import mujoco_forces
+from flexapod.verify.engines.mujoco_rest import AtRest
 
 mujoco = pytest.importorskip("mujoco")
 
@@ -20,70 +22,25 @@ SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 PRESETS = ("paper-robot", "machine-hexapod", "tripod", "flight-simulator", "nano-hexapod", "small-hexapod")
 FILES = ("delta", "eight-legs", "flexures", "hexaglide", "planar", "tricept")
 GUIDE = Guide(gland=2e8, head=2e8)
-LEAST = 1e-14  # m, rad: a step of Newton's that is rounding
 
 
 def study_of(name):
     return fx.preset(name) if name in PRESETS else fx.load(SAMPLES / f"{name}.toml")
 
 
-class Model:
-    """A file in MuJoCo at its keyframe: `rest` is where all accelerations vanish, by Newton on differences."""
+def model_of(found):
+    return AtRest(found.path.read_text(encoding="ascii"))
 
-    def __init__(self, path):
-        self.model = mujoco.MjModel.from_xml_path(str(path))
-        self.model.opt.tolerance, self.model.opt.iterations = 0, 50
-        self.data = mujoco.MjData(self.model)
-        mujoco.mj_resetDataKeyframe(self.model, self.data, 0)
-        self.payload, self.home = self.model.body("payload").id, self.data.qpos.copy()
 
-    def needed(self, q, wrench):
-        """Forces on all coordinates at rest, with a wrench (6,) at the tool."""
-        model, data = self.model, self.data
-        data.qpos[:], data.qvel[:], data.qacc_warmstart[:] = q, 0.0, 0.0
-        mujoco.mj_kinematics(model, data)
-        arm = data.site("tool").xpos - data.xipos[self.payload]
-        data.xfrc_applied[self.payload] = np.r_[wrench[:3], wrench[3:] + np.cross(arm, wrench[:3])]
-        mujoco.mj_forward(model, data)
-        found = np.zeros(model.nv)
-        mujoco.mj_mulM(model, data, found, data.qacc)
-        return found
-
-    def moved(self, q, step):
-        q = q.copy()
-        mujoco.mj_integratePos(self.model, q, step, 1.0)
-        return q
-
-    def slopes(self, q):
-        still, size, e = np.zeros(6), self.model.nv, 1e-7
-        rows = [self.needed(self.moved(q, s * e * x), still) for x in np.eye(size) for s in (1, -1)]
-        return np.array([(a - b) / (2 * e) for a, b in zip(rows[::2], rows[1::2], strict=True)]).T
-
-    def rest(self, q, wrench, slopes):
-        for _ in range(40):
-            step = np.linalg.solve(slopes, -self.needed(q, wrench))
-            q = self.moved(q, step)
-            if np.abs(step).max() < LEAST:
-                break
-        return q
-
-    def tool(self, q):
-        self.data.qpos[:] = q
-        mujoco.mj_kinematics(self.model, self.data)
-        return self.data.site("tool").xpos.copy(), self.data.site("tool").xmat.reshape(3, 3).copy()
-
-    def compliance(self, expected):
-        """Motions of the tool under small wrenches, (6, n), n: those that move it, by the compliances expected (6,)."""
-        start = self.slopes(self.home)
-        middle = self.rest(self.home, np.zeros(6), start)
-        slopes = self.slopes(middle)
-        columns = []
-        for k in np.flatnonzero(expected):
-            force = 1e-6 / expected[k] * np.eye(6)[k]  # moves it by a micrometre or microradian
-            (p, R), (o, S) = (self.tool(self.rest(middle, sign * force, slopes)) for sign in (1, -1))
-            turn = (R @ S.T - S @ R.T) / 2
-            columns.append(np.r_[p - o, turn[2, 1], turn[0, 2], turn[1, 0]] / (2 * force[k]))
-        return np.array(columns).T
+def test_lumped_legs_only_stretch(tmp_path):
+    """Along the legs alone, in one piece: the stiffness of `lumped` to 1e-4, by steps of some 10 us."""
+    study = override(fx.preset("paper-robot"), fidelity="lumped")
+    model = model_of(fx.export(study, "mjcf", tmp_path / "robot.xml"))
+    ours = fx.stiffness(study).stiffness.values
+    theirs = np.linalg.inv(model.compliance(np.diag(np.linalg.inv(ours))))
+    scale = np.sqrt(np.diag(ours))
+    assert np.abs((theirs - ours) / np.outer(scale, scale)).max() < 1e-4
+    assert model.model.opt.timestep > 1e-5 and "bend_1" not in (tmp_path / "robot.xml").read_text()
 
 
 @pytest.mark.parametrize("name", [*PRESETS, *FILES])
@@ -98,7 +55,7 @@ def test_static_stiffness_is_that_of_the_study(name, tmp_path):
     ours = fx.stiffness(study, load=np.zeros(6)).stiffness.values[np.ix_(free, free)]
     expected = np.zeros(6)
     expected[free] = np.diag(np.linalg.inv(ours))
-    model = Model(fx.export(study, "mjcf", tmp_path / "robot.xml"))
+    model = model_of(fx.export(study, "mjcf", tmp_path / "robot.xml"))
     theirs = np.linalg.inv(model.compliance(expected)[free])
     scale = np.sqrt(np.diag(ours))
     assert np.abs((theirs - ours) / np.outer(scale, scale)).max() < 1e-3
@@ -111,7 +68,7 @@ def test_rigid_robots_come_to_rest_on_the_forces_of_inverse_dynamics(name, tmp_p
     Without that servos give by micrometres of a metre, which turns legs and moves forces by as much.
     """
     study = study_of(name)
-    model = Model(fx.export(study, "mjcf", tmp_path / "robot.xml", fidelity="rigid"))
+    model = model_of(fx.export(study, "mjcf", tmp_path / "robot.xml", fidelity="rigid"))
     data, slopes, q = model.data, model.slopes(model.home), model.home
     joints = model.model.jnt_qposadr[model.model.actuator_trnid[:, 0]]
     for _ in range(2):
@@ -133,13 +90,28 @@ def test_rigid_robots_come_to_rest_on_the_forces_of_inverse_dynamics(name, tmp_p
     assert np.abs(data.efc_pos).max() < 1e-9 and np.abs(data.qvel).max() < 1e-6
 
 
-def test_a_run_of_steps_stays_closed_and_sags_as_the_study_does(tmp_path):
-    """Half a second of steps, the payload in syrup: the sag of `modes` to 1 %, loops closed to 10 nm.
+@pytest.mark.parametrize("name", ["paper-robot", "tripod", "flight-simulator"])
+def test_rigid_trees_need_the_forces_of_inverse_dynamics_in_motion(name, tmp_path):
+    """MuJoCo's inverse dynamics of the trees in the file, to 1e-6 of the largest force.
 
-    The weight of a piston, here 3 kg of 20 that a leg carries, stretches it in MuJoCo as if all of it stood at the tip.
+    What turns between pistons and platform without mass has a ten-millionth of the payload's inertia there.
+    """
+    study = study_of(name)
+    motion = CombinedMotion(amplitudes={"heave": 0.02, "roll": 0.1, "pitch": -0.08}, duration=0.4)
+    text = fx.export(study, "mjcf", tmp_path / "robot.xml", fidelity="rigid").path.read_text(encoding="ascii")
+    ours = fx.inverse_dynamics(study.robot, motion, output_step=0.02)
+    theirs = mujoco_forces.inverse_dynamics(study.robot, poses(study.robot, motion, ours.time.values), text=text)
+    largest = np.abs(ours.drive_force_rigid.values).max()
+    assert theirs.actuator_force == pytest.approx(ours.drive_force_rigid.values, abs=1e-6 * largest)
+
+
+def test_a_run_of_steps_stays_closed_and_sags_as_the_study_does(tmp_path):
+    """Half a second of steps, the payload in syrup: the sag of `modes` to 1e-3, loops closed to 10 nm.
+
+    The weight of a piston stretches it by half of what it would at the tip: the cut in its middle is made for that.
     """
     study = fx.preset("paper-robot")
-    model = Model(fx.export(study, "mjcf", tmp_path / "robot.xml"))
+    model = model_of(fx.export(study, "mjcf", tmp_path / "robot.xml"))
     model.model.opt.tolerance = 1e-10
     mujoco.mj_forward(model.model, model.data)
     start = model.data.site("com").xpos.copy()
@@ -147,8 +119,24 @@ def test_a_run_of_steps_stays_closed_and_sags_as_the_study_does(tmp_path):
     for _ in range(int(0.5 / model.model.opt.timestep)):
         mujoco.mj_step(model.model, model.data)
     sag = fx.modes(study, load=np.zeros(6)).com_sag.values
-    assert model.data.site("com").xpos - start == pytest.approx(sag, abs=1e-2 * np.abs(sag).max())
+    assert model.data.site("com").xpos - start == pytest.approx(sag, abs=1e-3 * np.abs(sag).max())
     assert np.abs(model.data.efc_pos).max() < 1e-8
+
+
+@pytest.mark.parametrize("name", ["paper-robot", "tripod", "nano-hexapod", "flexures", "delta", "hexaglide"])
+def test_lowest_mode_is_that_of_the_study(name, tmp_path):
+    """Of MuJoCo's masses and slopes at rest; the lowest mode, of payload on legs, to 2e-3.
+
+    A piston's mass, some per cent of what a leg carries, stands in two pieces in place of a beam.
+    """
+    study = study_of(name)
+    model = model_of(fx.export(study, "mjcf", tmp_path / "robot.xml"))
+    q = model.rest(model.home, np.zeros(6), model.slopes(model.home))
+    slopes, M = model.slopes(q), np.zeros((model.model.nv, model.model.nv))
+    mujoco.mj_fullM(model.model, model.data, M)
+    squared = np.linalg.eigvals(np.linalg.solve(M, -slopes)).real
+    lowest = np.sqrt(squared[squared > 1.0].min()) / (2 * np.pi)
+    assert lowest == pytest.approx(fx.modes(study, load=np.zeros(6)).frequency.values[0], rel=2e-3)
 
 
 def test_names_are_those_of_results_and_nothing_else_is_told(tmp_path):
@@ -172,6 +160,6 @@ def test_what_is_lost_is_said(tmp_path):
         fx.export(guided, "mjcf", tmp_path / "g.xml")
     assert "all that gives way" in fx.export(guided, "mjcf", tmp_path / "g.xml", fidelity="rigid").left_out[1]
     pushed = robot.replace(legs=tuple(leg.replace(drive=ForceDrive(law="rigid")) for leg in robot.legs))
-    model = Model(fx.export(pushed, "mjcf", tmp_path / "b.xml"))
+    model = model_of(fx.export(pushed, "mjcf", tmp_path / "b.xml"))
     ours = fx.inverse_dynamics(robot, AxisMotion(type="heave", amplitude=0.0, duration=1.0)).actuator_force_rigid
     assert model.data.ctrl == pytest.approx(ours.values[0], rel=1e-12)  # motors hold the robot at home

@@ -24,6 +24,7 @@ from flexapod.symbolic.compiler import compiler
 
 pytestmark = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
 STEP = 5e-4
+EXAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 
 
 @pytest.fixture(scope="module")
@@ -227,6 +228,21 @@ def test_c_under_sanitizers_is_the_unit_to_the_bit(units, tmp_path):
     assert not re.search(r"\b(malloc|calloc|free|printf)\s*\(", text)
     assert not re.search(r"^static (?!const|inline|void|int|long|double|lanes|Settings|State|Instance|Work|Remembered|"
                          r"__attribute__|size_t)", text, re.M)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["delta", "flexures", "planar", "strut", "tricept"])
+def test_c_of_other_mechanisms_is_their_march(tmp_path, name):
+    """Hinges, flexures with six closures a leg, a plane, struts, unlike legs: the tool to 1e-12 m."""
+    study = fx.load(EXAMPLES / f"{name}.toml")
+    fx.export(study, "c", tmp_path / "c", commands="motion", step=2e-4)
+    subprocess.run(
+        [*compiler(), *FLAGS, "-O1", "robot.c", "main.c", "-lm", "-o", "run"], cwd=tmp_path / "c", check=True
+    )
+    said = subprocess.run(["./run", "40"], cwd=tmp_path / "c", check=True, capture_output=True, text=True).stdout
+    found = dict(line.rsplit(" ", 1) for line in said.splitlines()[:-2])
+    data = fx.simulate(study, step=2e-4, output_step=2e-4, duration=40 * 2e-4)
+    tool = np.array([float(found[f"tool_position[{k}]"]) for k in (1, 2, 3)])
+    assert np.abs(tool - data.tool_position.values[-1]).max() < 1e-12
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import expm
 
 import flexapod as fx
-from flexapod.control.function import Function
+from flexapod.control import Function, StateSpace
 from flexapod.errors import InputError
 from flexapod.symbolic.compiler import compiler
 
@@ -58,14 +58,14 @@ class Law:
     c: float
     d: float
     readings: tuple[str, ...] = FORCES
-    sample: float = T
 
-    inputs = property(lambda self: self.readings)
-    outputs = DRIVES
-    A = property(lambda self: self.a * np.eye(6))
-    B = property(lambda self: self.b * np.eye(6))
-    C = property(lambda self: self.c * np.eye(6))
-    D = property(lambda self: self.d * np.eye(6))
+    def system(self) -> StateSpace:
+        """The law of all legs."""
+        each = np.eye(6)
+        return StateSpace(
+            A=self.a * each, B=self.b * each, C=self.c * each, D=self.d * each, inputs=self.readings, outputs=DRIVES,
+            states=tuple("abcdef"), units={}, sample=T,
+        )  # fmt: skip
 
 
 def integral(gain: float, leak: float = 0.0) -> Law:
@@ -161,7 +161,7 @@ def test_the_payload_moves_as_the_exact_recursion_says(study, name):
     of an oscillation that is half of the largest displacement and damped; a leg's 0.5 um adds geometry of 1e-6. A
     reading next to the middle of two steps is rounded to either."""
     law, given, own = LAWS[name]
-    data = fx.simulate(study, controller=law, step=T / 40, **given)
+    data = fx.simulate(study, controller=law.system(), step=T / 40, **given)
     z, _, _ = Heave().run(law, len(data.time), **own)
     assert np.abs(heave(data) - z).max() < (4e-3 if name == "in steps" else 8e-4) * np.abs(z).max()
 
@@ -171,7 +171,7 @@ def test_order_two(study):
     law = LAWS["force, its sum"][0]
     errors = []
     for parts in (10, 20, 40):
-        data = fx.simulate(study, controller=law, step=T / parts)
+        data = fx.simulate(study, controller=law.system(), step=T / parts)
         z, _, _ = Heave().run(law, len(data.time))
         errors.append(np.abs(heave(data) - z).max())
     np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])), 2.0, atol=0.1)
@@ -179,7 +179,7 @@ def test_order_two(study):
 
 def test_within_a_tolerance(study):
     law = LAWS["one sample late"][0]
-    data = fx.simulate(study, controller=law, tolerance=1e-6, delay_samples=1)
+    data = fx.simulate(study, controller=law.system(), tolerance=1e-6, delay_samples=1)
     z, _, _ = Heave().run(law, len(data.time), delay=1)
     assert np.abs(heave(data) - z).max() < 2e-5 * np.abs(z).max()
 
@@ -187,7 +187,7 @@ def test_within_a_tolerance(study):
 def test_readings_and_outputs_are_those_of_the_recursion(study):
     """What stands beside an instant was read and held before it: the reading of a leg's force, of which F is a part."""
     law = LAWS["force, its sum"][0]
-    data = fx.simulate(study, controller=law, step=T / 40)
+    data = fx.simulate(study, controller=law.system(), step=T / 40)
     _, read, held = Heave().run(law, len(data.time) - 1)
     assert list(data.sensor.values) == list(FORCES)
     for leg in (0, 3):
@@ -198,7 +198,7 @@ def test_readings_and_outputs_are_those_of_the_recursion(study):
 @pytest.mark.parametrize("law", [integral(120.0, leak=40.0), summed_with_today(120.0, leak=40.0)])
 def test_ring_down_has_the_poles_of_the_closed_loop(study, law):
     """Poles of a recurrence through samples of the ring-down after the step: 1e-3 of the pole."""
-    data = fx.simulate(study, controller=law, step=T / 40, duration=0.25)
+    data = fx.simulate(study, controller=law.system(), step=T / 40, duration=0.25)
     z = np.diff(heave(data)[3:])  # a constant drops out
     order = 4
     rows = np.stack([z[k : len(z) - order + k] for k in range(order)], axis=1)
@@ -223,14 +223,16 @@ def test_limits_of_a_sampled_integrator(study, delay, limit):
     start = {"noise": 1e-3, "seed": 3}
     for gain, grows in ((0.99 * limit, False), (1.01 * limit, True)):
         law = integral(gain / T)
-        data = fx.simulate(heavy, controller=law, step=T, delay_samples=delay, duration=1.0, load=np.zeros(6), **start)
+        data = fx.simulate(
+            heavy, controller=law.system(), step=T, delay_samples=delay, duration=1.0, load=np.zeros(6), **start
+        )
         u = np.abs(data.control_input.values).max(axis=1)
         assert (u[-200:].max() > 30 * u[200:400].max()) == grows
 
 
 def test_energy_closes_with_the_work_of_control(study):
     """To 1e-6 of the most energy in it; the balance of a march is of order 2."""
-    data = fx.simulate(study, controller=LAWS["force, its sum"][0], step=T / 250)
+    data = fx.simulate(study, controller=LAWS["force, its sum"][0].system(), step=T / 250)
     stored = data.energy_kinetic + data.energy_potential + data.energy_strain + data.energy_dissipated
     left = stored - data.work_drive - data.work_external - data.work_control
     assert float(np.abs(left - left[0]).max()) < 1e-6 * float(np.abs(data.work_external).max())
@@ -249,7 +251,7 @@ def test_a_function_gives_the_bits_of_the_law(study, steps):
         return u
 
     called = fx.simulate(study, controller=Function(function=asked, inputs=FORCES, outputs=DRIVES), sample=T, **steps)
-    compiled = fx.simulate(study, controller=law, **steps)
+    compiled = fx.simulate(study, controller=law.system(), **steps)
     np.testing.assert_array_equal(called.tool_position.values, compiled.tool_position.values)
     np.testing.assert_array_equal(called.control_input.values, compiled.control_input.values)
 
@@ -266,7 +268,7 @@ def test_noise(study):
     """The same seed gives the same bits, whatever the pieces of a run; another seed others. A density S one-sided is
     S / (2 T) a sample: over 4800 readings the variance is right to five times sqrt(2 / 4800) = 10 %."""
     still, density = Law(a=0.0, b=0.0, c=0.0, d=0.0), 2e-9
-    given = {"controller": still, "noise": {"force-sensor:drive": {"psd": density}}, "load": np.zeros(6)}
+    given = {"controller": still.system(), "noise": {"force-sensor:drive": {"psd": density}}, "load": np.zeros(6)}
     a, b = (fx.simulate(study, step=T, duration=d, seed=7, **given) for d in (0.4, 0.2))
     np.testing.assert_array_equal(a.sensor_reading.values[: len(b.time)], b.sensor_reading.values)
     other = fx.simulate(study, step=T, duration=0.2, seed=8, **given)
@@ -278,8 +280,8 @@ def test_noise(study):
 def test_samples_off_the_outputs_and_beside_jumps(study):
     """Outputs at 0.3 ms between samples at 0.5 ms; the load jumps at 1 ms, within an output's interval."""
     law = LAWS["force, its sum"][0]
-    fixed = fx.simulate(study, controller=law, step=1e-5, output_step=3e-4)
-    within = fx.simulate(study, controller=law, tolerance=1e-6, output_step=3e-4)
+    fixed = fx.simulate(study, controller=law.system(), step=1e-5, output_step=3e-4)
+    within = fx.simulate(study, controller=law.system(), tolerance=1e-6, output_step=3e-4)
     z, _, _ = Heave().run(law, 200)
     for data in (fixed, within):
         np.testing.assert_allclose(heave(data)[::5], z[::3][: len(data.time[::5])], atol=8e-4 * np.abs(z).max())
@@ -317,7 +319,7 @@ def test_what_is_held_is_not_moved():
 
 def test_ring_down_of_a_nano_hexapod_is_what_the_linear_model_predicts():
     """Force feedback between samples, closed about the linear model: the pole of heave, by a recurrence through samples
-    of the ring-down after 0.1 N. Five pairs show in heave; steps of 6 us shift a pole of 1700 rad/s by 1e-5 of itself."""
+    of the ring-down after 0.1 N. Five pairs show in heave; steps of 6 us shift a pole of 1700 rad/s by 1e-5."""
     period = 1e-4
     text = fx.model.preset_text("nano-hexapod")
     start = text.index("amplitudes =")
@@ -330,11 +332,30 @@ def test_ring_down_of_a_nano_hexapod_is_what_the_linear_model_predicts():
     data = fx.simulate(
         still, controller=law, sample=period, step=period / 16, output_step=period, duration=0.1, load=load
     )
-    z, order = np.diff(heave(data)[10:]), 10
-    rows = np.stack([z[k : len(z) - order + k] for k in range(order)], axis=1)
-    found = np.roots([1.0, *-np.linalg.lstsq(rows, z[order:], rcond=None)[0][::-1]])
-    found = np.log(found[(found.imag > 1e-4) & (np.abs(found) > 0.9)]) / period
-    slowest = found[np.abs(found).argmin()]
+    slowest = next(x for x in fx.control.ring_down(heave(data)[10:], period) if x.imag > 1)
     nearest = predicted[np.abs(predicted - slowest).argmin()]
     assert abs(slowest - nearest) < 1e-4 * abs(nearest)
     assert -nearest.real / abs(nearest) > 5 * 0.0088  # it is the controller that damps
+
+
+def test_adaptive_damping_in_the_march(study):
+    """Damping that finds its frequency, heave at 171 Hz tracked from 120 Hz after a push of half a period: what the
+    same gain on the rate itself makes, (g + c) w / (2 k), within a tenth (the oscillator follows late)."""
+    times, zero = np.array([0, 1e-3, 1e-3, 4e-3, 4e-3, 1.0]), np.zeros((6, 6))
+    push = zero + np.outer([0, 0, 1, 1, 0, 0], [0, 0, F, 0, 0, 0])
+    load = fx.model.Load(wrench=fx.model.CsvWrench(time=times, wrench=push))
+    law = fx.control.AdaptiveDamping(gain=90.0, tracker=fx.control.Tracker(frequency=120.0, speed=200.0))
+    data = fx.simulate(study, controller=law, sample=T / 2, step=T / 20, duration=0.12, load=load)
+    pole = next(x for x in fx.control.ring_down(heave(data)[60:], T, order=4) if x.imag > 1)
+    w = np.sqrt(6 * height() ** 2 * K / M)
+    assert -pole.real / abs(pole) == pytest.approx((90.0 + C) * w / (2 * K), rel=0.1)
+
+
+def test_poles_of_a_ring_down():
+    """Two vibrations and an offset, known poles, to rounding; too few samples are refused."""
+    t, poles = 1e-3 * np.arange(400), np.array([-5 + 200j, -30 + 900j])
+    x = 0.7 + np.real(np.exp(poles[:, None] * t) * np.array([[1.0], [0.3j]])).T @ np.ones((2, 1))
+    found = fx.control.ring_down(x, "1 kHz", order=4)
+    np.testing.assert_allclose(found, poles, rtol=1e-8)
+    with pytest.raises(InputError, match="are too few"):
+        fx.control.ring_down(x[:8], 1e-3, order=10)

@@ -7,6 +7,8 @@ import flexapod as fx
 from flexapod.errors import InputError
 from flexapod.model import preset_text
 from flexapod.model.study import to_toml
+from flexapod.surveys.sweeps.plan import read_plan
+from flexapod.surveys.sweeps.points import Points
 from flexapod.symbolic.compiler import compiler
 
 IFF = """
@@ -73,3 +75,9 @@ def test_settings_of_a_call_stand_in_place_of_those_of_the_table():
 def test_refusals(table, preset, words):
     with pytest.raises(InputError, match=words):
         study(table, preset)
+
+
+def test_keys_of_the_table_are_those_of_sweeps():
+    sweep = read_plan({"vary": [{"key": "control.gain", "values": [100.0, 300.0]}]})
+    found = Points(study(IFF), sweep)
+    assert [found.study(k).control.gain for k in (0, 1)] == [100.0, 300.0]

@@ -12,7 +12,7 @@ from flexapod import model
 from flexapod.exchange.c_source_data import OF_PAYLOAD, Channel, Marched, marched
 from flexapod.exchange.written import Written
 from flexapod.integration import GeneralizedAlpha
-from flexapod.solve.kernel import FOR_LOOPS, text_of_one_unit
+from flexapod.solve.kernel import FOR_LOOPS, Equations, text_of_one_unit
 from flexapod.solve.time import native
 from flexapod.solve.time.pieces import NODES
 from flexapod.solve.time.recording import record_shapes
@@ -137,8 +137,7 @@ def _numbers(found: Marched) -> str:
     """All numbers of the robot."""
     system, start, robot = found.march.system, found.start, found.study.robot
     table, load = found.law(np.zeros(1))
-    equations = system.kernel.equations
-    size = system.n
+    equations, size = _known(found), system.n
     read = dict(zip(("HELD", "HUB_HELD", "LEG_P", "JOINT_P", "PAYLOAD_P"), system.as_read_by_c, strict=True))
     arrays = read | {
         "BASE_TABLE": table, "BASE_LOAD": load, "EDGES": found.edges, "SERIES": found.series,
@@ -169,9 +168,16 @@ def _numbers(found: Marched) -> str:
     )
 
 
+def _known(found: Marched) -> Equations:
+    """What compiled loops know of the equations; `marched` refuses others."""
+    equations = found.march.system.kernel.equations
+    if equations is None:
+        raise RuntimeError("these equations are not compiled")
+    return equations
+
+
 def _equations(found: Marched) -> str:
-    system = found.march.system
-    equations = system.kernel.equations
+    equations = _known(found)
     there = [name for name in FOR_LOOPS if getattr(equations, name)]
     kinds = {name: "double" if name.startswith("payload") else "lanes" for name in there}
     fields = [f".{name} = {getattr(equations, name)}" for name in _COUNTS]

@@ -119,7 +119,7 @@ def marched(study: model.Study, commands: str, step: float | None) -> Marched:
     return Marched(
         study=study, march=march, law=problem.tables, commanded=commanded, row=row[0], **parts,
         inputs=_inputs(study, march, parts, commanded), outputs=outputs, edges=edges, series=series,
-        matrix=matrix, offset=offset, left_out=_left_out(march, commanded),
+        matrix=matrix, offset=offset, left_out=_left_out(study, march, commanded),
     )  # fmt: skip
 
 
@@ -176,7 +176,7 @@ def _outputs(study: model.Study, march: RobotMarch, row: Array) -> tuple[Array, 
     rows[:, moved] = 0.0
     rows[np.arange(len(moved)) + 1, moved] += 1.0
     rows[-1, moved] += np.sin(np.arange(len(moved)))
-    forms = VARIABLES | drive_forms(robot)
+    forms = {**VARIABLES, **drive_forms(robot)}
     matrices, offsets, channels, first = [], [], [], 0
 
     def add(name: str, shape: tuple[int, ...], matrix: Array, offset: Array) -> None:
@@ -230,8 +230,10 @@ def _record(march: RobotMarch, rows: Array) -> Record:
     )  # fmt: skip
 
 
-def _left_out(march: RobotMarch, commanded: bool) -> tuple[str, ...]:
+def _left_out(study: model.Study, march: RobotMarch, commanded: bool) -> tuple[str, ...]:
     found = ["steps within a tolerance, the rigid path and all deviations from it, figures: `flexapod run` has them"]
+    if study.control is not None:
+        found.append("the controller of [control]: its forces come in as control_input")
     if not commanded and (march.problem.stops.ends or march.problem.stops.inside):
         found.append("ends of steps on jumps of commands and loads: next to them forces are of first order in the step")
     return tuple(found)

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexapod import kinematics, model
 from flexapod.elements.known import refuse_tables
-from flexapod.exchange.mjcf_springs import Drive, Springs, flexible_springs, rigid_springs
+from flexapod.exchange.mjcf_springs import Drive, LegSprings, flexible_springs, rigid_springs
 from flexapod.exchange.mjcf_trees import LEAST, Gives, leg_body, numbers, payload_inertia
 from flexapod.exchange.written import Written
 from flexapod.kinematics.rotations import quaternion
@@ -61,14 +61,15 @@ def left_out(study: model.Study, rigid: bool) -> list[str]:
     else:
         found += ["how stiffness changes with the stroke: springs are those at home"]
         found += ["modes of the pistons: each bends in one place, statically exact at home"]
-        found += ["stretch by its own weight that a piston does not have at its end: it stretches as if it were there"]
         found += ["inertia of rotors"] * any(leg.screw is not None for leg in robot.legs)
         found += ["damping ratios of the pistons"]
     found += ["friction"] * any(
         x.friction for leg in robot.legs for x in (leg.base_joint, leg.platform_joint, leg.drive)
     )
     found += ["play"] * any(leg.half_play for leg in robot.legs)
+    found += ["oil that leaks"] * any(leg.cylinder_of_oil is not None for leg in robot.legs)
     found += ["limits of strokes and joints"]
+    found += ["[control]: the loop of a controller"] * (study.control is not None)
     found += ["[load]: forces come from outside, as xfrc_applied"] * (study.load.wrench is not None)
     found += ["robot.base_motion: the base is at rest"] * (robot.base_motion is not None)
     mounts = [f"robot.{name}: its frame does not move" for name in ("base_mount", "platform_mount")
@@ -77,14 +78,14 @@ def left_out(study: model.Study, rigid: bool) -> list[str]:
     return [*found, *mounts, *tables]
 
 
-def _remark(springs: Springs) -> str:
+def _remark(springs: LegSprings) -> str:
     return (
         f"Steps of {springs.step:.2g} s: springs have dampers that bring them to rest in one, and loops are springs "
         f"themselves, {STEPS} steps fast; longer steps need both slower."
     )
 
 
-def _comment(springs: Springs, rigid: bool, missing: list[str]) -> Iterator[str]:
+def _comment(springs: LegSprings, rigid: bool, missing: list[str]) -> Iterator[str]:
     drives = (
         "Commands: leg_length_command_i, joint to joint, or drive_command_i of a carriage; actuator_force_i or "
         "drive_force_i where the drive is a force. Names and signs are those of results of flexapod."
@@ -127,7 +128,7 @@ def _payload(robot: model.Robot, limbs: kinematics.Limbs) -> Iterator[str]:
     yield "</body>"
 
 
-def _closures(limbs: kinematics.Limbs, springs: Springs) -> Iterator[str]:
+def _closures(limbs: kinematics.Limbs, springs: LegSprings) -> Iterator[str]:
     time = STEPS * springs.step
     how = f'solref="{numbers([-1 / time**2, -2 / time])}" solimp="{HARD}"'
     for i, gives in enumerate(springs.gives, start=1):
@@ -141,10 +142,10 @@ def _closures(limbs: kinematics.Limbs, springs: Springs) -> Iterator[str]:
 
 def _end(gives: Gives, i: int) -> tuple[str, float]:
     """The body that ends in the platform joint, and where that is on its axis z [m]."""
-    return (f"piston_{i}", 0.0) if gives.turn is None else (f"bend_{i}", 0.5 * gives.free)
+    return (f"piston_{i}", 0.0) if gives.piston is None else (f"bend_{i}", 0.5 * gives.piston.free)
 
 
-def _actuators(springs: Springs) -> Iterator[str]:
+def _actuators(springs: LegSprings) -> Iterator[str]:
     for i, drive in _numbered(springs):
         if drive.servo is not None:
             yield (
@@ -155,7 +156,7 @@ def _actuators(springs: Springs) -> Iterator[str]:
             yield f'<motor name="{NAMES[drive.on][1]}_{i}" joint="{drive.on}_{i}"/>'
 
 
-def _home(robot: model.Robot, springs: Springs) -> list[float]:
+def _home(robot: model.Robot, springs: LegSprings) -> list[float]:
     """Commands at home; forces are those that hold the rigid robot."""
     pushed = any(drive.push for _, drive in _numbered(springs))
     force = rigid_forces(robot, as_pose(robot, None), np.zeros((1, 6))).drive_force[0] if pushed else np.zeros(0)
@@ -166,7 +167,7 @@ def _home(robot: model.Robot, springs: Springs) -> list[float]:
     return found
 
 
-def _sensors(robot: model.Robot, limbs: kinematics.Limbs, springs: Springs) -> Iterator[str]:
+def _sensors(robot: model.Robot, limbs: kinematics.Limbs, springs: LegSprings) -> Iterator[str]:
     for point in ("com", "tool"):
         yield f'<framepos name="{point}_position" objtype="site" objname="{point}"/>'
     yield '<framequat name="platform_quaternion" objtype="xbody" objname="payload"/>'
@@ -181,5 +182,5 @@ def _sensors(robot: model.Robot, limbs: kinematics.Limbs, springs: Springs) -> I
         yield f'<jointactuatorfrc name="{NAMES[drive.on][1]}_{i}" joint="{drive.on}_{i}"/>'
 
 
-def _numbered(springs: Springs) -> Iterator[tuple[int, Drive]]:
+def _numbered(springs: LegSprings) -> Iterator[tuple[int, Drive]]:
     return ((i, drive) for i, drive in enumerate(springs.drives, start=1) if drive is not None)

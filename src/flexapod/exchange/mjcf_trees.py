@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from flexapod import kinematics
 from flexapod.arrays import Array
@@ -18,7 +19,7 @@ ACROSS, ALONG = np.eye(3)[:2], np.eye(3)[2]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Spring:
+class JointSpring:
     """A spring in a joint: `stiffness` [N/m, N m/rad], `damping` [N s/m, N m s/rad], `armature` [kg, kg m^2]."""
 
     stiffness: float = 0.0
@@ -33,20 +34,30 @@ class Spring:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Bending:
+    """Springs of a piston in the middle of its `free` part [m], where force and moment do not couple.
+
+    `across`, `along` [N/m], `turn`, `twist` [N m/rad]; None: it does not twist.
+    """
+
+    free: float
+    across: JointSpring
+    along: JointSpring
+    turn: JointSpring
+    twist: JointSpring | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class Gives:
     """What gives way in a leg beside the coordinates of the rigid one.
 
-    `joints`: springs by coordinate; `base`: at the base joint by leg axis, x, y, z; `across`, `turn`, `twist`: of the
-    piston in the middle of its `free` part [m], where force and moment do not couple. None: that does not give way.
+    `joints`: springs by coordinate; `base`: at the base joint by leg axis, x, y, z; `piston`: None, it is one piece.
     `begin`: what the coordinate of the carriage is at home [m, rad].
     """
 
-    joints: Mapping[str, Spring] = field(default_factory=dict)
-    base: Mapping[str, Spring] = field(default_factory=dict)
-    across: Spring | None = None
-    turn: Spring | None = None
-    twist: Spring | None = None
-    free: float = 0.0
+    joints: Mapping[str, JointSpring] = field(default_factory=dict)
+    base: Mapping[str, JointSpring] = field(default_factory=dict)
+    piston: Bending | None = None
     begin: float = 0.0
 
 
@@ -54,7 +65,7 @@ RIGID = Gives()
 
 
 @dataclass(frozen=True, kw_only=True)
-class Body:
+class Link:
     """A body: its frame in that of the one that carries it, joints and inertia as text, and what it carries."""
 
     name: str
@@ -62,7 +73,7 @@ class Body:
     turn: Array
     joints: Sequence[str] = ()
     parts: Sequence[str] = ()
-    inside: Sequence[Body] = ()
+    inside: Sequence[Link] = ()
 
     @property
     def text(self) -> str:
@@ -71,13 +82,13 @@ class Body:
         return "\n".join([start, *self.joints, *self.parts, *(body.text for body in self.inside), "</body>"])
 
 
-def joint(name: str, kind: str, axis: Array, spring: Spring | None = None, more: str = "") -> str:
+def joint(name: str, kind: str, axis: Array, spring: JointSpring | None = None, more: str = "") -> str:
     """A joint about or along an axis of its body."""
     held = "" if spring is None else spring.text
     return f'<joint name="{name}" type="{kind}" axis="{numbers(axis)}"{more}{held}/>'
 
 
-def leg_body(robot: Robot, limbs: kinematics.Limbs, i: int, gives: Gives = RIGID, looks: bool = False) -> Body:
+def leg_body(robot: Robot, limbs: kinematics.Limbs, i: int, gives: Gives = RIGID, looks: bool = False) -> Link:
     """Leg i at home: `carriage`, `cylinder`, `piston`, of a piston that bends its outer part `bend`, and `tip`.
 
     A joint of a coordinate (`kinematics.COORDINATES`) has its name and the number of the leg: that of the carriage, of
@@ -101,7 +112,7 @@ def leg_body(robot: Robot, limbs: kinematics.Limbs, i: int, gives: Gives = RIGID
         return [joint(f"{name}_{number}", "hinge", axes[name], gives.joints.get(name)) for name in moving]
 
     spun = leg.letters.stroke == "C"
-    ends = [Body(
+    ends = [Link(
         name=f"tip_{number}", place=none, turn=limbs.leg_frames[i], joints=held("gamma1", "gamma2", "gamma3"),
         parts=[inertial(0, 0, 0, 0)],
     )] * bool(limbs.pose_closure[i])  # fmt: skip
@@ -116,7 +127,7 @@ def leg_body(robot: Robot, limbs: kinematics.Limbs, i: int, gives: Gives = RIGID
     ]
     tube = leg.cylinder
     seen = [_capsule(0.0, tube.mouth, 1.5 * _radius(leg))] * (looks and tube.mouth > 0)
-    cylinder = Body(
+    cylinder = Link(
         name=f"cylinder_{number}", place=none if leg.carriage else limbs.base[i],
         turn=limbs.frames[i] @ exponential(tilt), joints=[*base, *held("alpha", "beta", *["spin"] * (not spun))],
         parts=[inertial(tube.mass, tube.com, tube.inertia, tube.axial_inertia), *seen], inside=[piston],
@@ -124,13 +135,13 @@ def leg_body(robot: Robot, limbs: kinematics.Limbs, i: int, gives: Gives = RIGID
     return _carriage(leg, limbs, i, gives, cylinder)
 
 
-def _carriage(leg: Leg, limbs: kinematics.Limbs, i: int, gives: Gives, cylinder: Body) -> Body:
+def _carriage(leg: Leg, limbs: kinematics.Limbs, i: int, gives: Gives, cylinder: Link) -> Link:
     if leg.carriage is None:
         return cylinder
     kind, at = ("hinge" if leg.carriage.kind == "crank" else "slide"), numbers(-limbs.carriage_arm[i])
     more = f' pos="{at}" armature="{numbers(leg.carriage.inertia)}"'
     more += f' ref="{numbers(gives.begin)}"' * bool(gives.begin)
-    return Body(
+    return Link(
         name=f"carriage_{i + 1}",
         place=limbs.base[i],
         turn=np.eye(3),
@@ -141,21 +152,23 @@ def _carriage(leg: Leg, limbs: kinematics.Limbs, i: int, gives: Gives, cylinder:
 
 
 def _piston(
-    leg: Leg, number: int, home: float, gives: Gives, joints: Sequence[str], ends: Sequence[Body], looks: bool
-) -> Body:
+    leg: Leg, number: int, home: float, gives: Gives, joints: Sequence[str], ends: Sequence[Link], looks: bool
+) -> Link:
     """The piston, in two parts where it bends: it is cut in the middle of its free part."""
     rod, still = leg.piston, np.eye(3)
     place = home * ALONG
-    if gives.turn is None:
+    cut = gives.piston
+    if cut is None:
         seen = [_capsule(-min(rod.length, home), 0.0, _radius(leg))] * looks
         parts = [_rod(leg, rod.length, 0.0), *seen]
-        return Body(name=f"piston_{number}", place=place, turn=still, joints=joints, parts=parts, inside=ends)
-    middle, half = -0.5 * gives.free * ALONG, 0.5 * gives.free
+        return Link(name=f"piston_{number}", place=place, turn=still, joints=joints, parts=parts, inside=ends)
+    middle, half = -0.5 * cut.free * ALONG, 0.5 * cut.free
     seen = [_capsule(-half, half, _radius(leg))] * looks
-    bends = [joint(f"bend_{name}_{number}", "slide", way, gives.across) for name, way in zip("xy", ACROSS, strict=True)]
-    bends += [joint(f"turn_{name}_{number}", "hinge", way, gives.turn) for name, way in zip("xy", ACROSS, strict=True)]
-    bends += [joint(f"twist_{number}", "hinge", ALONG, gives.twist)] * (gives.twist is not None)
-    outer = Body(
+    bends = [joint(f"bend_{name}_{number}", "slide", way, cut.across) for name, way in zip("xy", ACROSS, strict=True)]
+    bends.append(joint(f"bend_z_{number}", "slide", ALONG, cut.along))
+    bends += [joint(f"turn_{name}_{number}", "hinge", way, cut.turn) for name, way in zip("xy", ACROSS, strict=True)]
+    bends += [joint(f"twist_{number}", "hinge", ALONG, cut.twist)] * (cut.twist is not None)
+    outer = Link(
         name=f"bend_{number}",
         place=middle,
         turn=still,
@@ -164,7 +177,7 @@ def _piston(
         inside=[replace(end, place=-middle) for end in ends],
     )
     parts = [_rod(leg, rod.length - half, -half)]
-    return Body(name=f"piston_{number}", place=place, turn=still, joints=joints, parts=parts, inside=[outer])
+    return Link(name=f"piston_{number}", place=place, turn=still, joints=joints, parts=parts, inside=[outer])
 
 
 def _rod(leg: Leg, length: float, end: float) -> str:
@@ -198,6 +211,6 @@ def _radius(leg: Leg) -> float:
     return 0.5 * depth if depth else float(np.sqrt(leg.piston.EA / (np.pi * 2.1e11)))
 
 
-def numbers(values: Array | Iterable[float] | float) -> str:
+def numbers(values: ArrayLike) -> str:
     """Numbers without loss of digits."""
     return " ".join(repr(float(x)) for x in np.ravel(values))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,9 +14,12 @@ from flexapod.results.asked import Made
 from flexapod.results.record import Record
 
 if TYPE_CHECKING:
+    from flexapod.control import AdaptiveDamping, Controller, Function, StateSpace
     from flexapod.solve.time.sampled import Sampled
 
-__all__ = ["Controller", "Noise", "PerChannel", "control_coords", "control_results", "sampled_controller"]
+    AnyController = Controller | AdaptiveDamping | StateSpace | Function
+
+__all__ = ["Noise", "PerChannel", "control_attributes", "control_coords", "control_results", "sampled_controller"]
 
 #: One number for all channels, or numbers by channels (``stroke:1``) and groups (``stroke``).
 PerChannel = float | Mapping[str, float] | None
@@ -24,48 +27,13 @@ PerChannel = float | Mapping[str, float] | None
 Noise = float | Mapping[str, float] | Mapping[str, Mapping[str, float]] | None
 
 
-class Linear(Protocol):
-    """A linear system with named channels, sampled or to be sampled, as `flexapod.control.StateSpace`."""
-
-    A: Array
-    B: Array
-    C: Array
-    D: Array
-    inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
-    sample: float | None
-
-
-@runtime_checkable
-class Asked(Protocol):
-    """A function in place of a linear law, and the channels that it reads and moves: `flexapod.control.Function`."""
-
-    function: Callable[[float, Array], object]
-    inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
-
-
-@runtime_checkable
-class Placed(Protocol):
-    """What finds its channels among those of a robot, as the controllers of `flexapod.control`."""
-
-    def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str]) -> object:
-        """The law between channels."""
-        ...
-
-    def sampled(self, period: float, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str]) -> Linear:
-        """The same for samples a period [s] apart."""
-        ...
-
-
-Controller = Placed | Asked | Linear
 #: Groups of channels that controllers read and move without being told which.
 READ, MOVED = ("stroke", "encoder", "drive-force", "force-sensor:drive", "tool", "com"), ("drive", "command")
 
 
 def sampled_controller(
     study: model.Study,
-    controller: Controller | None = None,
+    controller: AnyController | None = None,
     sample: float | str | None = None,
     delay_samples: int | None = None,
     quantise: PerChannel = None,
@@ -78,8 +46,8 @@ def sampled_controller(
     Parameters
     ----------
     study : Study
-    controller : Controller, optional
-        One of `flexapod.control`, a StateSpace, or a `flexapod.control.Function`. It reads at each sample what sensors
+    controller : Controller, AdaptiveDamping, StateSpace or Function, optional
+        Of `flexapod.control`. It reads at each sample what sensors
         show from what they showed at the start, kinematic ones against the commanded path, and holds its outputs until
         the next, Eqs. (T26.1)-(T26.3).
     sample : float or str, optional
@@ -126,7 +94,7 @@ def _of_table(table: model.Control) -> tuple[Controller, dict[str, object]]:
 
 
 def _made(
-    controller: Controller,
+    controller: AnyController,
     robot: model.Robot,
     *,
     sample: float | str | None = None,
@@ -137,6 +105,7 @@ def _made(
     seed: int = 0,
 ) -> Sampled:
     """A controller with all settings."""
+    from flexapod.control import StateSpace
     from flexapod.solve.time.sampled import Sampled
 
     period = _period(controller, sample)
@@ -147,12 +116,12 @@ def _made(
     for key, names in (("controller.inputs", inputs), ("controller.outputs", outputs)):
         if not names or len(set(names)) < len(names):
             raise InputError("are none, or one of them twice", key=key, value=", ".join(names))
-    matrices = {} if isinstance(law, Asked) else {name: np.asarray(getattr(law, name), dtype=float) for name in "ABCD"}
+    matrices = {name: getattr(law, name) for name in "ABCD"} if isinstance(law, StateSpace) else {}
     return Sampled(
         readings=inputs,
         outputs=outputs,
         period=period,
-        function=law.function if isinstance(law, Asked) else None,
+        function=None if isinstance(law, StateSpace) else law.function,
         delay_samples=delay_samples,
         quantum=_by_channel(quantise, inputs, "quantise", 0.0),
         most=_by_channel(saturate, outputs, "saturate", np.inf),
@@ -162,14 +131,15 @@ def _made(
     )
 
 
-def _period(controller: Controller, sample: float | str | None) -> float:
+def _period(controller: AnyController, sample: float | str | None) -> float:
     """Time between samples [s]: as given, or that of a law that has one."""
+    from flexapod.control import StateSpace
     from flexapod.control.sampling import period_of
 
-    own = None if isinstance(controller, Asked | Placed) else getattr(controller, "sample", None)
-    if sample is None and own is None:
-        raise InputError("is missing", key="sample", allowed='a time [s], or a rate as "5 kHz"')
+    own = controller.sample if isinstance(controller, StateSpace) else None
     period = own if sample is None else period_of(sample)
+    if period is None:
+        raise InputError("is missing", key="sample", allowed='a time [s], or a rate as "5 kHz"')
     if own is not None and abs(own - period) > 1e-9 * period:
         raise InputError(
             "is not the time between its samples", key="sample", value=period, allowed=f"{own:.6g} s, that of the law"
@@ -177,26 +147,27 @@ def _period(controller: Controller, sample: float | str | None) -> float:
     return float(period)
 
 
-def _law(controller: Controller, period: float, robot: model.Robot) -> Linear | Asked:
+def _law(controller: AnyController, period: float, robot: model.Robot) -> StateSpace | Function:
     """What is computed at each sample."""
-    if isinstance(controller, Asked):
-        return controller
-    if isinstance(controller, Placed):
-        from flexapod.solve.linear.channels import asked
+    from flexapod.control import AdaptiveDamping, Controller, Function, StateSpace
+    from flexapod.solve.linear.channels import asked
 
+    if isinstance(controller, StateSpace):
+        return controller if controller.sample is not None else controller.sampled(period)
+    if isinstance(controller, Controller | AdaptiveDamping):
         read, moved = (
             [channel.name for group in groups for channel in asked(group, robot, key)]
             for groups, key in ((READ, "outputs"), (MOVED, "inputs"))
         )
-        return controller.sampled(period, read, moved, {})
-    if any(getattr(controller, name, None) is None for name in ("A", "B", "C", "D", "inputs", "outputs")):
+        return controller.sampled(period, read, moved)
+    if not isinstance(controller, Function):
         raise InputError(
             "is no controller",
             key="controller",
             value=type(controller).__name__,
             allowed="one of flexapod.control, a StateSpace, or a flexapod.control.Function",
         )
-    return controller if controller.sample is not None else controller.sampled(period)  # type: ignore[attr-defined]
+    return controller
 
 
 def _sigmas(noise: object, period: float) -> PerChannel:
@@ -242,6 +213,17 @@ def control_results(sampled: Sampled | None, record: Record) -> dict[str, Made]:
         "sensor_reading": record.control[:, :read],
         "control_input": record.control[:, read:-1],
         "work_control": record.control[:, -1],
+    }
+
+
+def control_attributes(sampled: Sampled | None) -> dict[str, object]:
+    """Time between its samples [s], their delay, and the seed of its noise."""
+    if sampled is None:
+        return {}
+    return {
+        "control_sample": sampled.period,
+        "control_delay_samples": sampled.delay_samples,
+        "control_seed": sampled.seed,
     }
 
 

@@ -27,9 +27,9 @@ from flexapod.runtime.threads import one_thread
 from flexapod.solve.time.robot_march import RobotMarch, prepare
 from flexapod.study.actuator import simulate_actuator
 from flexapod.study.controlled import (
-    Controller,
     Noise,
     PerChannel,
+    control_attributes,
     control_coords,
     control_results,
     sampled_controller,
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
     from flexapod.solve.time.sampled import Sampled
+    from flexapod.study.controlled import AnyController
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,6 +86,7 @@ class Simulated:
         }
         if (error := self.force_error) is not None:
             attrs["estimated_force_error"] = error
+        attrs |= control_attributes(self.sampled)
         robot = self.study.robot
         coords = robot_coords(robot, system, self.record) | control_coords(self.sampled)
         return dataset(self.values(), coords, attrs, drive_forms(robot) | element_forms(robot))
@@ -123,7 +125,7 @@ def simulate(
     duration: float | None = None,
     output_step: float | None = None,
     rho_inf: float | None = None,
-    controller: Controller | None = None,
+    controller: AnyController | None = None,
     sample: float | str | None = None,
     delay_samples: int | None = None,
     quantise: PerChannel = None,

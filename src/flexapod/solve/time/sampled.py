@@ -194,7 +194,7 @@ class SampledLoop:
         count = max(1, int(np.ceil(end / self.sampled.period)) + 2 - first)
         path = np.zeros((count, 7))
         if self._seen:
-            place, rotation = self._path(self.sampled.period * np.arange(first, first + count))
+            place, rotation = self._path(np.asarray(self.sampled.period * np.arange(first, first + count), dtype=float))
             path = np.concatenate([place, quaternion(rotation)], axis=1)
         kept = (self.sampled.noise(first, count), path)
         loop = _Loop(
@@ -232,7 +232,7 @@ def _reading(name: str, system: System, robot: Robot, start: Array) -> _Reading:
     channel = _single(name, robot, "outputs")
     leg, group = max(channel.leg, 0), channel.group
     none = (c_double * 3)()
-    if group in ("tool", "com"):
+    if group in ("tool", "com") and robot.base_motion is None:
         arm = robot.tool - robot.com if group == "tool" else np.zeros(3)
         return _Reading(TURN if channel.axis > 2 else PLACE, 0, 0, channel.axis % 3, (c_double * 3)(*arm), none)
     if group == "accelerometer" and channel.at is not None:
@@ -253,8 +253,8 @@ def _reading(name: str, system: System, robot: Robot, start: Array) -> _Reading:
         "is not read in time" + (f" of leg {leg + 1}, whose drive has a rotor" if rotor else ""),
         key="controller.inputs",
         value=name,
-        allowed="tool, com, stroke, encoder, drive-force, force-sensor:drive of drives without a rotor, joint-force, "
-        "force-sensor:platform where base joints stand still, accelerometer:POINT",
+        allowed="tool and com where the base stands still, stroke, encoder, drive-force, force-sensor:drive of drives "
+        "without a rotor, joint-force, force-sensor:platform where base joints stand still, accelerometer:POINT",
     )
 
 

@@ -10,6 +10,7 @@ from flexapod.verify.cases import (
     calculix_beams,
     calculix_robots,
     control,
+    exports,
     exudyn,
     exudyn_parts,
     four_bar,
@@ -35,7 +36,7 @@ _SUBJECTS = (
     bending, solids, turning, sliding, integration, hexapods, frequencies, stiffness, mechanisms,
     slider_crank, squeezer, four_bar, bricard, real_parts, machines, linear, control,
     mujoco_forces, calculix_beams, calculix_robots, exudyn,
-    exudyn_parts,
+    exudyn_parts, exports,
 )  # fmt: skip
 
 NOT_MODELLED = Case(
