@@ -111,3 +111,5 @@ def test_a_tool_is_seen_from_the_base_plate_too():
     assert H[6:12] == pytest.approx(alone[:6], abs=1e-3 * np.abs(alone[:6]).max())
     assert H[15:18] == pytest.approx(alone[6:], abs=1e-3 * np.abs(alone[6:]).max())
     assert np.abs(H[:6] - alone[:6]).max() > 0.1 * np.abs(alone[:6]).max()
+    found = lin.descriptor()
+    assert found.outputs == lin.outputs and found.C.shape == (18, len(found.coordinates))

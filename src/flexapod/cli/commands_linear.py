@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -97,9 +97,8 @@ def _model(file: Path, pose: str | None, drives: str, friction: str | None, inpu
         if friction not in (None, "sliding", "stuck"):
             raise InputError("is not known", key="friction", value=friction, allowed="sliding, stuck")
         names = [[name.strip() for name in COMMA.split(text)] for text in (inputs, outputs)]
-        return linearize(
-            robot_study(file), parse_pose(pose), inputs=names[0], outputs=names[1], drives=drives, friction=friction
-        )  # type: ignore[arg-type]
+        kinds: Any = {"drives": drives, "friction": friction}  # whatever was typed
+        return linearize(robot_study(file), parse_pose(pose), inputs=names[0], outputs=names[1], **kinds)
 
 
 def _frequencies(lowest: str, highest: str, points: int) -> Array:

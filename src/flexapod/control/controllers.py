@@ -57,20 +57,19 @@ def assembled(
     units: Mapping[str, str],
 ) -> StateSpace:  # fmt: skip
     """Laws between matrices: u = `out` (actuators, k) . laws (k) . `into` (k, sensors) y, Eq. (T21.12)."""
-    A, C = block_diag(*(law.A for law in columns)), block_diag(*(law.C[None] for law in columns))
-    n = sum(len(law.A) for law in columns)
-    A, C = A.reshape(n, n), C.reshape(len(columns), n)  # of laws without states
-    read, rates = (block_diag(*(law.B[:, [i]] for law in columns)).reshape(n, len(columns)) for i in (0, 1))
+    n, k = sum(len(law.A) for law in columns), len(columns)
+    A, C = np.reshape(_diagonal([law.A for law in columns]), (n, n)), _diagonal([law.C[None] for law in columns])
+    read, rates = (np.reshape(_diagonal([law.B[:, [i]] for law in columns]), (n, k)) for i in (0, 1))
     direct, damped = (np.diag([law.D[i] for law in columns]) for i in (0, 1))
     names, B, D = list(sensors), read @ into, out @ direct @ into
     if rates.any() or damped.any():
-        seen = np.flatnonzero((rates @ into).any(axis=0) | (out @ damped @ into).any(axis=0))
+        seen = np.flatnonzero((rates @ into).any(axis=0) | (out @ damped @ into).any(axis=0)).tolist()
         names += [RATE + sensors[i] for i in seen]
         B, D = np.hstack([B, (rates @ into)[:, seen]]), np.hstack([D, (out @ damped @ into)[:, seen]])
     return StateSpace(
         A=A,
         B=B,
-        C=out @ C,
+        C=out @ np.reshape(C, (k, n)),
         D=D,
         inputs=tuple(names),
         outputs=tuple(actuators),
@@ -239,15 +238,20 @@ class Together(Controller):
         drives = [np.array([[float(a == b) for b in part.outputs] for a in actuators]) for part in each]
         n = sum(len(part.A) for part in each)
         return StateSpace(
-            A=block_diag(*(part.A for part in each)).reshape(n, n),
+            A=np.reshape(_diagonal([part.A for part in each]), (n, n)),
             B=np.vstack([part.B @ read for part, read in zip(each, reads, strict=True)]),
             C=np.hstack([drive @ part.C for part, drive in zip(each, drives, strict=True)]),
-            D=sum(d @ part.D @ r for part, r, d in zip(each, reads, drives, strict=True)),
+            D=np.sum([d @ part.D @ r for part, r, d in zip(each, reads, drives, strict=True)], axis=0),
             inputs=readings,
             outputs=actuators,
             states=tuple(f"part {k + 1} {name}" for k, part in enumerate(each) for name in part.states),
             units={name: unit for part in each for name, unit in part.units.items()},
         )
+
+
+def _diagonal(blocks: Sequence[Array]) -> Array:
+    """Blocks along a diagonal; those without rows or columns still have the others."""
+    return np.asarray(block_diag(*blocks), dtype=float)
 
 
 def pairs(sensor: Names, actuator: Names, outputs: Sequence[str], inputs: Sequence[str]) -> tuple[list[str], list[str]]:

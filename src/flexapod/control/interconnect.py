@@ -124,7 +124,7 @@ def closed(system: StateSpace, controller: StateSpace) -> StateSpace:
         np.linalg.solve(loop, matrix)
         for matrix in (puts @ controller.D @ read.C, puts @ controller.C, np.eye(m) + puts @ controller.D @ read.noise)
     )
-    asked = np.hstack([by_x[at], by_k[at]]), by_r[at] - puts.T
+    asked = np.hstack([by_x[at], by_k[at]]).astype(float), np.asarray(by_r[at] - puts.T, dtype=float)
     A = np.block(
         [
             [system.A + B @ by_x, B @ by_k],

@@ -102,11 +102,13 @@ def _brackets(cut: Complex, hz: Array) -> list[Bracket]:
     """Neighbouring frequencies between which something happens, by loop."""
     found = []
     for k, L in enumerate(cut):
-        for kind, values in (("real", L.imag), ("one", np.abs(L) - 1)):
-            at = np.flatnonzero(values[1:] * values[:-1] < 0)
-            found += [Bracket(loop=k, kind=kind, low=hz[i], high=hz[i + 1]) for i in at]
-        for i in np.argsort(np.abs(1 + L), kind="stable")[:CLOSE]:
-            found.append(Bracket(loop=k, kind="nearest", low=hz[max(i - 1, 0)], high=hz[min(i + 1, len(hz) - 1)]))
+        kinds: tuple[tuple[Kind, Array], ...] = (("real", L.imag), ("one", np.abs(L) - 1))
+        for kind, values in kinds:
+            at = np.flatnonzero(values[1:] * values[:-1] < 0).tolist()
+            found += [Bracket(loop=k, kind=kind, low=float(hz[i]), high=float(hz[i + 1])) for i in at]
+        for i in np.argsort(np.abs(1 + L), kind="stable")[:CLOSE].tolist():
+            low, high = hz[[max(i - 1, 0), min(i + 1, len(hz) - 1)]].tolist()
+            found.append(Bracket(loop=k, kind="nearest", low=low, high=high))
     return found
 
 
@@ -163,11 +165,11 @@ def _growing(poles: Complex, sample: float | None, delay: float, around: Gains, 
     for i in range(1, len(values)):
         values[i] = values[i][linear_sum_assignment(np.abs(values[i - 1][:, None] - values[i]))[1]]
     size = np.abs(values)
-    for i, j in np.argwhere((size[1:] - 1) * (size[:-1] - 1) < 0):
+    for i, j in np.argwhere((size[1:] - 1) * (size[:-1] - 1) < 0).tolist():
         share = (1 - size[i, j]) / (size[i + 1, j] - size[i, j])
-        at = hz[i] + share * (hz[i + 1] - hz[i])
+        at = float(hz[i] + share * (hz[i + 1] - hz[i]))
         there = np.linalg.eigvals(around(np.array([at])))[0]
-        angle = np.angle(there[np.abs(there - (1 - share) * values[i, j] - share * values[i + 1, j]).argmin()])
+        angle = float(np.angle(there[np.abs(there - (1 - share) * values[i, j] - share * values[i + 1, j]).argmin()]))
         turns = np.arange((angle % (2 * np.pi)) / (2 * np.pi * at), delay, 1 / at)
         count += 2 * len(turns) * (1 if size[i + 1, j] < size[i, j] else -1)
     return count

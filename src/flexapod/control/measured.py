@@ -116,6 +116,7 @@ def _dataset_58(lines: list[str]) -> Response | None:
     ids = lines[5]
     if int(ids[:5]) != RESPONSE:
         return None
+    frequency: Array
     names = [part.strip() for part in lines[0].split(" / ")]
     if len(names) != 2 or not all(names):
         names = [_channel(ids[31:41], ids[41:51], ids[51:55]), _channel(ids[56:66], ids[66:76], ids[76:80])]
@@ -126,11 +127,11 @@ def _dataset_58(lines: list[str]) -> Response | None:
     units = tuple(line[42:62].strip() or "1" for line in (lines[8], lines[9]))
     if kind in COMPLEX:
         rows = numbers.reshape(-1, 2 if even else 3)[:count]
-        frequency = start + step * np.arange(count) if even else rows[:, 0]
+        frequency = np.asarray(start + step * np.arange(count) if even else rows[:, 0], dtype=float)
         values = rows[:, -2] + 1j * rows[:, -1]
     elif kind in REAL:
         rows = numbers.reshape(-1, 1 if even else 2)[:count]
-        frequency = start + step * np.arange(count) if even else rows[:, 0]
+        frequency = np.asarray(start + step * np.arange(count) if even else rows[:, 0], dtype=float)
         values = rows[:, -1].astype(complex)
     else:
         raise InputError("has ordinates of an unknown type", key="58", value=kind, allowed="2, 4, 5, 6")
@@ -196,7 +197,7 @@ def _csv(content: bytes) -> list[Response]:
             raise InputError(f"has the columns {heads[k]!r}, {heads[k + 1]!r}", allowed=words)
         output, _, input = heads[k].partition(" ")[0].partition("/") if "/" in heads[k] else ("", "", "")
         labels = (output or f"response {(k + 1) // 2}", input or "input")
-        found.append(Response(frequency=table[:, 0], values=values, output=labels[0], input=labels[1]))
+        found.append(Response(frequency=table[:, 0], values=values.astype(complex), output=labels[0], input=labels[1]))
     return found
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -102,6 +102,14 @@ class StateSpace:
             raise InputError("is sampled already", key="sample", value=self.sample, allowed="a continuous system")
         return held(self, period_of(period), to_si(delay, "time", key="delay"))
 
+    @overload
+    def close(self, controller: Controller | StateSpace) -> StateSpace: ...
+    @overload
+    def close(
+        self, controller: Controller | StateSpace, *, sample: float | str, delay: float | str = 0.0
+    ) -> StateSpace: ...
+    @overload
+    def close(self, controller: Controller | StateSpace, *, delay: float | str) -> StateSpace | DelayedLoop: ...
     def close(
         self, controller: Controller | StateSpace, *, delay: float | str = 0.0, sample: float | str | None = None
     ) -> StateSpace | DelayedLoop:

@@ -97,8 +97,8 @@ def damp_as_dict(data: Dataset) -> dict[str, object]:
     columns = (
         data.frequency.values.tolist(),
         data.damping_ratio.values.tolist(),
-        pole.real.tolist(),
-        pole.imag.tolist(),
+        np.real(pole).tolist(),
+        np.imag(pole).tolist(),
     )
     names = ("frequency", "damping_ratio", "real", "imaginary")
     return {"poles": [dict(zip(names, row, strict=True)) for row in zip(*columns, strict=True)]}

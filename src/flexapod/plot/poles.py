@@ -83,11 +83,12 @@ def root_locus(data: xr.Dataset, below: float | None = None) -> Figure:
     colors = colors_of_legs(min(len(shown), 18))
     for k, j in enumerate(shown):
         color = colors[k % len(colors)]
-        one = np.where(poles[:, j].imag >= 0, poles[:, j], np.nan)
-        plane.plot(one.real, one.imag, color=color, linewidth=1.2)
+        upper = poles[:, j].imag >= 0
+        x, y = np.where(upper, poles[:, j].real, np.nan), np.where(upper, poles[:, j].imag, np.nan)
+        plane.plot(x, y, color=color, linewidth=1.2)
         start: dict[str, Any] = {"color": color, "clip_on": True, "zorder": 3}
-        plane.plot(one[:1].real, one[:1].imag, "x", **start)
-        plane.plot(one[middle : middle + 1].real, one[middle : middle + 1].imag, "o", markersize=4, **start)
+        plane.plot(x[:1], y[:1], "x", **start)
+        plane.plot(x[middle : middle + 1], y[middle : middle + 1], "o", markersize=4, **start)
         swings = np.abs(poles[:, j].imag) > SWINGS * np.abs(poles[:, j])
         ratio = np.where(swings, data.damping_ratio.values[:, j], np.nan)
         over.plot(gain, 100 * ratio, color=color, linewidth=1.2)

@@ -221,7 +221,7 @@ def _grid(
     )
 
 
-#: Matrices of a grid: their field of `Grid`, and dimensions.
+#: Matrices of a grid: their field of `PoseMatrices`, and dimensions.
 MATRICES = {
     "mass": ("M", ("pose", "motion", "motion_by")),
     "damping": ("D", ("pose", "motion", "motion_by")),

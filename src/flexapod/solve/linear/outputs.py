@@ -14,7 +14,7 @@ from flexapod.kinematics.rotations import exponential, matrix
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.solve.batch import matrices_at_rest
 from flexapod.solve.kernel import evaluate
-from flexapod.solve.linear.channels import Channel
+from flexapod.solve.linear.channels import PlantChannel
 from flexapod.solve.linear.first_order import FirstOrder
 from flexapod.solve.linear.floor import carried_masses
 from flexapod.solve.linear.plant import Plant
@@ -31,9 +31,9 @@ class Seen:
     plant: Plant
     second: SecondOrder
     first: FirstOrder
-    inputs: Sequence[Channel]
+    inputs: Sequence[PlantChannel]
 
-    def row(self, channel: Channel) -> Array:
+    def row(self, channel: PlantChannel) -> Array:
         """An output by states and inputs, (n + m,)."""
         i, axis = channel.leg, channel.axis
         match channel.group:
@@ -65,7 +65,7 @@ class Seen:
         """Displacement and turn of the tool, or the centre of mass, from the base plate on its mount, world axes."""
         robot, x = self.plant.robot, self.plant.x
         motion = tool_motion(robot, x.pose)[0]
-        found = motion @ self._hub(self.first.place) if tool else np.zeros((6, self.balance.shape[1]))
+        found = motion @ self._hub(self.first.place) if tool else np.zeros((6, self.first.place.shape[1]))
         found[:3] = found[:3] if tool else self._hub(self.first.place)[:3]
         if robot.base_mount is None:
             return found
@@ -88,7 +88,7 @@ class Seen:
         shapes = self.plant.system.kernel.shapes
         return shapes.index("chi") if self.plant.robot.legs[i].driven == "carriage" else shapes.l_index
 
-    def by_coordinates(self, places: Sequence[Channel]) -> Array:
+    def by_coordinates(self, places: Sequence[PlantChannel]) -> Array:
         """Outputs that are places by flat coordinates, (p, size)."""
         size = self.plant.system.size
         free = replace(
@@ -222,7 +222,7 @@ class Seen:
         of_leg = system.leg_p[:, columns(leg_parameters(system.kernel.shapes), "base_plate_mass")]
         return float(of_leg.sum())
 
-    def _acceleration(self, channel: Channel) -> Array:
+    def _acceleration(self, channel: PlantChannel) -> Array:
         """What an accelerometer on the platform shows: absolute acceleration less gravity, Eq. (T20.21)."""
         at, axis, n = channel.at if channel.at is not None else np.zeros(3), channel.axis, self.first.A.shape[1]
         motion = point_motion(self.plant, at)[0]

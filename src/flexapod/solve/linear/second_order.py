@@ -11,7 +11,7 @@ from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.kinematics.rotations import matrix
 from flexapod.solve.batch import residual
-from flexapod.solve.linear.channels import Channel
+from flexapod.solve.linear.channels import PlantChannel
 from flexapod.solve.linear.floor import tilt_stiffness, turning_forces
 from flexapod.solve.linear.gravity import gravity_forces
 from flexapod.solve.linear.motions import coordinate_names, held_motions, on_motions
@@ -51,14 +51,14 @@ class SecondOrder:
 
 
 def second_order(
-    plant: Plant, inputs: Sequence[Channel], *, tilt: bool = True, about: Array | None = None
+    plant: Plant, inputs: Sequence[PlantChannel], *, tilt: bool = True, about: Array | None = None
 ) -> SecondOrder:
     """The equations on motions.
 
     Parameters
     ----------
     plant : Plant
-    inputs : sequence of Channel
+    inputs : sequence of PlantChannel
     tilt : bool
         Whether gravity turns in the axes of a floor that turns.
     about : ndarray, shape (3,), optional
@@ -131,7 +131,7 @@ def _mass(plant: Plant, loops: Sequence[int]) -> Array:
     return U
 
 
-def _held(plant: Plant, commands: Sequence[Channel], found: Array) -> None:
+def _held(plant: Plant, commands: Sequence[PlantChannel], found: Array) -> None:
     """Put into motions (P, size, c) those by commands of drives that hold what they are told to hold, Eq. (T20.5)."""
     system = plant.system
     stroke = system.kernel.shapes.l_index
@@ -143,7 +143,7 @@ def _held(plant: Plant, commands: Sequence[Channel], found: Array) -> None:
         found[:, :, k] = held_motions(system, plant.m, [(i, x) for x in sorted(follow)]).sum(axis=2)
 
 
-def _springs(plant: Plant, commands: Sequence[Channel]) -> tuple[Array, Array]:
+def _springs(plant: Plant, commands: Sequence[PlantChannel]) -> tuple[Array, Array]:
     """What unit commands, and unit rates of them, of springs and loops add to all balances, two (P, size, c)."""
     system, x, wrench = plant.system, plant.x, plant.locked.acts.wrench
     none = np.zeros((len(x), system.legs, system.ports.size))
@@ -176,7 +176,7 @@ def point_motion(plant: Plant, at: Array) -> Array:
     return found
 
 
-def _forces(plant: Plant, inputs: Sequence[Channel], gravity: Array, about: Array) -> Array:
+def _forces(plant: Plant, inputs: Sequence[PlantChannel], gravity: Array, about: Array) -> Array:
     """Forces (P, size, m) on all coordinates per unit input, Eqs. (T18.3)-(T18.5), (T20.8)-(T20.9)."""
     system = plant.system
     P, hub = len(plant.x), slice(system.legs * system.n, system.size)

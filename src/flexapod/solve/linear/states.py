@@ -9,7 +9,7 @@ import numpy as np
 
 from flexapod.arrays import Array, Mask
 from flexapod.model import Robot
-from flexapod.solve.linear.channels import Channel
+from flexapod.solve.linear.channels import PlantChannel
 from flexapod.solve.linear.first_order import FirstOrder, first_order, with_mass
 from flexapod.solve.linear.motions import coordinate_names, on_motions
 from flexapod.solve.linear.outputs import Seen
@@ -83,8 +83,8 @@ def condensed(second: SecondOrder, k: int = 0) -> FirstOrder:
 
 def states_of(
     plant: Plant,
-    inputs: Sequence[Channel],
-    outputs: Sequence[Channel],
+    inputs: Sequence[PlantChannel],
+    outputs: Sequence[PlantChannel],
     *,
     tilt: bool = True,
     about: Array | None = None,
@@ -108,7 +108,7 @@ def states_of(
 
 
 def _with_geophones(
-    A: Array, B: Array, C: Array, D: Array, names: Sequence[str], outputs: Sequence[Channel]
+    A: Array, B: Array, C: Array, D: Array, names: Sequence[str], outputs: Sequence[PlantChannel]
 ) -> tuple[Array, Array, Array, Array, list[str]]:
     """Proof masses of geophones behind the accelerations that move them, Eq. (T20.22)."""
     names = list(names)
@@ -127,12 +127,12 @@ def _with_geophones(
     return A, B, C, D, names
 
 
-def units_of(robot: Robot, channels: Sequence[Channel]) -> dict[str, str]:
+def units_of(robot: Robot, channels: Sequence[PlantChannel]) -> dict[str, str]:
     """Units of channels by name."""
     return {channel.name: _unit(robot, channel) for channel in channels}
 
 
-def _unit(robot: Robot, channel: Channel) -> str:
+def _unit(robot: Robot, channel: PlantChannel) -> str:
     crank = channel.leg >= 0 and _turns(robot, channel.leg)
     match channel.group:
         case "wrench":
@@ -162,7 +162,7 @@ def _turns(robot: Robot, leg: int) -> bool:
 
 
 def descriptor_of(
-    plant: Plant, inputs: Sequence[Channel], outputs: Sequence[Channel], about: Array | None = None
+    plant: Plant, inputs: Sequence[PlantChannel], outputs: Sequence[PlantChannel], about: Array | None = None
 ) -> Descriptor:
     """The equations in flat coordinates at the one pose of a plant; ``about``: as of `second_order`."""
     system = plant.system

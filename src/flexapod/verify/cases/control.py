@@ -65,7 +65,7 @@ def _sampled_integrator() -> list[Check]:
 
     def stable(gain: float, late: int) -> bool:
         law = control.Decentralised(control.integrator(gain / T), sensor="stroke")
-        return bool(np.abs(wire.close(law, sample=T, delay=late * T).poles()).max() < 1.0)  # type: ignore[union-attr]
+        return bool(np.abs(wire.close(law, sample=T, delay=late * T).poles()).max() < 1.0)
 
     limits = [_limit(lambda g, late=late: stable(g, late), 0.1, 3.0) for late in (0, 1, 2)]
     return checks([f"{k} samples late" for k in (0, 1, 2)], [2.0, 1.0, (np.sqrt(5) - 1) / 2], limits, 1e-9)
