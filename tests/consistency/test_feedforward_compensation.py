@@ -12,6 +12,7 @@ import flexapod as fx
 from flexapod.cli.cli import app
 from flexapod.feedforward.elastic_path import elastic_compensation
 from flexapod.kinematics import coordinates, poses
+from flexapod.model.files import preset_text
 from flexapod.study import check_path
 
 SIX = ("paper-robot", "paper-robot-radii", "flight-simulator", "machine-hexapod", "small-hexapod", "nano-hexapod")
@@ -146,6 +147,25 @@ def test_elastic_motion_made_up_for_leaves_less_than_inertia_alone() -> None:
     assert peak["elastic"] < 2e-3 * peak["own"]
     assert peak["elastic"] < 0.5 * peak["inertia"]
     assert "before the path begins" in found.study.notes[-1]
+
+
+def test_a_machine_on_soft_feet_is_answered_after_the_path() -> None:
+    """Its base rings long after the path: what is told to the drives then keeps the tool where it should be."""
+    feet = {"stiffness": [3e7, 3e7, 5e7, 3e6, 3e6, 4e6], "loss": 0.02, "mass": 350.0, "inertia": [60.0, 60.0, 100.0]}
+    text = preset_text("machine-hexapod")
+    told = ", ".join(f"{key} = {value}" for key, value in feet.items())
+    study = fx.loads(text.replace("[robot]\n", f"[robot]\nbase_mount = {{ {told} }}\n"))
+    brisk = study.motion.replace(duration=0.3, hold=0.3)
+    study = study.replace(motion=brisk, simulation=study.simulation.replace(modes=1))
+    found = elastic_compensation(study)
+    peak = []
+    for ahead, early in ((study, 0.0), (fx.compensate(study, 2), 0.0), (found.study, found.early)):
+        data = fx.simulate(ahead)
+        wanted = poses(study.robot, brisk, np.maximum(data.time.values - early, 0.0)).place(study.robot.tool)
+        peak.append(np.linalg.norm(data.tool_position.values - wanted, axis=1).max())
+    assert found.late > 0.1
+    assert peak[1] < 0.2 * peak[0]
+    assert peak[2] < 0.02 * peak[0]
 
 
 def test_robots_whose_elastic_motion_is_not_inverted_are_refused() -> None:

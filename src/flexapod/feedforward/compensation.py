@@ -66,7 +66,8 @@ class Compensation:
             miss = f"{', '.join(self.named)} miss the wanted path by {' and '.join(ways) or 'nothing'}; {follow}"
         return (
             f"commands make up for what {what} do to the elastic robot, in the same time: {miss}, as equilibria tell; "
-            f"{own}. Deviations in results are those from the commands, which lie beside the wanted path"
+            f"{own}. Series leave out {number(self.tail, 1)} of the largest correction. Deviations in results are "
+            "those from the commands, which lie beside the wanted path"
         )
 
     def __repr__(self) -> str:
@@ -83,10 +84,10 @@ def compensation(
 ) -> Compensation:
     """As `compensate`, with what it brings."""
     study = as_study(study)
-    refuse(study, corrections, inertia=order == 2)
+    known = study if as_built else study.replace(robot=study.robot.replace(geometry=None, heat=None))
+    refuse(known, corrections, inertia=order == 2)
     check_path(study)
-    robot = study.robot if as_built else study.robot.replace(geometry=None, heat=None)
-    path = LoadedPath(study.replace(robot=robot), inertia=order == 2)
+    path = LoadedPath(known, inertia=order == 2)
     until = study.motion.end_time - study.motion.hold if lasts(study) else study.duration
     knots = knots_of(study, until)
     series = static_series(path, corrections, knots)
@@ -97,7 +98,7 @@ def compensation(
     periods = None if order == 0 else _periods(study, knots)
     rows = None if periods is None else np.linspace(0.0, until, max(FEWEST, int(ROWS * min(periods, MOST))) + 1)
     hold = study.motion.hold if lasts(study) else 0.0
-    length = kinematics.rigid_limbs(robot).L_c
+    length = kinematics.rigid_limbs(study.robot).L_c
     table = tabled(law, knots, study.motion, path.axes, length, hold=hold, rows=rows)
     found = _told(study, path, series.tail, table, periods)
     refuse_beyond(found.study)

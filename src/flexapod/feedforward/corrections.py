@@ -65,6 +65,16 @@ def refuse(study: Study, corrections: object, *, inertia: bool) -> None:
     """
     if isinstance(corrections, bool) or not isinstance(corrections, int) or not 1 <= corrections <= 10:
         raise InputError("is not a number of corrections", key="corrections", value=corrections, allowed="1 to 10")
+    heat = study.robot.heat
+    if heat is not None and any(plate in heat.columns for plate in ("base", "platform")):
+        raise InputError(
+            "warms plates while the robot moves: where their joints then are equilibria do not follow",
+            file=study.path,
+            key="heat.file",
+            value=heat.file,
+            allowed="over time the temperatures of pistons, cylinders and screws",
+            next_step="Leave it out (as_built=False), or give heat.base and heat.platform a number",
+        )
     if study.robot.platform_fixed:
         raise InputError(
             "has a platform that is fixed: there is no path that it could miss", key="robot.platform.fixed", value=True

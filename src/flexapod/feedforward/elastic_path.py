@@ -57,10 +57,10 @@ def elastic_compensation(
 ) -> Elastic:
     """As `compensate` by stable inversion, with what it brings."""
     study = as_study(study)
-    refuse(study, corrections, inertia=True)
+    known = study if as_built else study.replace(robot=study.robot.replace(geometry=None, heat=None))
+    refuse(known, corrections, inertia=True)
     check_path(study)
-    robot = study.robot if as_built else study.robot.replace(geometry=None, heat=None)
-    path = LoadedPath(study.replace(robot=robot))
+    path = LoadedPath(known)
     _refuse_others(study, path)
     moving = study.motion.end_time - study.motion.hold
     series = static_series(path, corrections, knots_of(study, moving))
@@ -107,13 +107,12 @@ def _kept(found: Ahead, moving: float) -> tuple[Array, Array, float, float]:
 
 
 def _refuse_others(study: Study, path: LoadedPath) -> None:
-    loops = any(getattr(leg.drive, "loop", None) is not None for leg in study.robot.legs)
-    wrong = {"robot.type": not path.axes.all(), "load": not lasts(study), "leg.drive.loop": loops}
+    wrong = {"robot.type": not path.axes.all(), "load": not lasts(study)}
     for key, bad in wrong.items():
         if bad:
             raise InputError(
                 "has no elastic motion that this inverts",
                 file=study.path,
                 key=key,
-                allowed="robots of six motions under a load that stays, without loops; order 0 or 2 takes more",
+                allowed="robots of six motions under a load that stays; order 0 or 2 takes more",
             )

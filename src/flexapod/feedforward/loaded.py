@@ -9,10 +9,10 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.arrays import Array, Mask
-from flexapod.errors import ComputationError
+from flexapod.errors import ComputationError, InputError
 from flexapod.kinematics import Law, Poses
 from flexapod.kinematics.rotations import difference, matrix, quaternion
-from flexapod.model import ConstantWrench, ForceDrive, Robot, Study
+from flexapod.model import AXES, ConstantWrench, ForceDrive, Robot, Study
 from flexapod.results.poses import BATCH, coordinates_of
 from flexapod.solve.batch import RestStates, residual
 from flexapod.solve.modal.at_poses import locked_poses
@@ -22,6 +22,7 @@ from flexapod.solve.system import System
 
 __all__ = ["LoadedPath", "apart", "inertia_forces"]
 
+WORST = 1e8  # condition of what the tool does by what is commanded
 STEP = 1e-6  # m, rad: of differences, exact to its square
 
 
@@ -77,7 +78,16 @@ class LoadedPath:
         for k in asked:
             shifted = [self._shifted(law, t, int(k), way)[:, asked] for way in (STEP, -STEP)]
             columns.append((shifted[0] - shifted[1]) / (2 * STEP))
-        return np.stack(columns, axis=-1)
+        found = np.stack(columns, axis=-1)
+        if not (np.linalg.cond(found) < WORST).all():
+            raise InputError(
+                "does not say where the tool is: what is commanded does not move it that way",
+                file=self.study.path,
+                key="motion.independent",
+                value=[axis for axis, asked in zip(AXES, self.axes, strict=True) if asked],
+                allowed="axes along and about which the tool moves",
+            )
+        return found
 
     def _shifted(self, law: Law, t: Array, k: int, way: float) -> Array:
         there = law.position.copy()

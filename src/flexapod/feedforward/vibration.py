@@ -9,7 +9,7 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.arrays import Array
-from flexapod.errors import ComputationError
+from flexapod.errors import ComputationError, InputError
 from flexapod.feedforward.loaded import inertia_forces
 from flexapod.model import Study
 from flexapod.solve.batch import RestStates
@@ -78,6 +78,7 @@ def linear_path(study: Study, t: Array, path: kinematics.Poses | None = None) ->
         There is no equilibrium at an instant.
     """
     path = kinematics.poses(study.robot, study.motion, t) if path is None else path
+    _refuse_loops(study)
     locked = locked_poses(study.robot, study.simulation, path, study.load)
     if len(locked.at) < len(t):
         k = int(np.flatnonzero(locked.equilibria.code)[0])
@@ -89,6 +90,17 @@ def linear_path(study: Study, t: Array, path: kinematics.Poses | None = None) ->
     hub = flat[:, about.system.legs * about.system.n :]
     tool = tool_motion(study.robot, locked.equilibria.states.pose)[:, :3] @ hub
     return LinearPath(time=t, locked=about, M=M, D=D, K=K, flat=flat, tool=tool, modes=modes_of(locked, shapes=True))
+
+
+def _refuse_loops(study: Study) -> None:
+    loops = [leg.screw is not None and leg.screw.loops for leg in study.robot.legs]
+    if any(loops):
+        raise InputError(
+            "lags or is about another place than the rotor, which the linear model along a path leaves out",
+            file=study.path,
+            key="leg.drive.loop",
+            allowed="motors that do not lag, loops about rotors; fx.linearize and fx.modes know the others at a pose",
+        )
 
 
 def vibration_along(study: Study, moving: float, until: float) -> Vibration:
