@@ -11,7 +11,8 @@ COMPILER ?= $(shell command -v cc || command -v gcc || command -v clang)
 COMMA := ,
 PARTS = page,verify,control$(if $(COMPILER),,$(COMMA)compiler)
 
-PYTEST = $(BIN)/python -m pytest -n 2 --dist loadgroup
+WORKERS ?= 2
+PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup
 
 .DEFAULT_GOAL := help
 .PHONY: help setup demo docs check test test-all style lint format bench clean

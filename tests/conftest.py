@@ -1,6 +1,7 @@
 """Folder = marker: a test carries the name of its folder as its marker; `whole.toml` says which are whole, too."""
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,15 @@ KINDS = (
     "analytic", "cli", "consistency", "contract", "conservation", "convergence",
     "golden", "literature", "meta", "property", "unit", "web",
 )  # fmt: skip
+
+
+@pytest.fixture(scope="module", autouse=True)
+def forgotten(request: pytest.FixtureRequest) -> Iterator[None]:
+    """What a file of tests has cached for itself is not kept until all others have run."""
+    yield
+    for value in vars(request.module).values():
+        if getattr(value, "__module__", None) == request.module.__name__ and hasattr(value, "cache_clear"):
+            value.cache_clear()
 
 
 @pytest.hookimpl(tryfirst=True)  # cases are counted in the order in which they are collected

@@ -1,6 +1,6 @@
 """Marches of robots and actuators collected into arrays, for tests."""
 
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 from tests.layouts import layout
@@ -53,7 +53,7 @@ def leg_vector(**values):
     return np.concatenate([np.ravel(values.get(name, np.zeros(size))) for name, size in LEG_PARAMETERS])
 
 
-@cache
+@lru_cache(maxsize=16)
 def uncompiled(basis, modes, axial_modes, *, planar=False):
     """Functions of a leg for tests that call them a few times: no C compiler need run for that."""
     lateral = lateral_basis(basis, modes)
@@ -62,7 +62,7 @@ def uncompiled(basis, modes, axial_modes, *, planar=False):
     return interpreted_kernel(layout(a=lateral, b=other, axial=axial_basis(axial_modes), **meeting))
 
 
-@cache
+@lru_cache(maxsize=16)
 def uncompiled_kernel(shapes):
     """Functions of a robot for tests that need few matrices: no C compiler need run for that."""
     return interpreted_kernel(shapes)

@@ -1,6 +1,6 @@
 """Legs with stepped pistons, and what is exact of them, by transfer matrices and by material points."""
 
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 from scipy.linalg import eigh, expm, null_space
@@ -44,13 +44,13 @@ def shapes_of(modes, axial, sections, **others):
     return layout(a=lateral, b=lateral, axial=axial_basis(axial), sections=sections, **others)
 
 
-@cache
+@lru_cache(maxsize=16)
 def function(shapes, which):
     """Residual (0), matrices at rest (1) or energies (2) of a leg, interpreted."""
     return Interpreted(leg_functions(shapes)[which])
 
 
-@cache
+@lru_cache(maxsize=16)
 def _shapes(*arguments, **others):
     return shapes_of(*arguments, **others)
 

@@ -11,6 +11,7 @@ import pytest
 from scipy.linalg import block_diag, eigh
 from scipy.optimize import brentq
 from tests.oracles import beams
+from tests.runs import uncompiled_kernel
 
 from flexapod import modes
 from flexapod.model import ServoDrive, preset
@@ -39,6 +40,12 @@ def pinned(leg):
         return dynamic_stiffness.below((K[:2, :2], held))
 
     return count
+
+
+@pytest.fixture(autouse=True)
+def uncompiled(monkeypatch):
+    """A few matrices of each number of shapes are no work for a compiler."""
+    monkeypatch.setattr("flexapod.solve.robot_system.kernel", uncompiled_kernel)
 
 
 @cache
