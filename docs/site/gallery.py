@@ -15,7 +15,7 @@ import matplotlib
 from flexapod.cli.examples import titles
 
 FOLDER = Path("gallery")
-EXAMPLES = Path(__file__).parents[2] / "src" / "flexapod" / "examples"
+EXAMPLES = Path(__file__).parents[2] / "src" / "flexapod" / "_examples"
 SECTIONS = {
     "A robot and its answer": (
         "paper_robot",

@@ -42,6 +42,9 @@ class ComputationError(FlexapodError):
 
     exit_code = 1
 
+    what: str
+    next_step: str | None
+
     def __init__(self, what: str, *, next_step: str | None = None) -> None:
         self.what, self.next_step = what, next_step
         super().__init__(_sentences(what, next_step))
@@ -89,8 +92,12 @@ class InputError(FlexapodError):
         allowed: str | None = None,
         next_step: str | None = None,
     ) -> None:
-        self.what, self.key, self.value, self.allowed, self.next_step = what, key, value, allowed, next_step
-        self.file = None if file is None else str(file)
+        self.what: str = what
+        self.file: str | None = None if file is None else str(file)
+        self.key: str | None = key
+        self.value: object = value
+        self.allowed: str | None = allowed
+        self.next_step: str | None = next_step
         super().__init__(self._message())
 
     def _message(self) -> str:

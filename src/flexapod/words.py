@@ -35,7 +35,8 @@ class Scale:
     """Factor from SI to the unit `name` in which a quantity reads well."""
 
     def __init__(self, factor: float, name: str) -> None:
-        self.factor, self.name = factor, name
+        self.factor: float = factor
+        self.name: str = name
 
     def __call__(self, values: ArrayLike) -> Array:
         """Values in that unit."""

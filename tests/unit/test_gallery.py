@@ -11,8 +11,8 @@ import pytest
 from flexapod.cli.examples import titles
 
 matplotlib.use("Agg")
-FOLDER = Path(__file__).parents[2] / "src" / "flexapod" / "examples"
-NOTEBOOKS = FOLDER.parent / "notebooks"
+FOLDER = Path(__file__).parents[2] / "src" / "flexapod" / "_examples"
+NOTEBOOKS = FOLDER.parent / "_notebooks"
 EXAMPLES = sorted(FOLDER.glob("*.py"))
 
 

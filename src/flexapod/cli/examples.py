@@ -7,7 +7,7 @@ from pathlib import Path
 
 from flexapod.errors import InputError, closest
 
-_FOLDERS = {"--example": "examples", "--notebook": "notebooks"}
+_FOLDERS = {"--example": "_examples", "--notebook": "_notebooks"}
 
 
 def titles(option: str) -> dict[str, str]:

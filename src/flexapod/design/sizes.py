@@ -17,7 +17,11 @@ from flexapod.words import text
 OPTION = "--from"
 EXAMPLE = "home=300 mm, payload=20 kg, stroke=60 mm"
 IDEAL = "ideal"
-CHOICES = {"material": tuple(MATERIALS), "motion": AXES, "drive": ("electric", "hydraulic", IDEAL)}
+CHOICES: dict[str, tuple[str, ...]] = {
+    "material": tuple(MATERIALS),
+    "motion": AXES,
+    "drive": ("electric", "hydraulic", IDEAL),
+}
 _BETWEEN = re.compile(r";|,(?!\d)|\s+(?=[A-Za-z]+\s*=)")  # not the comma of 27,5 mm
 _NUMBERS = {  # key: dimension, least, most [SI]
     "home": ("length", 0.01, 100.0),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
 
@@ -54,7 +54,8 @@ class _OfJoint(Physics):
 class BaseFriction(_OfJoint):
     """At the base."""
 
-    end, rubs_at = "base", "base_joint"
+    end: ClassVar[Literal["base", "", "platform"]] = "base"
+    rubs_at: ClassVar[str] = "base_joint"
     parameters: ClassVar[Named] = (("base_friction", 8),)
 
     @classmethod
@@ -74,7 +75,8 @@ class BaseFriction(_OfJoint):
 class PlatformFriction(_OfJoint):
     """At the platform."""
 
-    end, rubs_at = "platform", "platform_joint"
+    end: ClassVar[Literal["base", "", "platform"]] = "platform"
+    rubs_at: ClassVar[str] = "platform_joint"
     parameters: ClassVar[Named] = (("platform_friction", 8),)
 
     @classmethod

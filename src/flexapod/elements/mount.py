@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
 
@@ -86,7 +86,7 @@ class _Mounting(Physics):
 class BaseMounting(_Mounting):
     """Of the base plate, whose mass and inertia the legs share, too."""
 
-    end = "base"
+    end: ClassVar[Literal["base", "", "platform"]] = "base"
     coordinates: ClassVar[Named] = (("f", 6),)
     parameters: ClassVar[Named] = (
         ("base_mount_at", 3),  # m, world axes: where springs and the plate's centre of mass are
@@ -122,7 +122,7 @@ class BaseMounting(_Mounting):
 class PlatformMounting(_Mounting):
     """Of the payload, on the plate with the platform joints."""
 
-    end = "platform"
+    end: ClassVar[Literal["base", "", "platform"]] = "platform"
     coordinates: ClassVar[Named] = (("m", 6),)
     parameters: ClassVar[Named] = (
         ("platform_mount_at", 3),  # m, from the CoM in platform axes

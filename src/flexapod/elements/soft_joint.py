@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 from flexapod.elements.element import Along, Named, Physics, Standing
 from flexapod.elements.flexure import Flexures, displaced
@@ -49,7 +49,7 @@ class SoftJoint(Physics):
 class SoftBase(SoftJoint):
     """At the base, between it and the cylinder."""
 
-    end = "base"
+    end: ClassVar[Literal["base", "", "platform"]] = "base"
     coordinates: ClassVar[Named] = (("u1", 1), ("u2", 1), ("u3", 1))
     parameters: ClassVar[Named] = (("base_soft", 2), ("base_soft_damping", 2))
 
@@ -64,7 +64,7 @@ class SoftBase(SoftJoint):
 class SoftPlatform(SoftJoint):
     """At the platform, between the piston's tip and it."""
 
-    end = "platform"
+    end: ClassVar[Literal["base", "", "platform"]] = "platform"
     coordinates: ClassVar[Named] = (("e1", 1), ("e2", 1), ("e3", 1))
     parameters: ClassVar[Named] = (("platform_soft", 2), ("platform_soft_damping", 2))
 

@@ -97,7 +97,7 @@ def _piecewise(fractions: tuple[float, ...], top: tuple[float, ...], order: int)
     return profile
 
 
-PROFILES: dict[str, Callable[[NDArray], Law]] = {
+PROFILES: dict[str, Callable[[NDArray[np.float64]], Law]] = {
     "quintic": _quintic,
     "cycloidal": _cycloidal,
     "s-curve": _piecewise(S_CURVE_FRACTIONS, (1, 0, -1, 0, -1, 0, 1), order=3),

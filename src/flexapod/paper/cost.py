@@ -32,7 +32,8 @@ class Counted:
     """A number that counts in `tally` what is computed with it; NumPy's arithmetic of object arrays asks it."""
 
     def __init__(self, value: float, tally: list[int]) -> None:
-        self.value, self.tally = value, tally
+        self.value: float = value
+        self.tally: list[int] = tally
 
     def _done(self, value: float) -> Counted:
         self.tally[0] += 1

@@ -9,7 +9,7 @@ import numpy as np
 from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.errors import InputError
-from flexapod.model import Study
+from flexapod.model import Robot, Study
 from flexapod.pose_errors.imperfect import Bent, bent, is_crooked, thrust
 from flexapod.pose_errors.play import Play, half_play, play_along
 from flexapod.pose_errors.sensitivity import Sensitivity, sensitivity, systematic
@@ -35,8 +35,10 @@ class AtPose:
                 "leaves no pose that could be wrong", key="robot.platform.fixed", value=True,
                 next_step="Use `flexapod modes`, or `flexapod check`",
             )  # fmt: skip
-        self.study, self.robot, self._known = study, study.robot, known
-        self.pose = kinematics.Poses.at_rest(pose.position, pose.rotation)
+        self._known = known
+        self.study: Study = study
+        self.robot: Robot = study.robot
+        self.pose: kinematics.Poses = kinematics.Poses.at_rest(pose.position, pose.rotation)
 
     @cached_property
     def path(self) -> RigidPath:

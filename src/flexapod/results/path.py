@@ -9,7 +9,7 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.arrays import Array
-from flexapod.model import ActuatorStudy, Study
+from flexapod.model import ActuatorStudy, Robot, Study
 from flexapod.solve.statics.released import RobotForces, rigid_forces
 
 FEWEST, MOST = 2000, 50_000  # intervals at which a path is looked at
@@ -44,8 +44,9 @@ class RigidPath:
     """
 
     def __init__(self, study: Study, time: Array | None = None, poses: kinematics.Poses | None = None) -> None:
-        self.study, self.robot = study, study.robot
-        self.time = path_instants(study) if time is None else time
+        self.study: Study = study
+        self.robot: Robot = study.robot
+        self.time: Array = path_instants(study) if time is None else time
         if poses is not None:
             self.poses = poses
 

@@ -49,11 +49,12 @@ class RobotMotion:
     """
 
     def __init__(self, study: model.Study, data: Dataset) -> None:
-        self.skeleton, self.time = Skeleton(study.robot), data.time.values
+        self.skeleton: Skeleton = Skeleton(study.robot)
+        self.time: Array = data.time.values
         self._com, self._deviation = data.com_position_rigid.values, data.com_deviation.values
         self._tool_deviation = data.tool_deviation.values
         self._arm = study.robot.tool - study.robot.com
-        self.tool_apart = tool_apart(data)
+        self.tool_apart: bool = tool_apart(data)
         self._turn = data.rotation_deviation.values
         self._rotation = matrix(data.platform_quaternion_rigid.values)
         if "base_motion_displacement" in data:
@@ -137,12 +138,13 @@ class DrawnMotion:
     """The beam of a single actuator's result over time, as `beam_frame` places it."""
 
     def __init__(self, study: model.ActuatorStudy, data: Dataset) -> None:
-        self.actuator, self.time, self.length = study.actuator, data.time.values, data.length.values
+        self.actuator: model.Actuator = study.actuator
+        self.time: Array = data.time.values
+        self.length: Array = data.length.values
         elevation = data.elevation.values if study.actuator.space else 0.0
-        self.axes = beam_frame(study.actuator, data.angle.values, elevation)
-        self.deflection, self.twist = tip_size(data), np.zeros(len(self.time))
-        if study.actuator.space:
-            self.twist = data.tip_twist.values
+        self.axes: Array = beam_frame(study.actuator, data.angle.values, elevation)
+        self.deflection: Array = tip_size(data)
+        self.twist: Array = data.tip_twist.values if study.actuator.space else np.zeros(len(self.time))
         self._zeta = np.linspace(0.0, 1.0, BEAM_POINTS)
         self._offset = data.tip_deflection.values.reshape(len(self.time), -1)
         amplitude = data.mode_amplitude.values if "mode_amplitude" in data else np.zeros((len(self.time), 0))

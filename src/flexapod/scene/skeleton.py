@@ -84,9 +84,13 @@ class Skeleton:
     """
 
     def __init__(self, robot: model.Robot) -> None:
-        self.robot, self.joints = robot, tuple((leg.letters.base, leg.letters.platform) for leg in robot.legs)
-        self.com, self.tool = robot.com, robot.tool
-        self.guided = np.array([i for i, leg in enumerate(robot.legs) if leg.carriage is not None], dtype=int)
+        self.robot: model.Robot = robot
+        self.joints: tuple[tuple[str, str], ...] = tuple((x.letters.base, x.letters.platform) for x in robot.legs)
+        self.com: Array = robot.com
+        self.tool: Array = robot.tool
+        self.guided: NDArray[np.int64] = np.array(
+            [i for i, leg in enumerate(robot.legs) if leg.carriage is not None], dtype=int
+        )
         self._home_carriages = robot.home_carriages
         self._mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
 

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Mapping
 from html import escape
 from threading import RLock
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 from pydantic import (
@@ -50,7 +50,9 @@ class Key:
     """
 
     def __init__(self, why: str = "", *, usual: str = "", short: str = "") -> None:
-        self.why, self.usual, self.short = why, usual, short
+        self.why: str = why
+        self.usual: str = usual
+        self.short: str = short
 
 
 class Quantity(Key):
@@ -75,9 +77,9 @@ class Quantity(Key):
         super().__init__(why, usual=usual, short=short)
         self.dimensions = dimensions
         limits = {"gt": above, "ge": least, "le": most, "lt": below}
-        self.limits = {name: float(limit) for name, limit in limits.items() if limit is not None}
-        self.smallest = min(DIMENSIONS[name].least for name in dimensions) if above == 0 else 0.0
-        self.largest = max(DIMENSIONS[name].most for name in dimensions)
+        self.limits: dict[str, float] = {name: float(limit) for name, limit in limits.items() if limit is not None}
+        self.smallest: float = min(DIMENSIONS[name].least for name in dimensions) if above == 0 else 0.0
+        self.largest: float = max(DIMENSIONS[name].most for name in dimensions)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return self._limited(handler(source))
@@ -142,7 +144,7 @@ Series6 = Annotated[Array, PlainValidator(array_of((None, 6))), PlainSerializer(
 class Frozen(BaseModel):
     """Base of the model: immutable, SI, unknown fields refused, `InputError` on bad values."""
 
-    model_config = ConfigDict(
+    model_config: ClassVar[ConfigDict] = ConfigDict(
         frozen=True, extra="forbid", arbitrary_types_allowed=True, hide_input_in_errors=True, defer_build=True
     )  # what checks a class is built with its first object: most studies have few of the tables
 

@@ -50,7 +50,12 @@ class Values:
         plane: str | None = None,
         leg: tuple[int, int] = (1, 1),
     ) -> None:
-        self.path, self.file, self.folder, self.notes, self.plane, self.leg = path, file, folder, notes, plane, leg
+        self.path: str = path
+        self.file: str | None = file
+        self.folder: Path = folder
+        self.notes: Notes | None = notes
+        self.plane: str | None = plane
+        self.leg: tuple[int, int] = leg
         if not isinstance(data, Mapping):
             table, _, name = path.rpartition(".")
             raise Malformed(

@@ -101,7 +101,7 @@ def _line(x: Array, y: Array) -> tuple[float, float]:
 
 
 #: Families: what is refined, in words, and the order that theory gives.
-FAMILIES = {
+FAMILIES: dict[str, tuple[str, float | None]] = {
     "step": ("step", 2.0),
     "shapes": ("number of shapes per plane", None),
     "elements": ("number of beam elements", 4.0),

@@ -13,7 +13,11 @@ from flexapod.results.record import Report
 from flexapod.review.checks import check_actuator_path, check_path
 from flexapod.surveys.convergence.trials import Setting, Trials, setting_of
 
-COUNTS = {"shapes": (1, 2, 3, 4, 6, 8, 12), "elements": (1, 2, 3, 4, 6), "segments": (1, 2, 4, 8)}
+COUNTS: dict[str, tuple[int, ...]] = {
+    "shapes": (1, 2, 3, 4, 6, 8, 12),
+    "elements": (1, 2, 3, 4, 6),
+    "segments": (1, 2, 4, 8),
+}
 COARSEST = 4  # the first step, in output steps
 
 

@@ -31,7 +31,7 @@ LOST = "Nothing that was stored is lost: run the same command again to continue"
 #: A connection remembers its last thousand messages: studies of many points, hundreds of megabytes.
 FORGETFUL = {"distributed.admin.low-level-log-length": 10}
 #: Of local workers: what Dask measures of itself takes some per cent of a core; who kills two processes is guilty.
-QUIET = {
+QUIET: dict[str, str | bool | int] = {
     "distributed.admin.system-monitor.interval": "5s",
     "distributed.admin.tick.interval": "500ms",
     "distributed.scheduler.active-memory-manager.start": False,

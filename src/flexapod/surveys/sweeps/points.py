@@ -107,9 +107,10 @@ class Points:
     """
 
     def __init__(self, study: Study | ActuatorStudy, plan: SweepPlan) -> None:
-        self.nominal, self.plan = study, plan
+        self.nominal: Study | ActuatorStudy = study
+        self.plan: SweepPlan = plan
         self.data: dict[str, Any] = tomllib.loads(study.source_text)
-        self.folder = Path(study.path).parent if study.path else Path()
+        self.folder: Path = Path(study.path).parent if study.path else Path()
         self.dimensions: dict[str, str] = {}
         try:
             probe = self._probe()

@@ -65,7 +65,8 @@ class SweepStore:
     """An open store in a file, or in memory; points that it does not hold are pending."""
 
     def __init__(self, database: sqlite3.Connection, path: Path | None) -> None:
-        self.path, self._database = path, database
+        self.path: Path | None = path
+        self._database = database
         database.text_factory = lambda text: text.decode(errors="replace")  # what is spoilt a checksum tells
 
     def __enter__(self) -> Self:
