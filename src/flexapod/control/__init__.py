@@ -36,13 +36,9 @@ if TYPE_CHECKING:
         positive_feedback,
         rate,
     )
-<<<<<<< HEAD
     from flexapod.control.limits import margins
     from flexapod.control.loops import best_gain, root_locus
-=======
-    from flexapod.control.loops import best_gain, margins, root_locus
     from flexapod.control.ring_down import ring_down
->>>>>>> nat-work
     from flexapod.control.scheduled import Scheduled
     from flexapod.control.state_space import StateSpace
 
@@ -73,13 +69,9 @@ _HOMES = {
         "positive_feedback",
         "rate",
     ),
-<<<<<<< HEAD
     "loops": ("best_gain", "root_locus"),
     "limits": ("margins",),
-=======
-    "loops": ("best_gain", "margins", "root_locus"),
     "ring_down": ("ring_down",),
->>>>>>> nat-work
     "scheduled": ("Scheduled",),
     "state_space": ("StateSpace",),
 }
