@@ -122,8 +122,7 @@ def linearize(
     LinearModel
         A `control.StateSpace` that knows its pose; of an actuator a `StateSpace`. Of many poses a Dataset for
         interpolation: `mass`, `damping`, `stiffness` (pose, motion, motion_by), `input_matrix` (pose, motion, input),
-        `output_matrix` (pose, output, motion) of M z'' + D z' + K z = B u, y = C z; NaN where a pose has none,
-        and `reason` says why.
+        `output_matrix` (pose, output, motion) of M z'' + D z' + K z = B u, y = C z; NaN, with a `reason`, of some.
 
     Raises
     ------
