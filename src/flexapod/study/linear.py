@@ -18,12 +18,16 @@ from flexapod.kinematics import Poses
 from flexapod.kinematics.rotations import matrix
 from flexapod.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose, read
 from flexapod.results.poses import as_many, batches, coordinates_of, is_many
+from flexapod.review.reach import CUT_OFF, FALLS_THROUGH, REACHED, equilibrium_codes, flags, rigid_codes
 from flexapod.runtime.threads import one_thread
 from flexapod.solve.linear.actuator import actuator_states
 from flexapod.solve.linear.channels import asked
 from flexapod.solve.linear.grid import grid_of
 from flexapod.solve.linear.plant import Drives, Plant, plant_at
 from flexapod.solve.linear.states import Descriptor, descriptor_of, states_of, units_of
+from flexapod.solve.statics.branch import fallen
+from flexapod.solve.statics.locked import the_equilibrium
+from flexapod.study.many_modes import poses_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -117,7 +121,7 @@ def linearize(
     LinearModel
         A `control.StateSpace` that knows its pose; of an actuator a `StateSpace`. Of many poses a Dataset for
         interpolation: `mass`, `damping`, `stiffness` (pose, motion, motion_by), `input_matrix` (pose, motion, input),
-        `output_matrix` (pose, output, motion) of M z'' + D z' + K z = B u, y = C z; NaN where a pose has none.
+        `output_matrix` (pose, output, motion) of M z'' + D z' + K z = B u, y = C z; NaN, with a `reason`, of some.
 
     Raises
     ------
@@ -144,6 +148,7 @@ def _plant(
         raise InputError("is not a way to take drives", key="drives", value=drives, allowed='"given", "force"')
     found = model.override(at_pose(study, load), friction=friction)
     plant = _at(found, as_pose(found.robot, pose), drives)
+    the_equilibrium(plant.locked)
     return found, plant
 
 
@@ -198,21 +203,28 @@ def _grid(
     path = as_many(found.robot, pose)
     given, seen = asked(inputs, found.robot, "inputs"), asked(outputs, found.robot, "outputs")
     parts: dict[str, Array] = {}
-    motions, free = (), 0
-    for part in batches(len(path)) if len(path) else [slice(0, 0)]:
-        plant = _at(found, path.part(part), drives)
-        grid = grid_of(plant, given, seen, about=_about(found))
-        motions, free = grid.motions, grid.free
+    motions, free, reason = (), 0, rigid_codes(found.robot, path, from_home=True)
+    reason[reason == CUT_OFF] = REACHED
+    within = np.flatnonzero(reason == REACHED)
+    for part in batches(len(within)) if within.size else [slice(0, 0)]:
+        chosen = within[part]
+        plant = _at(found, poses_of(path, chosen), drives)
+        locked, grid = plant.locked, grid_of(plant, given, seen, about=_about(found))
+        motions, free, at = grid.motions, grid.free, chosen[locked.at]
+        fell = fallen(locked.system, locked.robot, locked.start[locked.at], locked.equilibria.states[locked.at])
+        reason[chosen] = equilibrium_codes(locked.equilibria.code)
+        reason[at[fell]] = FALLS_THROUGH
         for name, (of, _) in MATRICES.items():
             value = getattr(grid, of)
             parts.setdefault(name, np.full((len(path), *value.shape[1:]), np.nan))
-            parts[name][part][plant.locked.at] = value
+            parts[name][at[~fell]] = value[~fell]
     units = units_of(found.robot, [*given, *seen])
     labels = {"pose": np.arange(len(path)), "coordinate": list(model.AXES), "motion": list(motions)}
     labels |= {"motion_by": list(motions), "input": [c.name for c in given], "output": [c.name for c in seen]}
     data = xr.Dataset(
         {name: (MATRICES[name][1], value) for name, value in parts.items()}
-        | {"pose_from_home": (("pose", "coordinate"), coordinates_of(found.robot, path))},
+        | {"pose_from_home": (("pose", "coordinate"), coordinates_of(found.robot, path))}
+        | {"reason": ("pose", reason, flags())},
         labels,
         {"study": _name(found), "drives": drives, "friction": found.simulation.friction, "free_motions": free},
     )

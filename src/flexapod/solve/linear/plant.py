@@ -22,7 +22,7 @@ from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.robot_system import robot_system, smooth
 from flexapod.solve.statics.drive_forces import push_ports
 from flexapod.solve.statics.equilibrium import FARTHEST
-from flexapod.solve.statics.locked import LockedPoses, the_equilibrium
+from flexapod.solve.statics.locked import LockedPoses
 from flexapod.solve.statics.reduction import Motions, independent
 from flexapod.solve.statics.substitutes import with_substitutes
 from flexapod.solve.system import Index, System
@@ -87,8 +87,6 @@ def plant_at(
     if drives == "force":
         robot = robot.replace(legs=tuple(leg.replace(drive=_holding(leg.drive)) for leg in robot.legs))
     locked = locked_poses(robot, simulation, path, load)
-    if len(path) == 1:
-        the_equilibrium(locked)
     robot = locked.robot
     shapes = locked.system.kernel.shapes
     as_at_rest = drives == "given" and not (shapes.has("w") or shapes.has("j"))
