@@ -45,6 +45,6 @@ def ring_down(samples: ArrayLike, period: float | str, order: int = 10) -> NDArr
     U = np.linalg.svd(hankel, full_matrices=False)[0][:, :order]
     step = np.linalg.lstsq(U[: -x.shape[1]], U[x.shape[1] :], rcond=None)[0]
     z = np.linalg.eigvals(step).astype(np.complex128)
-    poles: NDArray[np.complex128] = np.log(z[np.abs(z) > np.finfo(float).tiny]) / T
+    poles = np.asarray(np.log(z[np.abs(z) > np.finfo(float).tiny]) / T, dtype=np.complex128)
     poles = poles[np.imag(poles) >= 0]
     return poles[np.argsort(np.abs(poles), kind="stable")]
