@@ -28,6 +28,7 @@ def sections() -> dict[str, Callable[[], list[Section]]]:
     from benchmarks.one_actuator import one_actuator
     from benchmarks.one_robot import one_robot
     from benchmarks.real_parts import real_parts
+    from benchmarks.sampled_loops import sampled_loops
     from benchmarks.scaling import scaling
     from benchmarks.side_by_side import side_by_side
     from benchmarks.startup import startup
@@ -43,6 +44,7 @@ def sections() -> dict[str, Callable[[], list[Section]]]:
         "real-parts": real_parts,
         "many-poses": many_poses,
         "linear-models": linear_models,
+        "sampled-loops": sampled_loops,
         "many-robots": many_robots,
         "start-up": startup,
     }

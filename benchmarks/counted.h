@@ -43,6 +43,8 @@ inline Counted fmax(Counted a, Counted b) { return a > b ? a : b; }
 inline Counted fmin(Counted a, Counted b) { return a < b ? a : b; }
 inline Counted casadi_power(Counted a, Counted b) { return counted(MULTIPLICATIONS, pow(a.value, b.value)); }
 inline Counted cbrt(Counted a) { return counted(ROOTS, cbrt(a.value)); }
+inline Counted atan2(Counted a, Counted b) { return counted(CIRCULAR, atan2(a.value, b.value)); }
+inline Counted rint(Counted a) { Counted b = a; b.value = rint(a.value); return b; }
 inline bool isfinite(Counted a) { return isfinite(a.value); }
 
 /* A vector of bodies has one lane here: what is counted is what the bodies need, not what lanes without a body repeat. */

@@ -44,7 +44,7 @@ def ring_down(samples: ArrayLike, period: float | str, order: int = 10) -> NDArr
     hankel = windows.transpose(0, 2, 1).reshape(length * x.shape[1], -1)
     U = np.linalg.svd(hankel, full_matrices=False)[0][:, :order]
     step = np.linalg.lstsq(U[: -x.shape[1]], U[x.shape[1] :], rcond=None)[0]
-    z = np.linalg.eigvals(step).astype(complex)
-    poles = np.asarray(np.log(z[np.abs(z) > np.finfo(float).tiny]) / T, dtype=complex)
-    poles = poles[poles.imag >= 0]
-    return np.asarray(poles[np.argsort(np.abs(poles), kind="stable")], dtype=complex)
+    z = np.linalg.eigvals(step).astype(np.complex128)
+    poles = np.asarray(np.log(z[np.abs(z) > np.finfo(float).tiny]) / T, dtype=np.complex128)
+    poles = poles[np.imag(poles) >= 0]
+    return poles[np.argsort(np.abs(poles), kind="stable")]
