@@ -21,6 +21,7 @@ PAGE = Path(__file__).with_name("RESULTS.md")
 
 def sections() -> dict[str, Callable[[], list[Section]]]:
     """The sections by name, in the order of the page."""
+    from benchmarks.linear_models import linear_models
     from benchmarks.many_poses import many_poses
     from benchmarks.many_robots import many_robots
     from benchmarks.mechanisms import mechanisms
@@ -41,6 +42,7 @@ def sections() -> dict[str, Callable[[], list[Section]]]:
         "mechanisms": mechanisms,
         "real-parts": real_parts,
         "many-poses": many_poses,
+        "linear-models": linear_models,
         "many-robots": many_robots,
         "start-up": startup,
     }

@@ -12,9 +12,11 @@ from flexapod.runtime.loading import loaded
 if TYPE_CHECKING:
     from flexapod import control, kinematics, model, plot, study
     from flexapod.citations import cite
+    from flexapod.control.measured import read_frf
     from flexapod.elements.element import Contribution, Element, Output
     from flexapod.elements.frame import Energies
     from flexapod.errors import ComputationError, FlexapodError, InputError
+    from flexapod.exchange.formats import export
     from flexapod.feedforward import compensate, shape, time_optimal
     from flexapod.model import ActuatorStudy, Study, load, loads, open_values, preset
     from flexapod.paper.study import replicate
@@ -51,6 +53,8 @@ _HOMES = {
     "flexapod.schema.base": ("Key", "Quantity"),
     "flexapod.errors": ("ComputationError", "FlexapodError", "InputError"),
     "flexapod.citations": ("cite",),
+    "flexapod.control.measured": ("read_frf",),
+    "flexapod.exchange.formats": ("export",),
     "flexapod.feedforward": ("compensate", "shape", "time_optimal"),
     "flexapod.model": ("ActuatorStudy", "Study", "load", "loads", "open_values", "preset"),
     "flexapod.paper.study": ("replicate",),
@@ -104,6 +108,7 @@ __all__ = [
     "compliance",
     "control",
     "converge",
+    "export",
     "forward_kinematics",
     "inverse_dynamics",
     "inverse_kinematics",
@@ -120,6 +125,7 @@ __all__ = [
     "play",
     "plot",
     "preset",
+    "read_frf",
     "replicate",
     "run",
     "shape",

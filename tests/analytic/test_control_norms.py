@@ -145,3 +145,21 @@ def test_modes_of_one_frequency_stay_together():
     assert len(pair.reduce(1).A) == 4
     with pytest.raises(InputError, match="one of the two"):
         pair.reduce()
+
+
+def test_noise_of_a_sensor_in_a_loop_of_place_and_rate():
+    """Noise of the sensor moves the mass by -(kp + kd s) / (m s^2 + (c + kd) s + k + kp): its variance."""
+    kp, kd, S = 3000.0, 25.0, 1e-12
+    plant = fc.StateSpace(
+        A=[[0, 1], [-K / M, -C / M]], B=[[0], [1 / M]], C=[[1, 0]], D=[[0]], inputs=("drive:1",), outputs=("stroke:1",),
+        states=("z", "v"), units={},
+    )  # fmt: skip
+    loop = plant.close(fc.PID(kp, 0.0, kd, low_pass=1e6))
+    # int |b1 s + b0|^2 / |a2 s^2 + a1 s + a0|^2 / 2 pi = (b1^2 a0 + b0^2 a2) / (2 a0 a1 a2); the filter of the rate is
+    # far enough to change 1e-4 of it; a one-sided density counts half of the two-sided integral.
+    a0, a1, a2 = K + kp, C + kd, M
+    power = (kd**2 * a0 + kp**2 * a2) / (2 * a0 * a1 * a2)
+    assert loop.h2("noise", "stroke").h2_norm.item() ** 2 == pytest.approx(power, rel=1e-4)
+    wide = (np.array([1e-4, 1e5]), np.full(2, S))
+    found = loop.psd({"noise:stroke:1": wide}, "stroke").rms.item() ** 2
+    assert found == pytest.approx(S * power / 2, rel=2e-4)

@@ -4,29 +4,11 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod import model
+from flexapod.verify.cases.linear import gravimeter
 
 M, INERTIA, K, C = 400.0, 115.0, 15e3, 20.0
-BELOW, BESIDE, LONG = 0.85, 0.5, 1.0
+BELOW, BESIDE = 0.85, 0.5
 POLES = [-0.12243 + 13.551j, -0.05 + 8.6601j, -0.0088785 + 3.6493j]
-
-
-def gravimeter() -> model.Study:
-    """One strut along x at 0.85 m below the centre of mass, two along y at +-0.5 m beside it; they have no mass."""
-    top = np.array([[0.0, -BELOW], [-BESIDE, -BELOW], [BESIDE, -BELOW]])
-    base = top - LONG * np.array([[1.0, 0], [0, 1.0], [0, 1.0]])
-    flat = lambda x: np.concatenate([x, np.zeros((3, 1))], axis=1)  # noqa: E731
-    leg = model.Leg(
-        chain="RPR", cylinder=model.Cylinder(mass=0.0, com=0.0, inertia=0.0, mouth=0.5),
-        piston=model.Piston(length=0.9, rhoA=0.0, EA=1e9, EI=1e3), drive=model.ServoDrive(stiffness=K, damping=C),
-    )  # fmt: skip
-    payload = model.Payload(mass=M, inertia=INERTIA * np.eye(3), com=np.zeros(3))
-    robot = model.Robot(
-        type="3-RPR", plane="xy", base_joints=flat(base), platform_joints=flat(top), home=model.Home(position=np.zeros(3)),
-        legs=(leg,) * 3, payload=payload, gravity=np.zeros(3),
-    )  # fmt: skip
-    still = model.AxisMotion(type="surge", amplitude=0.0, duration=1.0)
-    return model.Study(robot=robot, motion=still, simulation=model.Simulation(fidelity="rigid"))
 
 
 def test_its_poles():

@@ -7,36 +7,11 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod import model
+from flexapod.verify.cases.linear import DAMPER as C
+from flexapod.verify.cases.linear import SPRING as K
+from flexapod.verify.cases.linear import stewart
 
-K, C = 2e7, 20.0
 HZ = np.array([10.0, 100.0, 500.84, 1e4])
-
-
-def circle(radius, angles, z):
-    angles = np.deg2rad(angles)
-    return np.stack([radius * np.cos(angles), radius * np.sin(angles), np.full(6, z)], axis=1)
-
-
-def stewart() -> model.Study:
-    """Struts of two rods of 0.1 kg, 50 mm, radius 5 mm; the lower begins at the base, the upper ends at the platform."""
-    base = circle(0.115, [-10, 10, 110, 130, 230, 250], 0.015)
-    platform = circle(0.09, [-50, 50, 70, 170, 190, -70], 0.075)
-    m, L, r = 0.1, 0.05, 0.005
-    across = m * (3 * r**2 + L**2) / 12
-    # a piston is a line: its inertia by its thickness, m r^2 / 4 across, turns with the cylinder
-    cylinder = model.Cylinder(mass=m, com=L / 2, inertia=across + m * r**2 / 4, axial_inertia=m * r**2 / 2, mouth=0.05)
-    piston = model.Piston(length=L, rhoA=m / L, EA=1e9, EI=1e3, axial_inertia=m * r**2 / 2)
-    leg = model.Leg(cylinder=cylinder, piston=piston, drive=model.ServoDrive(stiffness=K, damping=C))
-    R, h, M = 0.1, 0.01, 1.0
-    inertia = np.diag([M * (3 * R**2 + h**2) / 12] * 2 + [M * R**2 / 2])
-    payload = model.Payload(mass=M, inertia=inertia, com=[0, 0, 0.085], tool=[0, 0, 0.135])
-    robot = model.Robot(
-        base_joints=base, platform_joints=platform, legs=(leg,) * 6, payload=payload, gravity=np.zeros(3),
-        home=model.Home(position=np.zeros(3)),
-    )  # fmt: skip
-    still = model.AxisMotion(type="heave", amplitude=0.0, duration=1.0)
-    return model.Study(robot=robot, motion=still, simulation=model.Simulation(fidelity="rigid"))
 
 
 @pytest.fixture(scope="module")
@@ -81,15 +56,7 @@ def test_a_floor_that_turns_by_moving_each_joint():
     # the platform alone on struts without mass: k of each strut between a base joint and a platform joint that are
     # displaced rigidly. T = (-w^2 m + J^T z J)^-1 J^T z J_base, with J and J_base the rates of the struts by turns and
     # displacements of platform and base about the tool
-    study = stewart()
-    light = tuple(
-        leg.replace(
-            cylinder=leg.cylinder.replace(mass=1e-9, inertia=1e-12, axial_inertia=0.0),
-            piston=leg.piston.replace(rhoA=1e-9, axial_inertia=0.0),
-        )
-        for leg in study.robot.legs
-    )
-    study = study.replace(robot=study.robot.replace(legs=light))
+    study = stewart(light=True)
     robot, hz = study.robot, np.array([300.0, 900.0, 2000.0])
     tips, feet, tool = robot.platform_joints, robot.base_joints, robot.tool
     e = (tips - feet) / np.linalg.norm(tips - feet, axis=1)[:, None]

@@ -2,7 +2,9 @@
 
 import json
 
+import numpy as np
 import pytest
+from tests.cli.conftest import SHORT
 
 from flexapod import load, modes
 from flexapod.exchange.export import ELEMENTS, MODES
@@ -59,6 +61,41 @@ def test_bad_input(flexapod, study, folder, arguments, words):
     assert run.exit_code == 2
     assert words in run.stderr
     assert [path.name for path in folder.iterdir()] == ["study.toml"]
+
+
+@pytest.mark.parametrize(
+    ("format", "ending", "words"),
+    [("mjcf", "xml", "Steps of"), ("gltf", "glb", "Left out: forces"), ("vtk", "pvd", "Warp By Vector")],
+)
+def test_other_formats_are_named_after_the_study_and_say_what_they_leave_out(
+    flexapod, study, folder, format, ending, words
+):
+    file = study(*SHORT)
+    run = flexapod("export", file, "--format", format)
+    assert run.exit_code == 0, run.stderr
+    assert f"study.{ending}" in run.stdout and words in " ".join(run.stdout.split())
+    assert (folder / f"study.{ending}").stat().st_size > 1000
+    again = flexapod("export", file, "--format", format)
+    assert again.exit_code == 2 and "--force" in again.stderr
+    found = json.loads(flexapod("export", file, "--format", format, "--force", "--json").stdout)
+    assert found["file"] == f"study.{ending}" and found["format"] == format and found["left_out"]
+    assert found["files"][0] == f"study.{ending}"
+
+
+def test_options_of_formats_reach_them(flexapod, study, folder):
+    file = study(*SHORT)
+    rigid = flexapod("export", file, "--format", "mjcf", "--fidelity", "rigid")
+    assert rigid.exit_code == 0 and "bend_1" not in (folder / "study.xml").read_text()
+    assert flexapod("export", file, "--format", "gltf", "--magnify", 100).exit_code == 0
+    named = ("--inputs", "wrench:fx, force:(0, 0, 0.1):x, command", "--outputs", "tool:z", "--pose", "roll=1deg")
+    assert flexapod("export", file, "--format", "mat", *named, "--out", "robot.npz").exit_code == 0
+    with np.load(folder / "robot.npz") as read:
+        assert (read["B"].shape[1], read["C"].shape[0]) == (8, 1)
+    unknown = flexapod("export", file, "--format", "mat", "--inputs", "wrnch")
+    assert unknown.exit_code == 2 and "--inputs" in unknown.stderr and "wrench" in unknown.stderr
+    for wrong, option in ((("--format", "gltf", "--elements", 4), "--elements"), (("--step", "1ms"), "--step")):
+        run = flexapod("export", file, *wrong)
+        assert run.exit_code == 2 and option in run.stderr and "is not an option of" in run.stderr
 
 
 def test_an_actuator_is_no_robot(flexapod, study):

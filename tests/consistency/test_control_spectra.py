@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import flexapod as fx
 import flexapod.control as fc
 from flexapod.errors import InputError
 from flexapod.model import Disturbance
@@ -178,3 +179,19 @@ def test_without_python_control_words_say_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "control", None)
     with pytest.raises(ComputationError, match="pip install"):
         mode().to_control()
+
+
+@pytest.mark.parametrize("name", ["machine-hexapod", "nano-hexapod"])
+def test_spectra_of_a_robot_equal_its_vibration(name):
+    study = fx.preset(name)
+    f = np.array([2.0, 300.0])
+    wrench = Spectrum(frequency=f, density=np.outer([1e-4, 1e-5], np.arange(1, 7)))
+    study = study.replace(disturbance=Disturbance(floor=Floor.by_curve("VC-A"), wrench=wrench))
+    exact = fx.vibration(study)
+    model = fx.linearize(study, inputs=["floor", "wrench"], outputs="tool")
+    data, each = model.psd(study.disturbance), model.by_source(study.disturbance)
+    # The same panels; modes there, states here: responses to 1e-9.
+    np.testing.assert_allclose(data.rms, exact.vibration_rms, rtol=1e-8)
+    np.testing.assert_allclose(data.covariance, exact.vibration_covariance, atol=1e-8 * data.covariance.max().item())
+    largest = exact.vibration_rms.values
+    np.testing.assert_allclose(each.rms_by_source / largest, exact.vibration_by_source / largest, atol=1e-8)

@@ -10,7 +10,8 @@ from tests.consistency import test_motor_loops as motors
 from tests.consistency.test_hydraulic_drive import OIL
 from tests.consistency.test_mounts import BASE, TOP
 from tests.consistency.test_screw_drive import EVERYTHING
-from tests.machines import SCREW, SOFT, machine, study
+from tests.machines import SOFT, machine, study
+from tests.trial_element.maxwell import Maxwell
 
 import flexapod as fx
 from flexapod.kinematics import home_pose
@@ -59,6 +60,23 @@ def test_poles_of_presets_and_samples(name, friction):
     away = np.abs(found[:, None] - ratio).min(axis=0)
     if name not in EVENLY:
         assert away.max() < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("fidelity", "modes"), [("finite-segment", 8), ("beam-fem", 4), ("solid-fem", 2), ("lumped", None)]
+)
+def test_legs_of_every_fidelity(fidelity, modes):
+    given = fx.model.override(fx.preset("paper-robot"), fidelity=fidelity, modes=modes)
+    assert apart(fx.linearize(given, inputs="wrench", outputs="tool").poles(), of_modes(given)).max() < 1e-9
+
+
+def test_an_element_from_outside_with_a_damper_alone():
+    # of a Maxwell element at rest the point between spring and damper has no mass: a state of first order in each leg
+    table = '[leg.maxwell]\nstiffness = "20 kN/m"\nrelaxation = "0.1 s"\n'
+    given = fx.loads(fx.model.preset_text("paper-robot").replace("[motion]", f"{table}\n[motion]", 1))
+    plain, lin = (fx.linearize(x, inputs="wrench", outputs="tool") for x in (fx.preset("paper-robot"), given))
+    assert set(lin.states) - set(plain.states) == {f"leg {k} {Maxwell.at}_z" for k in range(1, 7)}
+    assert apart(lin.poles(), of_modes(given)).max() < 1e-9
 
 
 @pytest.mark.parametrize("fidelity", ["lumped", "assumed-modes", "rigid"])

@@ -172,7 +172,10 @@ def test_its_table_is_refused_as_others_are(table, words):
         fx.loads(text(table))
 
 
-@pytest.mark.parametrize("reader", [fx.inverse_dynamics, abaqus_deck, lambda study: mjcf(study.robot)])
+@pytest.mark.parametrize(
+    "reader",
+    [fx.inverse_dynamics, abaqus_deck, lambda study: mjcf(study.robot), lambda s: fx.export(s, "mjcf", "a.xml")],
+)
 def test_who_does_not_know_it_says_so(reader):
     with pytest.raises(fx.InputError, match=r"leg\.maxwell: is not known to"):
         reader(study())

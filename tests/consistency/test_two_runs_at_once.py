@@ -1,5 +1,6 @@
 """Runs that take turns, some steps each, give the bits of runs one after the other: their state is their own."""
 
+from dataclasses import replace
 from threading import Thread
 
 import numpy as np
@@ -72,6 +73,19 @@ def test_begun_in_one_thread_and_ended_in_another(alone):
     thread.start()
     thread.join()
     np.testing.assert_array_equal(run.all(), alone[0])
+
+
+def test_saved_and_restored(alone):
+    """A copy of the memory, at another place, goes on with the bits of what it is a copy of."""
+    run, again = Run(), Run()
+    run.advance(0, TURN + 1)
+    size = run.before.memory.size
+    elsewhere = native.memory(8 * size + native.LINE)[native.LINE // 8 :]
+    elsewhere[:] = run.before.memory
+    again.before, again.rows = replace(run.before, memory=elsewhere), [run.rows[0]]
+    for one in (run, again):
+        one.advance(TURN + 1, STEPS)
+        np.testing.assert_array_equal(one.all(), alone[1])
 
 
 def test_memory_is_zero_and_begins_where_vectors_may():

@@ -14,8 +14,10 @@ import typer
 from typer.core import TyperGroup
 
 from flexapod.cli.commands_budget import budget
+from flexapod.cli.commands_export import export
+from flexapod.cli.commands_linear import damp, frf
 from flexapod.cli.commands_map import workspace_map
-from flexapod.cli.commands_poses import export, modes
+from flexapod.cli.commands_poses import modes
 from flexapod.cli.commands_proof import replicate, verify
 from flexapod.cli.commands_run import actuator, cache, run
 from flexapod.cli.commands_study import check, keys, new
@@ -96,6 +98,8 @@ _ALL = (
     run,
     actuator,
     modes,
+    frf,
+    damp,
     budget,
     workspace_map,
     converge,

@@ -1,8 +1,7 @@
-"""Commands at a pose of the locked robot: `modes` lists its modes, `export` writes it as a deck."""
+"""A command at a pose of the locked robot: `modes` lists its modes."""
 
 from __future__ import annotations
 
-import string
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,20 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.cli.failures import guarded
-from flexapod.cli.options import (
-    Force,
-    Json,
-    NoFigures,
-    Pose,
-    StudyFile,
-    as_options,
-    check_writable,
-    refuse_existing,
-    robot_study,
-)
+from flexapod.cli.options import Json, NoFigures, Pose, StudyFile, as_options, check_writable
 from flexapod.document.terminal import tell
-from flexapod.errors import InputError
-from flexapod.runtime.files import write_text
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -89,66 +76,3 @@ def _write_modes(data: Dataset, shaken: Dataset | None, folder: Path, *, figure:
         files.append(save(shaken, folder / "vibration.nc"))
         files += plot.save(plot.vibration(shaken), folder / "vibration") if figure else ()
     return files
-
-
-NAMES = frozenset(string.ascii_letters + string.digits + "-_")
-
-Format = Annotated[str, typer.Option("--format", metavar="FORMAT", help="abaqus, which CalculiX reads as well.")]
-Elements = Annotated[int, typer.Option("--elements", help="Solid elements along the free part of each piston.")]
-Wanted = Annotated[int, typer.Option("--count", help="How many frequencies the deck asks for.")]
-Deck = Annotated[
-    Path | None, typer.Option("--out", metavar="FILE.inp", help="File to write; default: beside the study, FILE.inp.")
-]
-
-
-@guarded
-def export(
-    file: StudyFile,
-    format: Format = "abaqus",
-    pose: Pose = None,
-    elements: Elements = 20,
-    count: Wanted = 24,
-    out: Deck = None,
-    force: Force = False,
-    json: Json = False,
-) -> None:
-    """Write the robot with locked drives as a deck for Abaqus and CalculiX: sag under gravity, frequencies."""
-    from flexapod.cli.map_options import parse_pose
-    from flexapod.exchange.export import FORMATS, abaqus_deck
-
-    if format not in FORMATS:
-        words = "abaqus, a deck that CalculiX reads as well"
-        raise InputError("is not a format", key="--format", value=format, allowed=words)
-    study = robot_study(file)
-    path = file.with_name(file.stem + ".inp") if out is None else out
-    _check_file(path, force)
-    title = f"{file.stem}: robot with locked drives"
-    with as_options(elements="--elements", modes="--count", pose="--pose"):
-        text = abaqus_deck(study, parse_pose(pose), elements=elements, modes=count, title=title)
-    write_text(path, text, encoding="ascii", errors="replace")
-    at = f' --pose "{pose}"' if pose else ""
-    items = [
-        f"Written: {path}",
-        f"Run it with `ccx -i {path.with_suffix('')}` (CalculiX) or `abaqus job={path.stem}` (Abaqus).",
-        f"Compare its frequencies and its sag with `flexapod modes {file}{at}`.",
-        "Bending of slender pistons lies parts in ten thousand lower: a solid has shear and rotary inertia.",
-    ]
-    tell(items, lambda: {"file": path, "format": format, "elements": elements, "modes": count}, json=json)
-
-
-def _check_file(path: Path, force: bool) -> None:
-    if path.is_dir():
-        raise InputError("is a folder", key="--out", value=str(path), next_step="Give the name of a file")
-    if path.suffix.lower() != ".inp":
-        raise InputError(
-            "is not named as a deck", key="--out", value=str(path), allowed="FILE.inp: both programs ask for it"
-        )
-    if not set(path.stem) <= NAMES:
-        raise InputError(
-            "has a name that CalculiX or Abaqus do not read",
-            key="--out",
-            value=path.name,
-            allowed="letters without accents, digits, - and _",
-            next_step="Name the deck with --out NAME.inp",
-        )
-    refuse_existing(path, force)

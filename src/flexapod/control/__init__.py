@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 from flexapod.runtime.loading import loaded
 
 if TYPE_CHECKING:
+    from flexapod.control.adaptive import AdaptiveDamping, Tracker
     from flexapod.control.closing import DelayedLoop
     from flexapod.control.controllers import DVF, IFF, PID, Controller, Decentralised, Decoupled, Fused, Together
     from flexapod.control.decoupling import (
-        Matrices,
+        Decoupling,
         by_jacobian,
         by_modes,
         by_singular_vectors,
@@ -21,8 +22,9 @@ if TYPE_CHECKING:
         robot_jacobian,
     )
     from flexapod.control.function import Function
+    from flexapod.control.impedances import impedance
     from flexapod.control.laws import (
-        Law,
+        ControlLaw,
         complementary,
         gain,
         high_pass,
@@ -34,14 +36,18 @@ if TYPE_CHECKING:
         positive_feedback,
         rate,
     )
-    from flexapod.control.loops import best_gain, margins, root_locus
+    from flexapod.control.limits import margins
+    from flexapod.control.loops import best_gain, root_locus
+    from flexapod.control.ring_down import ring_down
+    from flexapod.control.scheduled import Scheduled
     from flexapod.control.state_space import StateSpace
 
 _HOMES = {
+    "adaptive": ("AdaptiveDamping", "Tracker"),
     "closing": ("DelayedLoop",),
     "controllers": ("DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together"),
     "decoupling": (
-        "Matrices",
+        "Decoupling",
         "by_jacobian",
         "by_modes",
         "by_singular_vectors",
@@ -49,8 +55,9 @@ _HOMES = {
         "robot_jacobian",
     ),
     "function": ("Function",),
+    "impedances": ("impedance",),
     "laws": (
-        "Law",
+        "ControlLaw",
         "complementary",
         "gain",
         "high_pass",
@@ -62,7 +69,10 @@ _HOMES = {
         "positive_feedback",
         "rate",
     ),
-    "loops": ("best_gain", "margins", "root_locus"),
+    "limits": ("margins",),
+    "loops": ("best_gain", "root_locus"),
+    "ring_down": ("ring_down",),
+    "scheduled": ("Scheduled",),
     "state_space": ("StateSpace",),
 }
 _NAMES = {name: module for module, names in _HOMES.items() for name in names}
@@ -71,16 +81,19 @@ __all__ = [
     "DVF",
     "IFF",
     "PID",
+    "AdaptiveDamping",
+    "ControlLaw",
     "Controller",
     "Decentralised",
     "Decoupled",
+    "Decoupling",
     "DelayedLoop",
     "Function",
     "Fused",
-    "Law",
-    "Matrices",
+    "Scheduled",
     "StateSpace",
     "Together",
+    "Tracker",
     "best_gain",
     "by_jacobian",
     "by_modes",
@@ -89,6 +102,7 @@ __all__ = [
     "complementary",
     "gain",
     "high_pass",
+    "impedance",
     "integrator",
     "lead",
     "low_pass",
@@ -97,6 +111,7 @@ __all__ = [
     "pid",
     "positive_feedback",
     "rate",
+    "ring_down",
     "robot_jacobian",
     "root_locus",
 ]

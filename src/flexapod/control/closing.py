@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexapod.control.channels import NOISE, RATE, chosen
-from flexapod.control.interconnect import CONTROL, closed, units_with
+from flexapod.control.interconnect import CONTROL, closed, law_of, units_with
 from flexapod.control.sampling import held, period_of
 from flexapod.errors import InputError
 from flexapod.units import to_si
@@ -84,7 +84,7 @@ def close(
     system: StateSpace, controller: Controller | StateSpace, delay: float | str, sample: float | str | None
 ) -> StateSpace | DelayedLoop:
     """See `StateSpace.close`."""
-    law = controller.on(system.outputs, system.inputs, system.units)
+    law = law_of(controller, system.outputs, system.inputs, system.units)
     late = to_si(delay, "time", key="delay")
     if late < 0:
         raise InputError("is below 0", key="delay", value=delay, allowed="0 s or more")

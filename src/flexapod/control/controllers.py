@@ -12,11 +12,12 @@ from scipy.linalg import block_diag
 from flexapod.arrays import Array
 from flexapod.control import laws
 from flexapod.control.channels import RATE, Names, chosen
+from flexapod.control.interconnect import law_of
 from flexapod.control.laws import Law, Number
 from flexapod.control.state_space import StateSpace
 from flexapod.errors import InputError
 
-__all__ = ["DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together"]
+__all__ = ["DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together", "pairs"]
 
 NO_UNITS: Mapping[str, str] = {}
 
@@ -56,20 +57,19 @@ def assembled(
     units: Mapping[str, str],
 ) -> StateSpace:  # fmt: skip
     """Laws between matrices: u = `out` (actuators, k) . laws (k) . `into` (k, sensors) y, Eq. (T21.12)."""
-    A, C = block_diag(*(law.A for law in columns)), block_diag(*(law.C[None] for law in columns))
-    n = sum(len(law.A) for law in columns)
-    A, C = A.reshape(n, n), C.reshape(len(columns), n)  # of laws without states
-    read, rates = (block_diag(*(law.B[:, [i]] for law in columns)).reshape(n, len(columns)) for i in (0, 1))
+    n, k = sum(len(law.A) for law in columns), len(columns)
+    A, C = np.reshape(_diagonal([law.A for law in columns]), (n, n)), _diagonal([law.C[None] for law in columns])
+    read, rates = (np.reshape(_diagonal([law.B[:, [i]] for law in columns]), (n, k)) for i in (0, 1))
     direct, damped = (np.diag([law.D[i] for law in columns]) for i in (0, 1))
     names, B, D = list(sensors), read @ into, out @ direct @ into
     if rates.any() or damped.any():
-        seen = np.flatnonzero((rates @ into).any(axis=0) | (out @ damped @ into).any(axis=0))
+        seen = np.flatnonzero((rates @ into).any(axis=0) | (out @ damped @ into).any(axis=0)).tolist()
         names += [RATE + sensors[i] for i in seen]
         B, D = np.hstack([B, (rates @ into)[:, seen]]), np.hstack([D, (out @ damped @ into)[:, seen]])
     return StateSpace(
         A=A,
         B=B,
-        C=out @ C,
+        C=out @ np.reshape(C, (k, n)),
         D=D,
         inputs=tuple(names),
         outputs=tuple(actuators),
@@ -89,7 +89,7 @@ class Decentralised(Controller):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
-        sensors, actuators = _pairs(self.sensor, self.actuator, outputs, inputs)
+        sensors, actuators = pairs(self.sensor, self.actuator, outputs, inputs)
         each = np.eye(len(sensors))
         return assembled([self.law * -1.0] * len(sensors), each, each, sensors, actuators, units)
 
@@ -122,11 +122,11 @@ class IFF(Controller):
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
         law = laws.integrator(-self.gain, self.high_pass)
-        sensors, actuators = _pairs(self.sensor, self.actuator, outputs, inputs)
+        sensors, actuators = pairs(self.sensor, self.actuator, outputs, inputs)
         each = np.eye(len(sensors))
         if not self.parallel_stiffness:
             return assembled([law] * len(sensors), each, each, sensors, actuators, units)
-        strokes, _ = _pairs(self.stroke, self.actuator, outputs, inputs)
+        strokes, _ = pairs(self.stroke, self.actuator, outputs, inputs)
         into = np.hstack([each, self.parallel_stiffness * each])
         return assembled([law] * len(sensors), into, each, [*sensors, *strokes], actuators, units)
 
@@ -180,8 +180,8 @@ class Fused(Controller):
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
         below, above = laws.complementary(self.corner, self.order)
-        low, actuators = _pairs(self.low, self.actuator, outputs, inputs)
-        high, _ = _pairs(self.high, self.actuator, outputs, inputs)
+        low, actuators = pairs(self.low, self.actuator, outputs, inputs)
+        high, _ = pairs(self.high, self.actuator, outputs, inputs)
         each = np.eye(len(low))
         both = [self.law * below * -1.0] * len(low) + [self.law * above * -1.0] * len(low)
         return assembled(both, np.eye(2 * len(low)), np.hstack([each, each]), [*low, *high], actuators, units)
@@ -231,16 +231,17 @@ class Together(Controller):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
-        each = [part.on(outputs, inputs, units) for part in self.parts]
+        each = [law_of(part, outputs, inputs, units) for part in self.parts]
         readings = tuple(dict.fromkeys(name for part in each for name in part.inputs))
         actuators = tuple(dict.fromkeys(name for part in each for name in part.outputs))
         reads = [np.array([[float(a == b) for b in readings] for a in part.inputs]) for part in each]
         drives = [np.array([[float(a == b) for b in part.outputs] for a in actuators]) for part in each]
+        n = sum(len(part.A) for part in each)
         return StateSpace(
-            A=block_diag(*(part.A for part in each)).reshape(-1, sum(len(part.A) for part in each)),
+            A=np.reshape(_diagonal([part.A for part in each]), (n, n)),
             B=np.vstack([part.B @ read for part, read in zip(each, reads, strict=True)]),
             C=np.hstack([drive @ part.C for part, drive in zip(each, drives, strict=True)]),
-            D=sum(d @ part.D @ r for part, r, d in zip(each, reads, drives, strict=True)),
+            D=np.sum([d @ part.D @ r for part, r, d in zip(each, reads, drives, strict=True)], axis=0),
             inputs=readings,
             outputs=actuators,
             states=tuple(f"part {k + 1} {name}" for k, part in enumerate(each) for name in part.states),
@@ -248,9 +249,12 @@ class Together(Controller):
         )
 
 
-def _pairs(
-    sensor: Names, actuator: Names, outputs: Sequence[str], inputs: Sequence[str]
-) -> tuple[list[str], list[str]]:
+def _diagonal(blocks: Sequence[Array]) -> Array:
+    """Blocks along a diagonal; those without rows or columns still have the others."""
+    return np.asarray(block_diag(*blocks), dtype=float)
+
+
+def pairs(sensor: Names, actuator: Names, outputs: Sequence[str], inputs: Sequence[str]) -> tuple[list[str], list[str]]:
     """Names of sensors and actuators, as many of each."""
     sensors = [outputs[i] for i in chosen(sensor, outputs, "sensor")]
     actuators = [inputs[i] for i in chosen(actuator, inputs, "actuator")]

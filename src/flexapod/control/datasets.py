@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -21,12 +22,15 @@ __all__ = [
     "channel_labels",
     "complex_of",
     "damping_dataset",
+    "frf_dataset",
     "h2_dataset",
     "hinf_dataset",
     "history_dataset",
+    "impedance_dataset",
     "in_parts",
     "locus_dataset",
     "margins_dataset",
+    "per",
     "response_dataset",
     "source_dataset",
     "system_dataset",
@@ -59,6 +63,13 @@ def complex_of(values: xr.DataArray) -> xr.DataArray:
     return values.sel(part="real", drop=True) + 1j * values.sel(part="imaginary", drop=True)
 
 
+def per(output: str, input: str) -> str:
+    """Unit of a response by those of its channels."""
+    if output == input:
+        return "1"
+    return f"{output}/({input})" if " " in input or "/" in input else output if input == "1" else f"{output}/{input}"
+
+
 def channel_labels(system: Channels, *dims: str) -> dict[str, tuple[str, list[str]]]:
     """Names and units of channels as coordinates: `output`, `output_units`, `input`, `input_units`."""
     names = {"input": system.inputs, "output": system.outputs}
@@ -78,6 +89,22 @@ def response_dataset(
         channel_labels(system, "output", "input")
         | {"frequency": ("frequency", frequency, {"units": "Hz"}), "part": ("part", PARTS)},
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Measured:
+    """Channels of a measurement."""
+
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    units: Mapping[str, str]
+
+
+def frf_dataset(
+    frequency: Array, values: Complex, outputs: tuple[str, ...], inputs: tuple[str, ...], units: Mapping[str, str]
+) -> xr.Dataset:
+    """`frequency_response` of values (outputs, inputs, f) at frequencies [Hz], from wherever they are."""
+    return response_dataset(Measured(inputs=inputs, outputs=outputs, units=units), frequency, values)
 
 
 def h2_dataset(system: StateSpace, values: Array, why: dict[tuple[int, int], str]) -> xr.Dataset:
@@ -147,6 +174,19 @@ def history_dataset(system: StateSpace, time: Array, values: Array, name: str) -
         {name: (("output", "input", "time"), values, words)},
         channel_labels(system, "output", "input") | {"time": ("time", time, {"units": "s"})},
     )
+
+
+def impedance_dataset(
+    frequency: Array, values: Complex, parallel: tuple[Array, Array], series: tuple[Array, Array]
+) -> xr.Dataset:
+    """`impedance` over `frequency`, and springs and dampers with the same."""
+    found: dict[str, tuple[object, ...]] = {
+        "impedance": (("frequency", "part"), in_parts(values), {"units": "N s/m", "long_name": "force over velocity"})
+    }
+    for name, (stiffness, damping) in {"parallel": parallel, "series": series}.items():
+        found[f"{name}_stiffness"] = ("frequency", stiffness, {"units": "N/m"})
+        found[f"{name}_damping"] = ("frequency", damping, {"units": "N s/m"})
+    return xr.Dataset(found, {"frequency": ("frequency", frequency, {"units": "Hz"}), "part": PARTS})
 
 
 def system_dataset(system: StateSpace) -> xr.Dataset:

@@ -81,7 +81,7 @@ def centre_of_stiffness(jacobian: ArrayLike, stiffness: ArrayLike = 1.0) -> Arra
     K = J.T @ (np.broadcast_to(np.asarray(stiffness, dtype=float), len(J))[:, None] * J)
     turns = [K[:3, :3] @ np.cross(np.eye(3), axis) for axis in np.eye(3)]
     system = np.stack([turn.ravel() for turn in turns], axis=1)
-    return np.linalg.lstsq(system, -K[:3, 3:].ravel(), rcond=None)[0]
+    return np.asarray(np.linalg.lstsq(system, -K[:3, 3:].ravel(), rcond=None)[0], dtype=float)
 
 
 def by_modes(
@@ -113,7 +113,7 @@ def by_modes(
     shown = part.C @ right
     edge = 2 * np.pi * to_si(above, "frequency", key="above")
     slowest = np.argsort(np.abs(values), kind="stable")
-    modes = [i for i in slowest if values[i].imag > 0 and abs(values[i]) > edge]
+    modes = [i for i in slowest if np.imag(values[i]) > 0 and abs(values[i]) > edge]
     if len(modes) < k:
         raise ComputationError(f"there are {len(modes)} modes that vibrate, fewer than {k}")
     into = np.stack([_real(shown[:, i]) for i in modes[:k]], axis=1)
@@ -139,7 +139,7 @@ def by_singular_vectors(
 def _real(shape: np.ndarray) -> Array:
     """A complex shape as the real one that is nearest, of its size, its largest part positive."""
     turned = shape * np.exp(-0.5j * np.angle((shape**2).sum()))
-    real = turned.real
+    real = np.real(turned)
     return real * np.sign(real[np.abs(real).argmax()] or 1.0)
 
 
@@ -148,4 +148,4 @@ def _inverse(matrix: Array, key: str) -> Array:
     values = np.linalg.svd(matrix / (np.linalg.norm(matrix, axis=0) + 1e-300), compute_uv=False)
     if values.min(initial=np.inf) < INDEPENDENT * values.max(initial=0.0):
         raise ComputationError(f"directions are not told apart by {key}", next_step="Ask for fewer directions")
-    return np.linalg.pinv(matrix)
+    return np.asarray(np.linalg.pinv(matrix), dtype=float)

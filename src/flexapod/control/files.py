@@ -57,7 +57,7 @@ def _mat(system: StateSpace, path: Path) -> None:
 
 def _npz(system: StateSpace, path: Path) -> None:
     with path.open("wb") as file:
-        np.savez(file, **_named(system))
+        np.savez(file, allow_pickle=False, **_named(system))
 
 
 def _nc(system: StateSpace, path: Path) -> None:

@@ -44,13 +44,15 @@ def _regular(A: Array, B: Array, C: Array, s: Complex) -> Complex:
     if A.shape[0] == 0 or s.size == 0 or B.shape[1] == 0 or C.shape[0] == 0:
         return np.zeros((len(C), B.shape[1], s.size), dtype=complex)
     middle = SHIFTED * np.exp(np.log(np.abs(s[s != 0])).mean()) if s.any() else 1.0
-    inverse, shapes = np.linalg.eig(np.linalg.inv(A - middle * np.eye(len(A))))
-    values = middle + 1.0 / inverse  # (T21.35): those amid the points to rounding, however fast others are
+    inverse, shapes = (x.astype(complex) for x in np.linalg.eig(np.linalg.inv(A - middle * np.eye(len(A)))))
+    values = np.asarray(
+        middle + 1.0 / inverse, dtype=complex
+    )  # (T21.35): those amid the points to rounding, however fast others are
     _refuse_poles(values, s)
     sizes = np.linalg.norm(shapes, axis=1, keepdims=True)  # of states: their units are no matter
     if np.linalg.cond(shapes / np.where(sizes > 0, sizes, 1.0)) > ALIKE:
         return _solved(A, B, C, s)
-    left, right = np.linalg.solve(shapes, B.astype(complex)), C @ shapes
+    left, right = np.linalg.solve(shapes, B.astype(complex)).astype(complex), (C @ shapes).astype(complex)
     some = _where_it_matters(values, s)
     known = _solved(A, B, C, s[some])
     by_poles = _by_residues(values, left, right, s[some])

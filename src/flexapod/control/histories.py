@@ -39,7 +39,7 @@ def instants(system: StateSpace, duration: float | None, step: float | None) -> 
         step = max(fine, 1 / (PERIOD * frequency[swings].max())) if swings.any() else fine
     if not step > 0:
         raise InputError("is not a time", key="step", value=step, allowed="above 0 s")
-    return step * np.arange(int(np.floor(duration / step * (1 + 1e-12))) + 1)
+    return np.asarray(step * np.arange(int(np.floor(duration / step * (1 + 1e-12))) + 1), dtype=float)
 
 
 def histories(system: StateSpace, time: Array, *, impulse: bool) -> Array:

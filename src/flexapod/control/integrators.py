@@ -37,7 +37,7 @@ def moved_and_shown(A: Array, B: Array, C: Array) -> tuple[Array, Array, Array]:
     """The states that some input moves and some output shows, by what is 0 in the matrices."""
     links = A != 0
     kept = np.flatnonzero(reached(links, (B != 0).any(axis=1)) & reached(links.T, (C != 0).any(axis=0)))
-    return A[np.ix_(kept, kept)], B[kept], C[:, kept]
+    return A[kept][:, kept], B[kept], C[:, kept]
 
 
 def reached(links: Mask, start: Mask) -> Mask:
@@ -64,7 +64,7 @@ def without_integrators(A: Array, B: Array, C: Array) -> Integrated:
     main = np.flatnonzero(others | between)
     up, down = np.flatnonzero(drives & ~between), np.flatnonzero(drift & ~drives)
     N = np.concatenate([down, up])
-    part = lambda rows, columns: A[np.ix_(rows, columns)]  # noqa: E731
+    part = lambda rows, columns: A[rows][:, columns]  # noqa: E731
     if not len(N) or not len(main):
         return _as_powers(A, B, C, N, main)
     # (T21.33)  x_main + X x_up and x_down + Y x_main are apart
@@ -72,10 +72,10 @@ def without_integrators(A: Array, B: Array, C: Array) -> Integrated:
     Y = scipy.linalg.solve_sylvester(part(down, down), -part(main, main), -part(down, main)) if len(down) else None
     change, back = np.eye(len(A)), np.eye(len(A))
     if X is not None:
-        change[np.ix_(main, up)], back[np.ix_(main, up)] = X, -X
+        change[main[:, None], up], back[main[:, None], up] = X, -X
     if Y is not None:
         second, undone = np.eye(len(A)), np.eye(len(A))
-        second[np.ix_(down, main)], undone[np.ix_(down, main)] = Y, -Y
+        second[down[:, None], main], undone[down[:, None], main] = Y, -Y
         change, back = change @ second, undone @ back
     if not (np.isfinite(change).all() and np.isfinite(back).all()):
         return Integrated(A=A, B=B, C=C, powers=np.zeros((0, len(C), B.shape[1])))
@@ -84,12 +84,12 @@ def without_integrators(A: Array, B: Array, C: Array) -> Integrated:
 
 def _as_powers(A: Array, B: Array, C: Array, N: NDArray[np.int_], main: NDArray[np.int_]) -> Integrated:
     """Integrators as powers of 1/s: their matrix to some power is 0."""
-    power, powers, inner = B[N], [], A[np.ix_(N, N)]
+    power, powers, inner = B[N], [], A[N][:, N]
     while power.any():
         powers.append(C[:, N] @ power)
         power = inner @ power
     return Integrated(
-        A=A[np.ix_(main, main)],
+        A=A[main][:, main],
         B=B[main],
         C=C[:, main],
         powers=np.array(powers).reshape(-1, len(C), B.shape[1]),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from flexapod.errors import InputError
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
 
-__all__ = ["CONTROL", "closed", "opened", "units_with"]
+__all__ = ["CONTROL", "closed", "law_of", "opened", "units_with"]
 
 CONTROL = "control:"  # before the name of an actuator: what the controller asks of it
 SINGULAR = 1e-12  # distance of a direct gain around a loop from 1 at which nothing says where it ends
@@ -63,6 +63,28 @@ def _readings(system: StateSpace, readings: tuple[str, ...]) -> Readings:
     return Readings(C=C, D=D, noise=noise, names=new)
 
 
+@runtime_checkable
+class Placed(Protocol):
+    """What finds its channels among those of a system, as `controllers.Controller`."""
+
+    def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str]) -> StateSpace:
+        """The law between channels."""
+        ...
+
+
+def law_of(
+    controller: Placed | StateSpace, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str]
+) -> StateSpace:
+    """A controller between channels of a system; a state space is one itself, with channels that the system has."""
+    if isinstance(controller, Placed):
+        return controller.on(outputs, inputs, units)
+    for name in controller.inputs:
+        chosen(name.removeprefix(RATE), outputs, "sensor")
+    for name in controller.outputs:
+        chosen(name, inputs, "actuator")
+    return controller
+
+
 def opened(system: StateSpace, controller: StateSpace) -> tuple[Array, Array, Array, Array]:
     """A, B, C, D from the actuators through system and controller back to them, the loop cut there."""
     at = [chosen(name, system.inputs, "actuator")[0] for name in controller.outputs]
@@ -102,7 +124,7 @@ def closed(system: StateSpace, controller: StateSpace) -> StateSpace:
         np.linalg.solve(loop, matrix)
         for matrix in (puts @ controller.D @ read.C, puts @ controller.C, np.eye(m) + puts @ controller.D @ read.noise)
     )
-    asked = np.hstack([by_x[at], by_k[at]]), by_r[at] - puts.T
+    asked = np.hstack([by_x[at], by_k[at]]).astype(float), np.asarray(by_r[at] - puts.T, dtype=float)
     A = np.block(
         [
             [system.A + B @ by_x, B @ by_k],

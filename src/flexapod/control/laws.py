@@ -170,9 +170,9 @@ def complementary(corner: Number, order: int = 1) -> tuple[Law, Law]:
     if order not in (1, 2, 3):
         raise InputError("is not an order of complementary filters", key="order", value=order, allowed="1, 2, 3")
     w, n = _omega(corner, "corner"), 2 * order - 1
-    terms = np.array([comb(n, k) * w**k for k in range(n + 1)])  # of (s + w)^n
-    high = np.where(np.arange(n + 1) < order, terms, 0.0)
-    return Law.of(terms - high, terms), Law.of(high, terms)
+    terms = [comb(n, k) * w**k for k in range(n + 1)]  # of (s + w)^n
+    above = [*terms[:order], *[0.0] * (n + 1 - order)]
+    return Law.of(terms[order:], terms), Law.of(above, terms)
 
 
 def _of_order(order: int, one: list[float], two: list[float]) -> list[float]:

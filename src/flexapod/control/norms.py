@@ -50,7 +50,7 @@ def h2_norms(system: StateSpace) -> tuple[Array, dict[tuple[int, int], str]]:
         ends = np.array([(i, j) not in why for i in range(len(C))], dtype=bool)
         kept = np.flatnonzero(moved & shown[ends].any(axis=0))
         rows = np.flatnonzero(ends)
-        values, lasting = _h2_of(A[np.ix_(kept, kept)], B[kept, j], C[np.ix_(rows, kept)], D[rows, j], system.sample)
+        values, lasting = _h2_of(A[kept][:, kept], B[kept, j], C[rows][:, kept], D[rows, j], system.sample)
         found[rows, j] = values
         why |= {(int(i), j): words for i, words in zip(rows, lasting, strict=True) if words}
     for at in why:
@@ -113,7 +113,7 @@ def hinf_norm(system: StateSpace) -> tuple[float, float]:
     if lasting := [pole for pole in poles if stays(pole, rate)]:
         return np.inf, _hertz(abs(lasting[0]), system.sample)
     A, change = scipy.linalg.matrix_balance(A / rate)  # time in units of 1 / rate
-    B, C = np.linalg.solve(change, B), C @ change / rate
+    B, C = np.asarray(np.linalg.solve(change, B), dtype=float), C @ change / rate
     level, at = max((float(np.linalg.norm(_at(A, B, C, D, w), 2)), w) for w in [0.0, *np.abs(poles) / rate])
     far = float(np.linalg.norm(D, 2))
     level, at = max((level, at), (far, np.inf))
@@ -140,9 +140,10 @@ def _at(A: Array, B: Array, C: Array, D: Array, omega: float) -> Complex:
 
 def _continuous(A: Array, B: Array, C: Array, D: Array) -> tuple[Array, Array, Array, Array, Complex]:
     """The same sizes on the imaginary axis as between samples on the circle: s = (z - 1) / (z + 1)."""
-    inverse = np.linalg.inv(np.eye(len(A)) + A)
+    inverse = np.asarray(np.linalg.inv(np.eye(len(A)) + A), dtype=float)
     found = inverse @ (A - np.eye(len(A)))
-    return found, np.sqrt(2) * inverse @ B, np.sqrt(2) * C @ inverse, D - C @ inverse @ B, np.linalg.eigvals(found)
+    poles = np.linalg.eigvals(found).astype(complex)
+    return found, np.sqrt(2) * inverse @ B, np.sqrt(2) * C @ inverse, D - C @ inverse @ B, poles
 
 
 def _crossings(A: Array, B: Array, C: Array, D: Array, level: float) -> Array:

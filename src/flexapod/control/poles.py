@@ -20,7 +20,7 @@ CANCELS = 1e-7  # distance of a zero from a pole over the pole's size at which b
 def poles_of(A: Array) -> Complex:
     """Eigenvalues, the slowest first; of a pair the one below the real axis first, (n,)."""
     values = np.linalg.eigvals(A).astype(complex)
-    return values[np.lexsort((values.imag, values.real, np.abs(values)))]
+    return values[np.lexsort((np.imag(values), np.real(values), np.abs(values)))]
 
 
 def damping_of(poles: Complex, sample: float | None) -> tuple[Complex, Array, Array]:
@@ -30,7 +30,7 @@ def damping_of(poles: Complex, sample: float | None) -> tuple[Complex, Array, Ar
     """
     if sample is not None:
         with np.errstate(divide="ignore"):
-            poles = np.log(poles) / sample
+            poles = np.asarray(np.log(poles) / sample, dtype=complex)
     s = poles[poles.imag >= 0]
     size = np.abs(s)
     order = np.lexsort((s.real, size))
@@ -46,7 +46,7 @@ def zeros_of(A: Array, B: Array, C: Array, D: Array, poles: Complex) -> Complex:
     """
     rate = _middle_rate(poles)
     A, change = scipy.linalg.matrix_balance(A / rate)
-    B, C = np.linalg.solve(change, B), C @ change
+    B, C = np.asarray(np.linalg.solve(change, B), dtype=float), C @ change
     wide, high = _sizes(B, axis=0), _sizes(C, axis=1)
     B, C, D = B / wide, C / high[:, None], rate * D / high[:, None] / wide
     A, B, C, D = _rows_compressed(A, B, C, D)
@@ -54,7 +54,7 @@ def zeros_of(A: Array, B: Array, C: Array, D: Array, poles: Complex) -> Complex:
     if len(A) == 0 or D.shape[0] != D.shape[1]:
         return np.zeros(0, dtype=complex)
     found = np.linalg.eigvals(A - B @ np.linalg.solve(D, C)) if D.size else np.linalg.eigvals(A)
-    return _without_cancelled(rate * found.astype(complex), poles, rate)
+    return _without_cancelled((rate * found).astype(complex), poles, rate)
 
 
 def _middle_rate(poles: Complex) -> float:

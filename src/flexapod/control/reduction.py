@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.linalg
@@ -37,8 +37,9 @@ def apart(A: Array, B: Array, C: Array, first: Callable[[complex], bool]) -> tup
     if not len(A):
         return Part(A=A, B=B, C=C), Part(A=A, B=B, C=C)
     A, change = scipy.linalg.matrix_balance(A)
-    B, C = np.linalg.solve(change, B), C @ change
-    T, Z, k = scipy.linalg.schur(A, output="real", sort=lambda re, im: first(complex(re, im)))
+    B, C = np.asarray(np.linalg.solve(change, B), dtype=float), C @ change
+    ordered: Any = scipy.linalg.schur(A, output="real", sort=lambda re, im: first(complex(re, im)))
+    T, Z, k = ordered
     B, C = Z.T @ B, C @ Z
     # (T21.23)  [1 X; 0 1] takes the coupling away: T11 X - X T22 = -T12
     X = scipy.linalg.solve_sylvester(T[:k, :k], -T[k:, k:], -T[:k, k:])
@@ -48,12 +49,12 @@ def apart(A: Array, B: Array, C: Array, first: Callable[[complex], bool]) -> tup
 
 def reduced(system: StateSpace, modes: int | None, below: float | str | None, residual: bool) -> StateSpace:
     """See `StateSpace.reduce`."""
-    if (modes is None) == (below is None):
+    if (modes is None) == (below is None) or modes is None is below:
         raise InputError("one of the two says what stays", key="modes", allowed='modes=20, or below="500 Hz"')
     if system.sample is not None:
         raise InputError("is of samples: its fast modes have no static response", key="sample", value=system.sample)
     poles, frequency, _ = damping_of(system.poles(), None)
-    edge = _edge(frequency, modes) if below is None else to_si(below, "frequency", key="below")
+    edge = _edge(frequency, modes) if modes is not None else to_si(below, "frequency", key="below")
     slow, fast = apart(system.A, system.B, system.C, lambda pole: abs(pole) < 2 * np.pi * edge)
     D = np.array(system.D)
     if residual and len(fast.A):

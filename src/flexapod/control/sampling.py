@@ -77,7 +77,7 @@ def held(system: StateSpace, period: float, delay: float = 0.0, delayed: Sequenc
 def _integrals(A: Array, B: Array, period: float) -> tuple[Array, Array]:
     """exp(A T) and the integral of exp(A t) B over a time T."""
     n, m = B.shape
-    whole = expm(np.block([[A, B], [np.zeros((m, n + m))]]) * period)
+    whole = np.asarray(expm(np.block([[A, B], [np.zeros((m, n + m))]]) * period), dtype=float)
     return whole[:n, :n], whole[:n, n:]
 
 

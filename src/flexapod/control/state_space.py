@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexapod.arrays import Array
-from flexapod.control.channels import RATE, Names, chosen
+from flexapod.control.channels import Names, chosen
 from flexapod.control.frequency import response
 from flexapod.control.histories import histories, instants
 from flexapod.control.norms import h2_norms, hinf_norm, relative_gains
@@ -85,14 +85,6 @@ class StateSpace:
             sample=self.sample,
         )
 
-    def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] | None = None) -> StateSpace:
-        """Itself, as a controller from some `outputs` of another system to some of its `inputs`."""
-        for name in self.inputs:
-            chosen(name.removeprefix(RATE), outputs, "sensor")
-        for name in self.outputs:
-            chosen(name, inputs, "actuator")
-        return self
-
     def sampled(self, period: float | str, delay: float | str = 0.0) -> StateSpace:
         """The same between samples, inputs held for a `period` [s] (or "5 kHz") and late by a `delay` [s], (T21.17)."""
         from flexapod.control.sampling import held, period_of
@@ -101,6 +93,14 @@ class StateSpace:
             raise InputError("is sampled already", key="sample", value=self.sample, allowed="a continuous system")
         return held(self, period_of(period), to_si(delay, "time", key="delay"))
 
+    @overload
+    def close(self, controller: Controller | StateSpace) -> StateSpace: ...
+    @overload
+    def close(
+        self, controller: Controller | StateSpace, *, sample: float | str, delay: float | str = 0.0
+    ) -> StateSpace: ...
+    @overload
+    def close(self, controller: Controller | StateSpace, *, delay: float | str) -> StateSpace | DelayedLoop: ...
     def close(
         self, controller: Controller | StateSpace, *, delay: float | str = 0.0, sample: float | str | None = None
     ) -> StateSpace | DelayedLoop:

@@ -183,7 +183,7 @@ def _leg(i: int, leg: model.Leg, real: Limbs, columns: Array, tip: Array, length
         com=cylinder.com,
         inertia=cylinder.inertia,
         axial_inertia=axial_inertia(leg),
-        drive=np.inf if leg.strut is not None or on_carriage else _drive(leg, length),
+        drive=np.inf if leg.strut is not None or on_carriage else drive_stiffness(leg, length),
         force=0.0 if on_carriage else force,
     )
 
@@ -201,7 +201,7 @@ def _gives(leg: model.Leg, axes: Array, at: Place) -> tuple[Array, Array]:
 
 def _carriage(leg: model.Leg, twist: Array, reach: Array, force: float) -> CarriageAtPose | None:
     """The carriage of a leg where it gives way; of a crank at the end of its arm. `twist` (6,) of the tip."""
-    spring = _drive(leg, 0.0)
+    spring = drive_stiffness(leg, 0.0)
     if leg.carriage is None or np.isinf(spring):
         return None
     way = twist[:3] - np.cross(twist[3:], reach)  # of the base joint
@@ -212,7 +212,7 @@ def _carriage(leg: model.Leg, twist: Array, reach: Array, force: float) -> Carri
     )
 
 
-def _drive(leg: model.Leg, length: float) -> float:
+def drive_stiffness(leg: model.Leg, length: float) -> float:
     """Stiffness of a locked drive with all springs behind it [N/m, N m/rad], 0 of a passive leg."""
     drive = leg.drive
     if leg.passive:

@@ -11,13 +11,11 @@ from flexapod.errors import InputError
 from flexapod.exchange.decks import Deck, number
 from flexapod.exchange.decks_legs import LegAtPose, PayloadAtPose, axial_inertia, legs_at_pose
 from flexapod.exchange.decks_robot import Carriers, drive_shift, write_leg, write_payload
+from flexapod.exchange.written import Written
 from flexapod.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.statics.locked import the_equilibrium
 from flexapod.solve.statics.static_loads import at_drives
-
-FORMATS = ("abaqus",)
-"""What a robot can be written as; CalculiX reads the same deck."""
 
 ELEMENTS = 20
 """Solid elements along the free part of each piston: first bending right to 5e-5, second to 3e-4."""
@@ -73,6 +71,21 @@ def abaqus_deck(
         if (error.key or "").startswith(("leg", "robot")):
             raise error.located(file=study.path) from None
         raise
+
+
+def abaqus(
+    study: model.Study,
+    *,
+    pose: PoseLike = None,
+    load: LoadLike = None,
+    title: str = "Robot with locked drives",
+    elements: int = ELEMENTS,
+    modes: int = MODES,
+) -> Written:
+    """The deck, an ASCII text, and what it does not have; arguments as of `abaqus_deck`."""
+    text = abaqus_deck(study, pose, load=load, elements=elements, modes=modes, title=title)
+    words = text.encode("ascii", errors="replace").decode()
+    return Written(files={"": words}, left_out=tuple(left_out(study.robot)))
 
 
 def _written(study: model.Study, pose: PoseLike, elements: int, modes: int, title: str) -> str:

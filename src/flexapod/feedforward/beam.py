@@ -1,4 +1,4 @@
-"""A single actuator whose tip follows what its rigid beam would do, Eqs. (T22.23)-(T22.24)."""
+"""A single actuator whose tip follows what its rigid beam would do, by (T20.25) and (T22.20)."""
 
 from __future__ import annotations
 
@@ -9,17 +9,15 @@ from typing import Literal
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.control import StateSpace
 from flexapod.errors import InputError
 from flexapod.feedforward.inversion import Inverse, answer, inverse
 from flexapod.feedforward.table import saved
 from flexapod.model import ActuatorStudy, CsvLaw, MotionLaw, RateLaw
-from flexapod.solve.shapes import home, places
-from flexapod.solve.system import State
-from flexapod.solve.time.actuator_march import actuator_system
+from flexapod.solve.shapes import home
+from flexapod.study.linear import linearize
 from flexapod.words import text
 
-__all__ = ["TipStudy", "beam_plant", "tip_inversion"]
+__all__ = ["TipStudy", "tip_inversion"]
 
 Drives = Literal["given", "force"]
 ROWS = 4000  # of a table at most
@@ -58,51 +56,13 @@ class TipStudy:
         return f"TipStudy({self.sentence})"
 
 
-def beam_plant(study: ActuatorStudy) -> StateSpace:
-    """A straight beam on a free hub: ``torque`` [N m]; ``tip`` [m] across the beam, ``angle`` [rad], Eq. (T22.23)."""
-    system = actuator_system(study.actuator, study.simulation, rotation=False)
-    shapes, begin = system.kernel.shapes, home(study.actuator)
-    q = np.zeros((1, system.n))
-    for name, at in places(shapes).items():
-        q[0, at] = begin[name]
-    none = np.zeros(system.n)
-    straight = State(
-        q=q, pose=np.zeros(7), v=none, v_dot=none, lam=np.zeros((1, 0)), drive=np.zeros((1, system.ports.size))
-    )
-    m = system.matrices(straight, np.zeros(system.load_size))
-    hub, bend = places(shapes)["rotation"], shapes.index("a")
-    moving = np.r_[hub, bend : bend + shapes.beam.a.count]
-    M, D, K = (x[np.ix_(moving, moving)] for x in (m.M, m.D, m.K))
-    n, length = len(moving), begin["extension"]
-    solve = np.linalg.inv(M).astype(float)
-    A = np.block([[np.zeros((n, n)), np.eye(n)], [-solve @ K, -solve @ D]])
-    B = np.concatenate([np.zeros(n), solve[:, 0]])[:, None]
-    tip = np.append(length, shapes.beam.a.tip)
-    C = np.zeros((2, 2 * n))
-    C[0, :n], C[1, 0] = tip, 1.0
-    names = ["hub", *(f"a{k + 1}" for k in range(n - 1))]
-    return StateSpace(
-        A=A, B=B, C=C, D=np.zeros((2, 1)), inputs=("torque",), outputs=("tip", "angle"),
-        states=(*names, *(f"{name} rate" for name in names)), units={"torque": "N m", "tip": "m", "angle": "rad"},
-    )  # fmt: skip
-
-
-def _held(plant: StateSpace) -> StateSpace:
-    """The same beam on a hub that is turned: its angular acceleration in, Eq. (T22.24)."""
-    n = len(plant.A) // 2
-    torque = plant.B[n, 0]
-    A, B = plant.A.copy(), plant.B / torque
-    A = A - B @ A[n : n + 1]  # the torque that makes the hub do what it is told
-    return replace(plant, A=A, B=B, inputs=("command",), units={**plant.units, "command": "rad/s^2"})
-
-
 def tip_inversion(study: ActuatorStudy, drives: Drives = "given", out: str | Path | None = None) -> TipStudy:
     """A study whose tip follows the path that a rigid beam would have; see `compensate`."""
     law, moving = _refuse(study, drives)
-    plant = beam_plant(study)
-    turned, length = _held(plant), float(plant.C[0, 0])
-    used = turned if drives == "given" else plant
-    found = inverse(used.select(outputs="tip"), moving, lambda t: length * kinematics.motion_law(law, t).acceleration)
+    turned = linearize(study, inputs="command:rotation", outputs="tip:rotation")
+    pushed = linearize(study, inputs="drive:rotation", outputs="tip:rotation", drives="force")
+    used, length = turned if drives == "given" else pushed, home(study.actuator)["extension"]
+    found = inverse(used, moving, lambda t: length * kinematics.motion_law(law, t).acceleration)
     wanted = kinematics.motion_law(law, np.clip(found.time, 0.0, moving))
     bend = np.where((found.time >= 0) & (found.time <= moving), wanted.acceleration, 0.0)
     own, new = (

@@ -69,6 +69,12 @@ def leg_carried(shapes: Shapes) -> NamedFunction:
     return x.named("leg_carried", [("q", x.q), ("p", x.p_vector)], [("M", M)])
 
 
+def leg_tip(shapes: Shapes) -> NamedFunction:
+    """Derivatives of the place of the tip by the coordinates of a leg, (3, n)."""
+    x = _Leg(shapes)
+    return x.named("leg_tip", [("q", x.q), ("p", x.p_vector)], [("J", x.by_q.jacobian(x.body.tip))])
+
+
 class _Leg:
     """The inputs of the functions of a leg, its equations, and the springs of its drives by coordinate."""
 

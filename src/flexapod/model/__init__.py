@@ -3,6 +3,7 @@
 from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
 from flexapod.model.chain import Chain, chain_of, chains_of
 from flexapod.model.circle import base_circle, platform_circle
+from flexapod.model.control import Control, DampedControl, ForceControl
 from flexapod.model.cylinder import Cylinder, Mounted
 from flexapod.model.damping import Damping, damping_parts
 from flexapod.model.disturbance import CURVES, Disturbance, Floor, Spectrum
@@ -89,10 +90,12 @@ __all__ = [
     "CombinedMotion",
     "ConstantLaw",
     "ConstantWrench",
+    "Control",
     "CsvLaw",
     "CsvMotion",
     "CsvWrench",
     "Cylinder",
+    "DampedControl",
     "Damping",
     "Disturbance",
     "Drive",
@@ -100,6 +103,7 @@ __all__ = [
     "Expansion",
     "Feedback",
     "Floor",
+    "ForceControl",
     "ForceDrive",
     "Geometry",
     "Gradient",

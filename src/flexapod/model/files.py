@@ -11,6 +11,7 @@ from typing import Literal, TypeVar, overload
 
 from flexapod.errors import InputError, closest
 from flexapod.model.actuator import Actuator, ActuatorInitial, read_drives
+from flexapod.model.control import DampedControl, ForceControl
 from flexapod.model.disturbance import read_disturbance
 from flexapod.model.laws import Load
 from flexapod.model.motion import AxisMotion, CombinedMotion, CsvMotion, Motion, WaypointMotion
@@ -210,7 +211,7 @@ def _lookup(data: object, path: str) -> str:
 
 
 def _study(top: Section, text: str) -> Study:
-    top.only("robot", "payload", "leg", *_AS_BUILT, *_COMMON, "disturbance")
+    top.only("robot", "payload", "leg", *_AS_BUILT, *_COMMON, "disturbance", "control")
     fixed = platform_fixed(top)
     top.need("robot", *(() if fixed else ("payload",)), "leg", *(() if fixed else ("motion",)))
     settings = top.section("simulation")
@@ -224,6 +225,7 @@ def _study(top: Section, text: str) -> Study:
         initial=_given(top.section("initial"), Initial),
         simulation=simulation,
         disturbance=read_disturbance(top, robot),
+        control=None if (loop := top.section("control")) is None else loop.one_of((ForceControl, DampedControl)),
         source_text=text,
         path=top.file,
         notes=(*unused_settings(settings, simulation), *_unused_axial_modes(top, simulation)),

@@ -9,6 +9,7 @@ from pydantic import field_validator, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
+from flexapod.model.control import Control
 from flexapod.model.disturbance import Disturbance
 from flexapod.model.laws import Load
 from flexapod.model.motion import AXES, Motion, moved_axes
@@ -79,7 +80,7 @@ class _Documented(Table):
 
 
 class Study(_Documented):
-    """A robot, its motion, load, start and simulation settings, and what shakes it.
+    """A robot, its motion, load, start and simulation settings, what shakes it and what damps it.
 
     `source_text`: the whole study as TOML, the file as it was read or, where it was built or changed in Python, written
     anew; `path`: where it was read; `notes`: remarks made on reading it.
@@ -91,11 +92,24 @@ class Study(_Documented):
     initial: Initial = Initial()
     simulation: Simulation = Simulation()
     disturbance: Disturbance | None = None
+    control: Control | None = None
 
     @model_validator(mode="after")
     def _disturbance(self) -> Self:
         if self.disturbance is not None:
             self.disturbance.check(self.robot.count)
+        return self
+
+    @model_validator(mode="after")
+    def _controlled(self) -> Self:
+        held = [i for i, leg in enumerate(self.robot.legs, start=1) if leg.driven and leg.drive.holds]
+        if self.control is not None and held:
+            raise InputError(
+                f"moves the drives, and that of leg {held[0]} keeps its command whatever the force",
+                key="control",
+                allowed="drives that are servos or forces",
+                next_step='Give leg.drive type = "servo" with a stiffness, or leave [control] out',
+            )
         return self
 
     @model_validator(mode="after")

@@ -17,6 +17,8 @@ from flexapod.plot.vibration import vibration
 from flexapod.runtime.loading import loaded
 
 if TYPE_CHECKING:
+    from flexapod.plot.linear import bode, cumulative, transmissibility
+    from flexapod.plot.poles import pole_map, root_locus
     from flexapod.plot.robot3d import modes_3d, robot_3d
 
 __all__ = [
@@ -24,30 +26,37 @@ __all__ = [
     "actuator_modes",
     "actuator_path",
     "actuator_response",
+    "bode",
     "budget",
     "by_leg",
     "com_path",
     "convergence",
+    "cumulative",
     "deviation_by_cause",
     "energies",
     "ladder",
     "leg_lengths",
     "modes_3d",
     "motion_law",
+    "pole_map",
     "robot_3d",
+    "root_locus",
     "save",
     "sliding_mesh",
     "solid_comparison",
     "solid_meshes",
     "sweep",
     "tip_deflections",
+    "transmissibility",
     "vibration",
     "workspace_map",
 ]
 
 #: Figures of the paper's study: they live with it and keep their names here. And those in space, which take axes of
-#: their own from matplotlib.
+#: their own from matplotlib, and those of linear systems, which few ask for.
 _LATER = {
+    "flexapod.plot.linear": ("bode", "cumulative", "transmissibility"),
+    "flexapod.plot.poles": ("pole_map", "root_locus"),
     "flexapod.plot.robot3d": ("modes_3d", "robot_3d"),
     "flexapod.paper.engine_figures": ("engine_forces", "engine_path"),
     "flexapod.paper.printed": ("actuator_free", "actuator_symbols", "forces_overlaid", "path_bands", "piston_mode"),

@@ -221,7 +221,7 @@ def _by_leg(axes: Axes, parts: xr.DataArray, small: Scale, axis: str, colors: di
     axes.margins(y=0.1)
 
 
-_SIGN = {"work_drive": -1.0, "work_base": -1.0, "work_external": -1.0}
+_SIGN = {"work_drive": -1.0, "work_base": -1.0, "work_control": -1.0, "work_external": -1.0}
 
 
 @styled

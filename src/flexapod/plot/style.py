@@ -28,7 +28,7 @@ from flexapod.runtime.files import replacing
 
 P = ParamSpec("P")
 
-LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (3, 1)), (0, (1, 3)))
+LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (3, 1)), (0, (1, 3)), (0, (7, 2)))
 GRID = "#DDDDDD"
 COLORS = "cividis"  # of maps: even in lightness, and for colour-blind readers
 COLUMN, PAGE = 3.35, 6.7  # widths of a column and of a page [in]: 85 and 170 mm

@@ -150,8 +150,11 @@ _ENERGY = {
     "energy_dissipated": Variable(_T, "J", "energy dissipated since the start, as exact as the balance closes"),
     "work_drive": Variable(_T, "J", "work of the drives since the start"),
     "work_base": Variable(_T, "J", "work on a base that is moved since the start"),
+    "work_control": Variable(_T, "J", "work of a sampled controller's forces since the start, none of it the drives'"),
     "work_external": Variable(_T, "J", "work of the external load since the start"),
     "closure_residual": Variable(_T, "m", "largest gap between a leg's tip and its joint on the platform"),
+    "sensor_reading": Variable(("time", "sensor"), "mixed", "last sample of a sensor, from what it was at the start"),
+    "control_input": Variable(("time", "actuator"), "mixed", "what a sampled controller holds until the next sample"),
 }
 
 _STATIC = {
@@ -383,6 +386,8 @@ _COORDINATE_ATTRS = {
     "error": {"long_name": "what is not as drawn"},
     "tolerance": {"long_name": "what may not be as drawn"},
     "source": {"long_name": "disturbance"},
+    "sensor": {"long_name": "channel that a controller reads"},
+    "actuator": {"long_name": "channel that a controller moves"},
     "spectrum_frequency": {"units": "Hz", "long_name": "frequency"},
     "drift_time": {"units": "s", "long_name": "time of the temperatures"},
 }

@@ -38,7 +38,7 @@ class Record:
 
     ``q`` (T, legs, n) leg coordinates; ``rate`` (T, legs, n') rates of those that were asked for; ``turn`` (T, 3)
     angular velocity in platform axes; ``lam``, ``drive``, ``pose``, ``reaction``, ``energy``, ``sums``, ``closure``,
-    ``friction`` as in `solve.time.recording.Recording`.
+    ``friction``, ``control`` as in `solve.time.recording.Recording`.
     ``force_error``: estimate of the error of the legs' forces [N], where steps follow a tolerance.
     ``failure``: why the integration stopped early, in words, or None; ``interrupted``: by the user.
     """
@@ -55,6 +55,7 @@ class Record:
     sums: Array
     closure: Array
     friction: Array
+    control: Array
     smallest_step: float
     largest_error: float
     force_error: float | None
@@ -68,7 +69,7 @@ class Record:
         return replace(self, **{name: getattr(self, name)[which] for name in names})
 
 
-_KEPT = ("time", "q", "lam", "drive", "pose", "reaction", "energy", "sums", "closure", "friction")
+_KEPT = ("time", "q", "lam", "drive", "pose", "reaction", "energy", "sums", "closure", "friction", "control")
 
 
 def collect(chunks: Iterable[Chunk], rates: Sequence[int], duration: float, progress: Progress | None) -> Record:

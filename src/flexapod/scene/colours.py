@@ -15,6 +15,7 @@ ENERGIES = {
     "energy_dissipated": ("lost in damping and friction", "#D55E00"),
     "work_drive": ("work of the drives", "#56B4E9"),
     "work_base": ("work on the base", "#8C6D31"),
+    "work_control": ("work of the controller", "#1A1A1A"),
     "work_external": ("work of the load", "#A23B72"),
 }
 #: Words and colour of the kinds of errors in a budget, of systematic ones by what can be done about them.

@@ -32,7 +32,8 @@ class Scene:
     (3, 3): platform to world; `guides` (carriages, 2, 3): rails from end to end, cranks from shaft to base joint;
     `hinges` (hinges, 2, 3): short lines along the axes of revolute joints and shafts. `heads` (guided legs, 2, 3):
     pistons in bushings from gland to head. `plates` (2, 6): displacement and turn, about the origin, of the base plate
-    on its mount, world axes, and of the joints' plate against the payload, platform axes.
+    on its mount, world axes, and of the joints' plate against the payload, platform axes; `frames` (legs, 3, 3): of the
+    base joints, which cranks turn.
     """
 
     skeleton: Skeleton
@@ -46,6 +47,7 @@ class Scene:
     hinges: Array
     heads: Array
     plates: Array
+    frames: Array
 
     @property
     def radii(self) -> Array:
@@ -188,6 +190,7 @@ class Skeleton:
             hinges=self._hinges(base, frames, tips, R),
             heads=self._heads(base, axis, length),
             plates=plates,
+            frames=frames,
         )
 
     def _heads(self, base: Array, axis: Array, length: Array) -> Array:

@@ -136,6 +136,13 @@ def generated_text(shapes: Shapes) -> dict[str, str]:
     return {function.name: c_source(function) for function in _functions(shapes)}
 
 
+def text_of_one_unit(shapes: Shapes) -> str:
+    """C text of all functions that time loops call, for one unit with these."""
+    from flexapod.symbolic.c_source import of_one_unit
+
+    return "\n".join(of_one_unit(function) for function in _functions(shapes) if function.name in FOR_LOOPS)
+
+
 def _functions(shapes: Shapes) -> "list[NamedFunction]":
     from flexapod.mechanics.assembly import joint_functions, leg_functions, payload_functions
     from flexapod.mechanics.sliding import friction_functions

@@ -43,12 +43,13 @@ class Flow(State):
     """A state and what the time integration remembers with it.
 
     ``a``, (size,): auxiliary acceleration; ``sums``, (4,): dissipated energy, works of drives, of the wrench and
-    on the base [J]; ``powers``, (4,): their rates.
+    on the base [J]; ``powers``, (4,): their rates; ``loop``, (any,): what a sampled controller remembers.
     """
 
     a: Array
     sums: Array = field(default_factory=lambda: np.zeros(4))
     powers: Array = field(default_factory=lambda: np.zeros(4))
+    loop: Array = field(default_factory=lambda: np.zeros(0))
 
     def copy(self) -> "Flow":
         """Independent copy."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,14 +14,16 @@ from flexapod import model
 from flexapod.arrays import Array
 from flexapod.control.state_space import StateSpace
 from flexapod.errors import InputError
+from flexapod.kinematics import Poses
 from flexapod.kinematics.rotations import matrix
-from flexapod.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
-from flexapod.results.poses import coordinates_of
+from flexapod.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose, read
+from flexapod.results.poses import as_many, batches, coordinates_of, is_many
 from flexapod.runtime.threads import one_thread
+from flexapod.solve.linear.actuator import actuator_states
 from flexapod.solve.linear.channels import asked
+from flexapod.solve.linear.grid import grid_of
 from flexapod.solve.linear.plant import Drives, Plant, plant_at
-from flexapod.solve.linear.states import Descriptor, descriptor_of, states_of
-from flexapod.solve.statics.locked import the_equilibrium
+from flexapod.solve.linear.states import Descriptor, descriptor_of, states_of, units_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -31,7 +33,7 @@ __all__ = ["LinearModel", "compliance", "linearize", "transmissibility"]
 Friction = Literal["sliding", "stuck"]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class LinearModel(StateSpace):
     """A robot about its equilibrium at a pose, as `linearize` gives it.
 
@@ -45,6 +47,10 @@ class LinearModel(StateSpace):
     friction : {"sliding", "stuck"}
     position, quaternion : ndarray, shapes (3,), (4,)
         Of the payload's centre of mass [m] and its attitude, at the equilibrium.
+    about : ndarray, shape (3,)
+        Point about which the floor turns [m].
+    plant : Plant
+        The robot that it is of, in arrays.
     """
 
     study: str
@@ -53,17 +59,24 @@ class LinearModel(StateSpace):
     friction: Friction
     position: Array
     quaternion: Array
+    about: Array
     plant: Plant
+
+    def __repr__(self) -> str:
+        """How large it is, and of what."""
+        size = f"{len(self.states)} states, {len(self.inputs)} inputs, {len(self.outputs)} outputs"
+        return f"LinearModel({self.study}: {size}; drives {self.drives}, friction {self.friction})"
 
     def descriptor(self) -> Descriptor:
         """M, D, K, G, B, C in the flat coordinates of the equations, with names, Eq. (T20.1)."""
         robot = self.plant.robot
-        return descriptor_of(self.plant, asked(self.inputs, robot, "inputs"), asked(self.outputs, robot, "outputs"))
+        inputs, outputs = asked(self.inputs, robot, "inputs"), asked(self.outputs, robot, "outputs")
+        return descriptor_of(self.plant, inputs, outputs, self.about)
 
 
 @one_thread()
 def linearize(
-    study: RobotLike,
+    study: RobotLike | model.ActuatorStudy,
     pose: PoseLike = None,
     *,
     inputs: str | Sequence[str],
@@ -74,30 +87,24 @@ def linearize(
 ) -> LinearModel:
     """A robot about its equilibrium under gravity and load as a linear system with named channels, Eq. (T20.1).
 
-    Closures are eliminated, so that states are motions by name ("payload x", "leg 3 a2", turns of the payload about
-    platform axes) and their rates; they are chosen at home, and mean the same at every pose. What has no mass is
-    condensed with the damper that it may have; loops that sum or lag are states. Unstable loops are no error.
+    Closures are eliminated: states are motions by name ("payload x", "leg 3 a2", turns of the payload about platform
+    axes) and their rates, chosen at home, the same at every pose. What has no mass is condensed with its damper; loops
+    that sum or lag are states; unstable ones are no error. `docs/linear-model.md` says what each channel is.
 
     Parameters
     ----------
-    study : Study, Robot or path
+    study : Study, Robot, ActuatorStudy or path
+        A single actuator stands as at t = 0; with pose {"rate": 20.0} [rad/s] its hub turns steadily.
     pose : pose, optional
-        As for `modes`; default home.
+        As for `modes`; default home. Many poses at once: names with arrays, or (P, 6).
     inputs : str or sequence of str
-        ``wrench`` [N, N m] at the tool along world axes; ``drive`` [N, of cranks N m], force of each drive;
-        ``command`` [m/s^2, rad/s^2], second derivative of what each drive is told: place and rate are states;
-        ``floor`` [m/s^2, rad/s^2], acceleration and angular acceleration of the base about the point at which
-        `base_motion` of the study turns it, else the origin; ``force:POINT`` [N] along world axes. Single channels:
-        ``wrench:fx``, ``drive:3``, ``floor:rz``, ``force:tool:x``.
+        ``wrench`` [N, N m] at the tool, ``drive`` [N, N m], ``command`` [m/s^2, rad/s^2], second derivative of what a
+        drive is told, ``floor`` [m/s^2, rad/s^2] about the point of `base_motion` or the origin, ``force:POINT`` [N].
     outputs : str or sequence of str
-        ``tool`` [m, rad] and ``com`` [m] against the floor, along and about world axes; ``stroke`` [m, rad] of what a
-        drive moves; ``drive-force`` [N, N m] on that, behind a rotor's inertia and before the mass that it moves;
-        ``joint-force`` [N] of each leg on the platform, world axes; ``force-sensor:base``, ``:drive``, ``:platform``
-        [N] along the leg, pressing is positive: between the base and all masses of the leg, at the drive, between all
-        masses of the leg and the platform; ``encoder`` [m, rad], what a drive measures; ``accelerometer:POINT``
-        [m/s^2], absolute acceleration less gravity along axes that turn with the platform; ``geophone:POINT`` [m/s]
-        or ``geophone:POINT[4.5 Hz, 0.7, 28.8]`` [V] by its corner, damping ratio and sensitivity.
-        POINT: ``tool``, ``com``, ``platform``, ``joint-3``, or a place in platform axes as ``(0.1, 0, 0.05)`` [m].
+        ``tool`` [m, rad], ``com`` [m], from a base plate ``tool-base``, ``com-base``; ``stroke``, ``encoder``;
+        ``drive-force``, ``joint-force``, ``force-sensor:base``, ``:drive``, ``:platform`` [N]; ``accelerometer:POINT``
+        [m/s^2], ``geophone:POINT`` [m/s]. POINT: ``tool``, ``com``, ``platform``, ``joint-3``, or in platform axes
+        ``(0.1, 0, 0.05)`` [m]. Single channels: ``wrench:fx``, ``drive:3``, ``tool:rz``, ``force:tool:x``.
     drives : {"given", "force"}
         "force" releases the drives at the equilibrium that they hold, with the force that holds them: neither springs
         nor loops of theirs are left. Pure force drives are linearised so.
@@ -109,7 +116,9 @@ def linearize(
     Returns
     -------
     LinearModel
-        A `control.StateSpace` that knows its pose.
+        A `control.StateSpace` that knows its pose; of an actuator a `StateSpace`. Of many poses a Dataset for
+        interpolation: `mass`, `damping`, `stiffness` (pose, motion, motion_by), `input_matrix` (pose, motion, input),
+        `output_matrix` (pose, output, motion) of M z'' + D z' + K z = B u, y = C z; NaN where a pose has none.
 
     Raises
     ------
@@ -118,6 +127,10 @@ def linearize(
     ComputationError
         No equilibrium at this pose, or one so far from home that the motions chosen there say nothing of it.
     """
+    if isinstance(study := read(study), model.ActuatorStudy):
+        return cast("LinearModel", _of_actuator(study, pose, inputs, outputs, drives))
+    if is_many(pose):
+        return cast("LinearModel", _grid(study, pose, inputs, outputs, drives, friction, load))
     found, plant = _plant(study, pose, load, drives, friction)
     robot = plant.robot
     states = states_of(plant, asked(inputs, robot, "inputs"), asked(outputs, robot, "outputs"), about=_about(found))
@@ -131,9 +144,13 @@ def _plant(
     if drives not in ("given", "force"):
         raise InputError("is not a way to take drives", key="drives", value=drives, allowed='"given", "force"')
     found = model.override(at_pose(study, load), friction=friction)
-    path = as_pose(found.robot, pose)
+    plant = _at(found, as_pose(found.robot, pose), drives)
+    return found, plant
+
+
+def _at(study: model.Study, path: Poses, drives: Drives) -> Plant:
     try:
-        plant = plant_at(found.robot, found.simulation, path, found.load, drives)
+        return plant_at(study.robot, study.simulation, path, study.load, drives)
     except InputError as error:
         if error.key != "leg.drive" or "pure force" not in error.what:
             raise
@@ -141,8 +158,78 @@ def _plant(
             error.what, key=error.key, value=error.value, allowed=error.allowed,
             next_step='linearize(..., drives="force") releases the drives where they are',
         ) from None  # fmt: skip
-    the_equilibrium(plant.locked)
-    return found, plant
+
+
+def _of_actuator(
+    study: model.ActuatorStudy,
+    pose: PoseLike,
+    inputs: str | Sequence[str],
+    outputs: str | Sequence[str],
+    drives: Drives,
+) -> StateSpace:
+    """A single actuator at rest, or in steady rotation."""
+    given = dict(pose) if isinstance(pose, Mapping) else {}
+    if (pose is not None and not isinstance(pose, Mapping)) or set(given) - {"rate", "free_length"}:
+        raise InputError(
+            "is no place of a single actuator", key="pose", value=pose,
+            allowed='{"rate": 20.0}, rate of its hub [rad/s], and "free_length" [m]',
+        )  # fmt: skip
+    actuator = study.actuator
+    if "free_length" in given:
+        actuator = actuator.replace(free_length=float(given["free_length"]))
+    names = ("rotation", "extension", "elevation")
+    free = [name for name in names if drives == "force" or getattr(study.motion, name) is None]
+    states = actuator_states(actuator, study.simulation, inputs, outputs, rate=float(given.get("rate", 0.0)), free=free)
+    return StateSpace(**{f.name: getattr(states, f.name) for f in fields(states)})
+
+
+def _grid(
+    study: RobotLike,
+    pose: PoseLike,
+    inputs: str | Sequence[str],
+    outputs: str | Sequence[str],
+    drives: Drives,
+    friction: Friction | None,
+    load: LoadLike,
+) -> Dataset:
+    """Matrices on motions at many poses."""
+    import xarray as xr
+
+    found = model.override(at_pose(study, load), friction=friction)
+    path = as_many(found.robot, pose)
+    given, seen = asked(inputs, found.robot, "inputs"), asked(outputs, found.robot, "outputs")
+    parts: dict[str, Array] = {}
+    motions, free = (), 0
+    for part in batches(len(path)) if len(path) else [slice(0, 0)]:
+        plant = _at(found, path.part(part), drives)
+        grid = grid_of(plant, given, seen, about=_about(found))
+        motions, free = grid.motions, grid.free
+        for name, (of, _) in MATRICES.items():
+            value = getattr(grid, of)
+            parts.setdefault(name, np.full((len(path), *value.shape[1:]), np.nan))
+            parts[name][part][plant.locked.at] = value
+    units = units_of(found.robot, [*given, *seen])
+    labels = {"pose": np.arange(len(path)), "coordinate": list(model.AXES), "motion": list(motions)}
+    labels |= {"motion_by": list(motions), "input": [c.name for c in given], "output": [c.name for c in seen]}
+    data = xr.Dataset(
+        {name: (MATRICES[name][1], value) for name, value in parts.items()}
+        | {"pose_from_home": (("pose", "coordinate"), coordinates_of(found.robot, path))},
+        labels,
+        {"study": _name(found), "drives": drives, "friction": found.simulation.friction, "free_motions": free},
+    )
+    return data.assign_coords(
+        {f"{x}_units": (x, [units[str(name)] for name in data[x].values]) for x in ("input", "output")}
+    )
+
+
+#: Matrices of a grid: their field of `PoseMatrices`, and dimensions.
+MATRICES = {
+    "mass": ("M", ("pose", "motion", "motion_by")),
+    "damping": ("D", ("pose", "motion", "motion_by")),
+    "stiffness": ("K", ("pose", "motion", "motion_by")),
+    "input_matrix": ("B", ("pose", "motion", "input")),
+    "output_matrix": ("C", ("pose", "output", "motion")),
+}
 
 
 def _about(study: model.Study) -> Array:
@@ -160,7 +247,7 @@ def _model(study: model.Study, plant: Plant, **matrices: object) -> LinearModel:
         **matrices,  # type: ignore[arg-type]
         study=_name(study), pose=dict(zip(model.AXES, pose.tolist(), strict=True)), drives=plant.drives,
         friction=plant.locked.simulation.friction, position=plant.x.pose[0, :3], quaternion=plant.x.pose[0, 3:],
-        plant=plant,
+        about=_about(study), plant=plant,
     )  # fmt: skip
 
 

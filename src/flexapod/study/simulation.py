@@ -26,9 +26,20 @@ from flexapod.review.unstable_loops import loop_remarks
 from flexapod.runtime.threads import one_thread
 from flexapod.solve.time.robot_march import RobotMarch, prepare
 from flexapod.study.actuator import simulate_actuator
+from flexapod.study.controlled import (
+    Noise,
+    PerChannel,
+    control_attributes,
+    control_coords,
+    control_results,
+    sampled_controller,
+)
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+    from flexapod.solve.time.sampled import Sampled
+    from flexapod.study.controlled import AnyController
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,11 +51,13 @@ class Simulated:
     march: RobotMarch
     record: Record
     remarks: list[str]
+    sampled: Sampled | None = None
 
     def values(self) -> Asked:
         """The variables of the Dataset as plain arrays, each made when it is asked for."""
         path = self.path.at(self.record.time)
-        return Asked(robot_results(self.study, self.march.system, self.record, path) | rigid_force_results(path))
+        found = robot_results(self.study, self.march.system, self.record, path) | rigid_force_results(path)
+        return Asked(found | control_results(self.sampled, self.record))
 
     @cached_property
     def force_error(self) -> float | None:
@@ -73,15 +86,15 @@ class Simulated:
         }
         if (error := self.force_error) is not None:
             attrs["estimated_force_error"] = error
+        attrs |= control_attributes(self.sampled)
         robot = self.study.robot
-        return dataset(
-            self.values(), robot_coords(robot, system, self.record), attrs, drive_forms(robot) | element_forms(robot)
-        )
+        coords = robot_coords(robot, system, self.record) | control_coords(self.sampled)
+        return dataset(self.values(), coords, attrs, drive_forms(robot) | element_forms(robot))
 
 
 @one_thread()
-def simulated(study: model.Study, progress: Progress | None = None) -> Simulated:
-    """Check and integrate a robot study; what `simulate` does, without a Dataset.
+def simulated(study: model.Study, progress: Progress | None = None, sampled: Sampled | None = None) -> Simulated:
+    """Check and integrate a robot study, with its controller or another one; what `simulate` does, without a Dataset.
 
     A record that stopped early says so: ``record.failure``, ``record.interrupted``.
 
@@ -90,10 +103,10 @@ def simulated(study: model.Study, progress: Progress | None = None) -> Simulated
     InputError, ComputationError
         As `simulate`.
     """
-    path = RigidPath(study)
-    remarks, march = [*check_path(study, path), *loop_remarks(study)], prepare(study)
+    path, sampled = RigidPath(study), sampled or sampled_controller(study)
+    remarks, march = [*check_path(study, path), *loop_remarks(study)], prepare(study, sampled=sampled)
     record = collect(march.chunks, damped_angles(march.system), study.duration, progress)
-    return Simulated(study=study, path=path, march=march, record=record, remarks=remarks)
+    return Simulated(study=study, path=path, march=march, record=record, remarks=remarks, sampled=sampled)
 
 
 @one_thread()
@@ -112,6 +125,13 @@ def simulate(
     duration: float | None = None,
     output_step: float | None = None,
     rho_inf: float | None = None,
+    controller: AnyController | None = None,
+    sample: float | str | None = None,
+    delay_samples: int | None = None,
+    quantise: PerChannel = None,
+    saturate: PerChannel = None,
+    noise: Noise = None,
+    seed: int | None = None,
     progress: Progress | None = None,
 ) -> Dataset:
     """Motion of a robot with elastic legs against the rigid one.
@@ -120,14 +140,13 @@ def simulate(
     ----------
     robot : Robot, Study or path
         A robot with its motion, a whole study, or its file.
-    motion : Motion, optional
-        In place of the study's.
-    load : Load, wrench or array_like (6,), optional
-        Fx Fy Fz [N], Mx My Mz [N m] at the tool, world axes, or a law; in place of the study's.
-    initial : str or Initial, optional
-        "equilibrium", "straight" or "moving"; in place of the study's.
+    motion, load, initial : optional
+        In place of the study's: a Motion; a Load, or Fx Fy Fz [N], Mx My Mz [N m] at the tool, world axes; an Initial,
+        or "equilibrium", "straight", "moving".
     fidelity, modes, axial_modes, basis, tolerance, step, duration, output_step, rho_inf : optional
         In place of those of [simulation]; times in s.
+    controller, sample, delay_samples, quantise, saturate, noise, seed : optional
+        A sampled controller and its settings, as of `study.controlled.sampled_controller`; in place of [control].
     progress : callable, optional
         Called with simulated and whole time [s].
 
@@ -141,17 +160,15 @@ def simulate(
     ------
     InputError
         The path leaves a stroke, pulls a piston out or is singular; settings do not fit.
-    ComputationError
-        There is no equilibrium to start from, or the first steps fail.
-    Interrupted
-        By Ctrl-C, with what was computed.
+    ComputationError, Interrupted
+        There is no equilibrium to start from, or the first steps fail; by Ctrl-C, with what was computed.
     """
-    settings = {
-        "fidelity": fidelity, "modes": modes, "axial_modes": axial_modes, "basis": basis, "tolerance": tolerance,
-        "step": step, "duration": duration, "output_step": output_step, "rho_inf": rho_inf,
-    }  # fmt: skip
-    study = model.override(as_study(robot, motion, load, initial), **settings)  # type: ignore[arg-type]
-    found = simulated(study, progress)
+    study = model.override(
+        as_study(robot, motion, load, initial), fidelity=fidelity, modes=modes, axial_modes=axial_modes, basis=basis,
+        tolerance=tolerance, step=step, duration=duration, output_step=output_step, rho_inf=rho_inf,
+    )  # fmt: skip
+    sampled = sampled_controller(study, controller, sample, delay_samples, quantise, saturate, noise, seed)
+    found = simulated(study, progress, sampled)
     return finished(found.dataset, found.record)
 
 

@@ -8,7 +8,7 @@ import casadi
 from flexapod.symbolic.c_rows import row_table
 from flexapod.symbolic.functions import NamedFunction
 
-__all__ = ["c_source"]
+__all__ = ["c_source", "of_one_unit"]
 
 #: Statements beyond which a C function is written in parts, and those of a part: the time and memory of a compiler grow
 #: faster than the text, while a function in parts is slower, by how much depends on where the stack begins.
@@ -46,10 +46,9 @@ def c_source(function: NamedFunction) -> str:
     name, built = function.name, function.build()
     sizes = [built.numel_in(k) for k in range(built.n_in())], [built.numel_out(k) for k in range(built.n_out())]
     inputs, outputs = (", ".join(map(str, x)) for x in sizes)
-    kinds = ("double", "lanes") if function.alone else ("lanes",)
     return "\n".join(
         [
-            *(line for kind in kinds for line in _lines(f"{name}_{kind}", kind, built)),
+            *_kinds(function, built),
             f"void {name}(long count, const double *const *in, const long *rows, double *const *out) {{",
             f"  static const long in_size[] = {{{inputs}}}, out_size[] = {{{outputs}}};",
             f"  lanes work[{sum(map(sum, sizes))}];",
@@ -58,6 +57,16 @@ def c_source(function: NamedFunction) -> str:
             "}\n",
         ]
     )
+
+
+def of_one_unit(function: NamedFunction) -> str:
+    """The same without the function for any number of bodies, for C that calls the others in the same unit alone."""
+    return "\n".join(f"static {x}" if x.startswith("void ") else x for x in _kinds(function, function.build())) + "\n"
+
+
+def _kinds(function: NamedFunction, built: casadi.Function) -> list[str]:
+    kinds = ("double", "lanes") if function.alone else ("lanes",)
+    return [line for kind in kinds for line in _lines(f"{function.name}_{kind}", kind, built)]
 
 
 def _lines(name: str, kind: str, built: casadi.Function) -> Iterator[str]:

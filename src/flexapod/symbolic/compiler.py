@@ -11,7 +11,7 @@ import shlex
 import shutil
 import sys
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cache
 from importlib.metadata import version
@@ -36,7 +36,7 @@ from flexapod.symbolic.cache import (
 #: C text that every generated function needs before it.
 PRELUDE = Path(__file__).parent / "lanes.h"
 
-__all__ = ["CompiledFunction", "compiled_library", "compiler", "lanes", "written_library"]
+__all__ = ["CompiledFunction", "compiled_library", "compiler", "lanes", "shared_object", "written_library"]
 
 #: Without contraction of products and sums numbers do not depend on the processor.
 COMMON = ("-fPIC", "-std=gnu11", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off")
@@ -169,6 +169,27 @@ def written_library(sources: Sequence[Path], command: list[str]) -> ctypes.CDLL:
         return found[0]
     with _announced(), scratch() as folder:
         return _library(name, [unit], LOOPS, command, cache, folder)[0]
+
+
+def shared_object(texts: Mapping[str, str], sources: Sequence[str], flags: Sequence[str]) -> bytes:
+    """The contents of a shared library for any machine of this kind, made of `sources` among C `texts` by name.
+
+    Raises
+    ------
+    ComputationError
+        There is no compiler, or it failed.
+    """
+    command = compiler()
+    if command is None:
+        raise ComputationError("there is no C compiler", next_step="Install gcc or clang, or `pip install ziglang`.")
+    with _announced(), scratch() as folder:
+        for name, text in texts.items():
+            (folder / name).write_text(text)
+        program = os.path.abspath(shutil.which(command[0]) or command[0])
+        line = [program, *command[1:], "-fPIC", "-shared", "-s", *flags, "-o", "made", *sources, "-lm"]
+        if fault := _fault([line], command, folder):
+            raise _failed(command, fault)
+        return (folder / "made").read_bytes()
 
 
 def lanes(library: ctypes.CDLL) -> int:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 
+import numpy as np
+
 from flexapod.arrays import Array
 from flexapod.elements.element import Physics
 from flexapod.elements.motor_loop import MotorLoop
@@ -40,8 +42,6 @@ def _pushes(kind: type[Physics]) -> bool:
 
 
 def _each(function: Function | None, q: Array, system: System, shapes: Sequence[tuple[int, ...]]) -> list[Array]:
-    import numpy as np
-
     p = np.tile(system.leg_p, (len(q) // system.legs, 1))
     if isinstance(function, CompiledFunction):
         return [x.swapaxes(1, 2) if x.ndim == 3 else x for x in function.each(len(q), [q, p], shapes)]

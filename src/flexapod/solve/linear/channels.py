@@ -14,19 +14,19 @@ from flexapod.model import Robot
 from flexapod.solve.linear.motions import COMPONENTS
 from flexapod.units import to_si
 
-__all__ = ["INPUTS", "OUTPUTS", "Channel", "Geophone", "asked"]
+__all__ = ["INPUTS", "OUTPUTS", "Geophone", "PlantChannel", "asked"]
 
 AXES = COMPONENTS[:3]
 WRENCH = ("fx", "fy", "fz", "mx", "my", "mz")
 #: Groups and their single channels; "legs": one a leg.
 INPUTS = {"wrench": WRENCH, "drive": "legs", "command": "legs", "floor": COMPONENTS, "force": AXES}
 OUTPUTS = {
-    "tool": COMPONENTS, "com": AXES, "stroke": "legs", "drive-force": "legs", "joint-force": "legs axes",
-    "force-sensor:base": "legs", "force-sensor:drive": "legs", "force-sensor:platform": "legs", "encoder": "legs",
-    "accelerometer": AXES, "geophone": AXES,
+    "tool": COMPONENTS, "com": AXES, "tool-base": COMPONENTS, "com-base": AXES, "stroke": "legs",
+    "drive-force": "legs", "joint-force": "legs axes", "force-sensor:base": "legs", "force-sensor:drive": "legs",
+    "force-sensor:platform": "legs", "encoder": "legs", "accelerometer": AXES, "geophone": AXES,
 }  # fmt: skip
 AT_POINTS = ("force", "accelerometer", "geophone")
-ON_PLATFORM = (*AT_POINTS, "wrench", "tool", "com")
+ON_PLATFORM = (*AT_POINTS, "wrench", "tool", "com", "tool-base", "com-base")
 #: Geophone of which nothing is said: a corner of 4.5 Hz, 0.7 of critical damping, and an output that is the velocity.
 USUAL = (4.5, 0.7, 1.0)
 
@@ -41,7 +41,7 @@ class Geophone:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Channel:
+class PlantChannel:
     """One channel: its ``name``, ``group``, and which ``leg`` or ``axis`` of it, from 0; ``at``: a point from the CoM.
 
     ``at`` (3,) [m] in platform axes.
@@ -55,7 +55,7 @@ class Channel:
     geophone: Geophone | None = None
 
 
-def asked(names: str | Sequence[str], robot: Robot, key: str) -> list[Channel]:
+def asked(names: str | Sequence[str], robot: Robot, key: str) -> list[PlantChannel]:
     """Channels by names of groups or single ones, in the order given.
 
     Parameters
@@ -82,10 +82,10 @@ def _words(known: dict[str, object]) -> str:
     return ", ".join(f"{name}:POINT" if name in AT_POINTS else name for name in known)
 
 
-def _of(name: str, known: dict[str, object], robot: Robot, key: str) -> list[Channel]:
+def _of(name: str, known: dict[str, object], robot: Robot, key: str) -> list[PlantChannel]:
     group = next((g for g in sorted(known, key=len, reverse=True) if name == g or name.startswith(f"{g}:")), None)
     if group is None:
-        like = nearest(name.partition(":")[0], [*known, *{g.partition(":")[0] for g in known}])
+        like = nearest(name, [*known, *(f"{g}:POINT" for g in AT_POINTS if g in known)])
         raise InputError(
             "is not a channel", key=key, value=name, allowed=_words(known),
             next_step=None if like is None else f"Did you mean {like!r}?",
@@ -109,25 +109,27 @@ def _of(name: str, known: dict[str, object], robot: Robot, key: str) -> list[Cha
     return chosen
 
 
-def _members(group: str, members: object, robot: Robot) -> list[Channel]:
+def _members(group: str, members: object, robot: Robot) -> list[PlantChannel]:
     legs = range(len(robot.legs))
     if members == "legs axes":
         return [
-            Channel(name=f"{group}:{i + 1}:{axis}", group=group, leg=i, axis=k)
+            PlantChannel(name=f"{group}:{i + 1}:{axis}", group=group, leg=i, axis=k)
             for i in legs
             for k, axis in enumerate(AXES)
         ]
+    if group == "floor" and robot.plane is not None:
+        members = AXES  # a base that turns is known of robots in space
     if members != "legs":
-        return [Channel(name=f"{group}:{axis}", group=group, axis=k) for k, axis in enumerate(members)]  # type: ignore[arg-type]
+        return [PlantChannel(name=f"{group}:{axis}", group=group, axis=k) for k, axis in enumerate(members)]  # type: ignore[arg-type]
     driven = [
         i
         for i in legs
         if group not in ("drive", "command", "drive-force", "force-sensor:drive") or robot.legs[i].driven
     ]
-    return [Channel(name=f"{group}:{i + 1}", group=group, leg=i) for i in driven]
+    return [PlantChannel(name=f"{group}:{i + 1}", group=group, leg=i) for i in driven]
 
 
-def _at_point(group: str, rest: str, robot: Robot, key: str) -> list[Channel]:
+def _at_point(group: str, rest: str, robot: Robot, key: str) -> list[PlantChannel]:
     """Along the world's axes at a point."""
     point, _, last = rest.rpartition(":")
     point = point if last in AXES else rest
@@ -136,7 +138,7 @@ def _at_point(group: str, rest: str, robot: Robot, key: str) -> list[Channel]:
         base, sensor = _sensor(point, key)
     at = _point(base, robot, f"{group}:{rest}" if rest else group, key)
     return [
-        Channel(name=f"{group}:{base}:{axis}", group=group, axis=k, at=at, geophone=sensor)
+        PlantChannel(name=f"{group}:{base}:{axis}", group=group, axis=k, at=at, geophone=sensor)
         for k, axis in enumerate(AXES)
     ]
 

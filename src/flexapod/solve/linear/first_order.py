@@ -1,4 +1,4 @@
-"""From M, D, K to x' = A x + B u: what has no mass condensed with its dampers, loops as states, Eqs. (T20.11)-(T20.16)."""
+"""From M, D, K to x' = A x + B u: what has no mass is condensed with its dampers, Eqs. (T20.11)-(T20.16)."""
 
 from __future__ import annotations
 
@@ -44,23 +44,22 @@ def with_mass(U: Array) -> tuple[Index, Index, Array]:
     size = np.linalg.norm(U, axis=0)
     moving = np.flatnonzero(size > np.finfo(float).eps * len(U) * size.max(initial=0.0))
     V = U[:, moving] / size[moving]
-    second, taken = moving, np.zeros((0, 0))
     try:
         plain = not moving.size or np.linalg.cholesky(V.T @ V).diagonal().min() > PLAIN
     except np.linalg.LinAlgError:
         plain = False
-    if not plain:
-        R, order = qr(V, mode="r", pivoting=True)  # type: ignore[misc]
-        rank = int((np.abs(R.diagonal()) > LIGHTEST).sum())
-        second, loose = moving[order[:rank]], moving[order[rank:]]
-        taken = solve_triangular(R[:rank, :rank], R[:rank, rank:]) * size[loose] / size[second][:, None]
-        by = np.argsort(second)
-        second, taken = second[by], taken[by]
+    if plain:
+        rest = np.setdiff1d(np.arange(d), moving)
+        return moving, rest, np.zeros((moving.size, rest.size))
+    R, order = (np.asarray(x) for x in qr(V, mode="r", pivoting=True))
+    rank = int((np.abs(R.diagonal()) > LIGHTEST).sum())
+    second, loose = moving[order[:rank]], moving[order[rank:]]
+    taken = solve_triangular(R[:rank, :rank], R[:rank, rank:]) * size[loose] / size[second][:, None]
+    by = np.argsort(second)
     rest = np.setdiff1d(np.arange(d), second)
     T = np.zeros((second.size, rest.size))
-    if not plain:
-        T[:, np.searchsorted(rest, loose)] = taken
-    return second, rest, T
+    T[:, np.searchsorted(rest, loose)] = taken[by]
+    return second[by], rest, T
 
 
 def first_order(
@@ -151,4 +150,4 @@ def _refuse_late(D: Array, K: Array, still: Index) -> None:
 
 
 def _solved(A: Array, b: Array) -> Array:
-    return np.linalg.solve(A, b) if len(A) else b
+    return np.asarray(np.linalg.solve(A, b), dtype=np.float64) if len(A) else b

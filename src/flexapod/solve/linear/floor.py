@@ -1,45 +1,20 @@
-"""What a base that moves does to a robot that is seen from it, Eqs. (T18.4), (T20.8)-(T20.10)."""
+"""What a base that turns does to a robot that is seen from it, Eqs. (T20.8)-(T20.10)."""
 
 from __future__ import annotations
-
-from dataclasses import replace
 
 import numpy as np
 
 from flexapod.arrays import Array
 from flexapod.kinematics.rotations import matrix
-from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
 from flexapod.model import Robot, Simulation
 from flexapod.model.mount import BaseMotion
-from flexapod.solve.batch import RestStates, residual
 from flexapod.solve.linear.beside import carried
 from flexapod.solve.linear.motions import flat_forces
 from flexapod.solve.linear.plant import Plant
 from flexapod.solve.robot_system import robot_system, smooth
 from flexapod.solve.system import System
 
-__all__ = ["carried_masses", "gravity_forces", "tilt_stiffness", "turning_forces"]
-
-
-def gravity_forces(system: System, x: RestStates, command: Array, wrench: Array) -> Array:
-    """Forces (P, size, 3) on all coordinates per unit acceleration of the base along x, y, z, Eq. (T18.4).
-
-    In axes that move with the base it is gravity changed by the acceleration; residuals are linear in gravity.
-    """
-
-    def forces(gravity: Array) -> Array:
-        legs, payload, _ = residual(_in_gravity(system, gravity), x, command, np.zeros_like(command), wrench)
-        return np.concatenate([legs.reshape(len(x), -1), payload], axis=1)
-
-    none = forces(np.zeros(3))
-    return np.stack([forces(axis) - none for axis in np.eye(3)], axis=2)
-
-
-def _in_gravity(system: System, gravity: Array) -> System:
-    leg_p, payload_p = system.leg_p.copy(), system.payload_p.copy()
-    leg_p[:, columns(LEG_PARAMETERS, "gravity")] = gravity
-    payload_p[columns(PAYLOAD_PARAMETERS, "gravity")] = gravity
-    return replace(system, leg_p=leg_p, payload_p=payload_p)
+__all__ = ["carried_masses", "tilt_stiffness", "turning_forces"]
 
 
 def turning_forces(plant: Plant, about: Array) -> Array:

@@ -9,22 +9,23 @@ import numpy as np
 
 from flexapod.arrays import Array
 from flexapod.errors import InputError
-from flexapod.solve.linear.channels import Channel
+from flexapod.solve.linear.channels import PlantChannel
 from flexapod.solve.linear.plant import Plant
 from flexapod.solve.linear.second_order import SecondOrder, second_order
 from flexapod.solve.statics.stiffness import tool_motion
 
-__all__ = ["Grid", "grid_of"]
+__all__ = ["PoseMatrices", "grid_of"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Grid:
+class PoseMatrices:
     """M z'' + D z' + K z = B u, y = C z at P poses; arrays with the pose first, ``motions`` by name.
 
-    Motions of loops have no inertia; those that inputs impose, as commands, stand last and follow z'' = u.
+    Motions of loops have no inertia; behind the ``free`` ones stand those that inputs impose, as commands: z'' = u.
     """
 
     motions: tuple[str, ...]
+    free: int
     M: Array
     D: Array
     K: Array
@@ -32,7 +33,9 @@ class Grid:
     C: Array
 
 
-def grid_of(plant: Plant, inputs: Sequence[Channel], outputs: Sequence[Channel], *, about: Array) -> Grid:
+def grid_of(
+    plant: Plant, inputs: Sequence[PlantChannel], outputs: Sequence[PlantChannel], *, about: Array
+) -> PoseMatrices:
     """The equations at all equilibria of a plant.
 
     Raises
@@ -42,10 +45,10 @@ def grid_of(plant: Plant, inputs: Sequence[Channel], outputs: Sequence[Channel],
     """
     second = second_order(plant, inputs, about=about)
     C = np.stack([_row(plant, second, channel) for channel in outputs], axis=1)
-    return Grid(motions=second.names, M=second.M, D=second.D, K=second.K, B=second.F, C=C)
+    return PoseMatrices(motions=second.names, free=second.free, M=second.M, D=second.D, K=second.K, B=second.F, C=C)
 
 
-def _row(plant: Plant, second: SecondOrder, channel: Channel) -> Array:
+def _row(plant: Plant, second: SecondOrder, channel: PlantChannel) -> Array:
     """An output by motions, (P, d)."""
     system, flat = plant.system, second.flat
     hub = flat[:, system.legs * system.n :]

@@ -1,4 +1,4 @@
-"""What is seen of a linear model: places, forces, what sensors measure, by states and inputs, Eqs. (T20.17)-(T20.23)."""
+"""What is seen of a linear model, by states and inputs: places, forces, sensors, Eqs. (T20.17)-(T20.23)."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.arrays import Array
-from flexapod.kinematics.rotations import matrix
+from flexapod.kinematics.rotations import exponential, matrix
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.solve.batch import matrices_at_rest
 from flexapod.solve.kernel import evaluate
-from flexapod.solve.linear.channels import Channel
+from flexapod.solve.linear.channels import PlantChannel
 from flexapod.solve.linear.first_order import FirstOrder
 from flexapod.solve.linear.floor import carried_masses
 from flexapod.solve.linear.plant import Plant
@@ -31,9 +31,9 @@ class Seen:
     plant: Plant
     second: SecondOrder
     first: FirstOrder
-    inputs: Sequence[Channel]
+    inputs: Sequence[PlantChannel]
 
-    def row(self, channel: Channel) -> Array:
+    def row(self, channel: PlantChannel) -> Array:
         """An output by states and inputs, (n + m,)."""
         i, axis = channel.leg, channel.axis
         match channel.group:
@@ -41,6 +41,8 @@ class Seen:
                 return (tool_motion(self.plant.robot, self.plant.x.pose)[0] @ self._hub(self.first.place))[axis]
             case "com":
                 return self._hub(self.first.place)[axis]
+            case "tool-base" | "com-base":
+                return self._from_base(channel.group == "tool-base")[axis]
             case "stroke":
                 return self._leg(self.place, i)[self._moved(i)]
             case "encoder":
@@ -59,6 +61,24 @@ class Seen:
     def _hub(self, of: Array) -> Array:
         return self.second.flat[0, self.plant.system.legs * self.plant.system.n :] @ of
 
+    def _from_base(self, tool: bool) -> Array:
+        """Displacement and turn of the tool, or the centre of mass, from the base plate on its mount, world axes."""
+        robot, x = self.plant.robot, self.plant.x
+        motion = tool_motion(robot, x.pose)[0]
+        found = motion @ self._hub(self.first.place) if tool else np.zeros((6, self.first.place.shape[1]))
+        found[:3] = found[:3] if tool else self._hub(self.first.place)[:3]
+        if robot.base_mount is None:
+            return found
+        f = self.plant.system.kernel.shapes.index("f")
+        base, at, (_, pitch, yaw) = self._leg(self.place, 0)[f : f + 6], x.q[0, 0, f : f + 3], x.q[0, 0, f + 3 : f + 6]
+        turns = exponential(np.array([[0, 0, yaw], [0, pitch, 0]]))
+        axes = np.stack([turns[0] @ turns[1][:, 0], turns[0][:, 1], [0.0, 0.0, 1.0]], axis=1)  # of roll, pitch, yaw
+        arm = matrix(x.pose[:, 3:])[0] @ (robot.tool - robot.com) if tool else np.zeros(3)
+        turn = axes @ base[3:]
+        found[:3] -= base[:3] + np.cross(turn.T, x.pose[0, :3] + arm - robot.base_mount.at - at).T
+        found[3:] -= turn
+        return found
+
     def _leg(self, flat: Array, i: int) -> Array:
         n = self.plant.system.n
         return flat[i * n : (i + 1) * n]
@@ -68,7 +88,7 @@ class Seen:
         shapes = self.plant.system.kernel.shapes
         return shapes.index("chi") if self.plant.robot.legs[i].driven == "carriage" else shapes.l_index
 
-    def by_coordinates(self, places: Sequence[Channel]) -> Array:
+    def by_coordinates(self, places: Sequence[PlantChannel]) -> Array:
         """Outputs that are places by flat coordinates, (p, size)."""
         size = self.plant.system.size
         free = replace(
@@ -107,7 +127,7 @@ class Seen:
             if system.kernel.shapes.has(name):
                 legs[:, system.kernel.shapes.index(name)] = False
         found = np.linalg.lstsq(G[:, counts].T, -self.balance[counts], rcond=1e-12)[0]
-        return found.reshape(system.legs, system.rows, -1)
+        return np.asarray(found, dtype=np.float64).reshape(system.legs, system.rows, -1)
 
     @cached_property
     def jacobian(self) -> Array:
@@ -202,7 +222,7 @@ class Seen:
         of_leg = system.leg_p[:, columns(leg_parameters(system.kernel.shapes), "base_plate_mass")]
         return float(of_leg.sum())
 
-    def _acceleration(self, channel: Channel) -> Array:
+    def _acceleration(self, channel: PlantChannel) -> Array:
         """What an accelerometer on the platform shows: absolute acceleration less gravity, Eq. (T20.21)."""
         at, axis, n = channel.at if channel.at is not None else np.zeros(3), channel.axis, self.first.A.shape[1]
         motion = point_motion(self.plant, at)[0]

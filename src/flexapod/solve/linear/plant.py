@@ -1,4 +1,4 @@
-"""A robot about its equilibria as it moves from there: loops as they are, drives held or released, Eqs. (T20.1)-(T20.3)."""
+"""A robot about its equilibria with its loops as they are, drives held or released, Eqs. (T20.1)-(T20.3)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Literal, cast
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.arrays import Array
+from flexapod.arrays import Array, Mask
 from flexapod.errors import ComputationError, InputError
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Drive, Encoder, ForceDrive, Load, PrescribedDrive, Robot, ScrewDrive, Simulation
@@ -22,7 +22,7 @@ from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.robot_system import robot_system, smooth
 from flexapod.solve.statics.drive_forces import push_ports
 from flexapod.solve.statics.equilibrium import FARTHEST
-from flexapod.solve.statics.locked import LockedPoses
+from flexapod.solve.statics.locked import LockedPoses, the_equilibrium
 from flexapod.solve.statics.reduction import Motions, independent
 from flexapod.solve.statics.substitutes import with_substitutes
 from flexapod.solve.system import Index, System
@@ -57,6 +57,12 @@ class Plant:
         """The robot, pure force drives holding their places, on a base at rest."""
         return self.locked.robot
 
+    def pushed(self, leg: int) -> int:
+        """Coordinate on which a force of a drive acts; of a motor that lags, and is released, what it is asked for."""
+        shapes, at = self.system.kernel.shapes, int(self.port[leg])
+        lags = self.drives == "force" and shapes.has("j") and not self.system.held[leg, shapes.index("j")]
+        return shapes.index("j") if lags else at
+
     @property
     def command(self) -> Array:
         """Commands of all ports, (P, legs, ports); where statics know of none, what is there."""
@@ -81,6 +87,8 @@ def plant_at(
     if drives == "force":
         robot = robot.replace(legs=tuple(leg.replace(drive=_holding(leg.drive)) for leg in robot.legs))
     locked = locked_poses(robot, simulation, path, load)
+    if len(path) == 1:
+        the_equilibrium(locked)
     robot = locked.robot
     shapes = locked.system.kernel.shapes
     as_at_rest = drives == "given" and not (shapes.has("w") or shapes.has("j"))
@@ -135,7 +143,7 @@ def _at_rotors(robot: Robot) -> Robot:
     return robot.replace(legs=legs)
 
 
-def _released(system: System, held: Array, robot: Robot) -> System:
+def _released(system: System, held: Mask, robot: Robot) -> System:
     """The system whose drives are forces: nothing holds their ports, neither springs nor loops, Eq. (T20.2)."""
     shapes, leg_p, held = system.kernel.shapes, system.leg_p.copy(), held.copy()
     layout = leg_parameters(shapes)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.solve.batch import RestStates
-from flexapod.solve.linear.floor import gravity_forces
+from flexapod.solve.linear.gravity import gravity_forces
 from flexapod.solve.modal.damped import poles
 from flexapod.solve.modal.modal_loops import ModalLoops, growth, unstable_words
 from flexapod.solve.modal.modes import loops_of, modal_damping, no_mass, unit_modes

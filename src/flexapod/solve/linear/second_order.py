@@ -11,8 +11,9 @@ from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.kinematics.rotations import matrix
 from flexapod.solve.batch import residual
-from flexapod.solve.linear.channels import Channel
-from flexapod.solve.linear.floor import gravity_forces, tilt_stiffness, turning_forces
+from flexapod.solve.linear.channels import PlantChannel
+from flexapod.solve.linear.floor import tilt_stiffness, turning_forces
+from flexapod.solve.linear.gravity import gravity_forces
 from flexapod.solve.linear.motions import coordinate_names, held_motions, on_motions
 from flexapod.solve.linear.plant import Plant
 from flexapod.solve.modal.modes import mass_on_motions, no_mass
@@ -50,14 +51,14 @@ class SecondOrder:
 
 
 def second_order(
-    plant: Plant, inputs: Sequence[Channel], *, tilt: bool = True, about: Array | None = None
+    plant: Plant, inputs: Sequence[PlantChannel], *, tilt: bool = True, about: Array | None = None
 ) -> SecondOrder:
     """The equations on motions.
 
     Parameters
     ----------
     plant : Plant
-    inputs : sequence of Channel
+    inputs : sequence of PlantChannel
     tilt : bool
         Whether gravity turns in the axes of a floor that turns.
     about : ndarray, shape (3,), optional
@@ -70,7 +71,7 @@ def second_order(
     ComputationError
         Masses that no body can have.
     """
-    system, m, motions = plant.system, plant.m, plant.motions
+    system, motions = plant.system, plant.motions
     P, d, about = len(plant.x), motions.columns.size, np.zeros(3) if about is None else about
     commands = [c for c in inputs if c.group == "command"]
     gravity = gravity_forces(system, plant.x, plant.command, plant.locked.acts.wrench)
@@ -83,22 +84,16 @@ def second_order(
         )  # fmt: skip
     flat = np.zeros((P, system.size, d + extra))
     flat[:, :, :d] = motions.flat(system, np.broadcast_to(np.eye(d), (P, d, d)))
-    flat[:, :, d : d + len(commands)] = _held(plant, commands)
-    A, R, Q = on_motions(system, m, flat)
+    _held(plant, commands, flat[:, :, d : d + len(commands)])
+    A, R, Q = on_motions(system, plant.m, flat)
     Q[:, :, d : d + len(commands)] += (by := _springs(plant, commands))[0]
     R[:, :, d : d + len(commands)] += by[1]
     for k, channel in enumerate(turns):
         Q[:, :, d + len(commands) + k] += tilt_stiffness(gravity, plant.robot.gravity)[:, :, channel.axis - 3]
     forces = _forces(plant, inputs, gravity, about)
-    names = coordinate_names(system)
-    own = [names[k] for k in motions.columns]
-    sums, lags = ([k for k, at in enumerate(motions.columns) if _is(plant, int(at), x)] for x in ("w", "j"))
+    own, sums, lags = _named(plant)
     # a lag's impulse enters by its rate alone, the force; a sum's equation is integrated once, Eq. (T20.7)
     Q[:, :, lags], R[:, :, lags], A[:, :, lags] = R[:, :, lags], A[:, :, lags], 0.0
-    own = [
-        f"{name[:-1]}summed error" if k in sums else f"{name[:-1]}motor force" if k in lags else name
-        for k, name in enumerate(own)
-    ]
     z = flat[:, :, :d].swapaxes(1, 2)
     M, D, K = np.zeros((3, P, d + extra, d + extra))
     M[:, :d], D[:, :d], K[:, :d] = z @ A, z @ R, z @ Q
@@ -108,36 +103,47 @@ def second_order(
         i = list(inputs).index(channel)
         F[:, :d, i] -= M[:, :d, d + k]
         M[:, :d, d + k], M[:, d + k, d + k], F[:, d + k, i] = 0.0, 1.0, 1.0
-    U, positive = mass_on_motions(system, motions, m)
-    if P and not positive.all():
-        raise no_mass(system, plant.x.q[int((~positive).argmax())])
-    U[:, :, [*sums, *lags]] = 0.0
     return SecondOrder(
         names=(*own, *(c.name for c in [*commands, *turns])), free=d, M=M, D=D, K=K, F=F, flat=flat, on_acceleration=A,
-        on_rate=R, on_place=Q, forces=forces, U=U, sums=np.array(sums, dtype=np.intp),
+        on_rate=R, on_place=Q, forces=forces, U=_mass(plant, [*sums, *lags]), sums=np.array(sums, dtype=np.intp),
         lags=np.array(lags, dtype=np.intp), about=about,
     )  # fmt: skip
 
 
-def _is(plant: Plant, at: int, name: str) -> bool:
-    shapes, system = plant.system.kernel.shapes, plant.system
-    return shapes.has(name) and at < system.legs * system.n and at % system.n == shapes.index(name)
+def _named(plant: Plant) -> tuple[list[str], list[int], list[int]]:
+    """Names of the free motions, and which of them are sums and lags of loops."""
+    system, names = plant.system, coordinate_names(plant.system)
+    own, shapes, found = [names[k] for k in plant.motions.columns], system.kernel.shapes, {"w": [], "j": []}
+    for name, words in (("w", "summed error"), ("j", "motor force")):
+        for k, at in enumerate(plant.motions.columns.tolist()):
+            if shapes.has(name) and at < system.legs * system.n and at % system.n == shapes.index(name):
+                found[name].append(k)
+                own[k] = f"{own[k].rpartition(' ')[0]} {words}"
+    return own, found["w"], found["j"]
 
 
-def _held(plant: Plant, commands: Sequence[Channel]) -> Array:
-    """Motions (P, size, c) by commands of drives that hold what they are told to hold, Eq. (T20.5)."""
-    system, found = plant.system, np.zeros((len(plant.x), plant.system.size, len(commands)))
-    l = system.kernel.shapes.l_index
+def _mass(plant: Plant, loops: Sequence[int]) -> Array:
+    """Factor (P, rows, d) of the mass on the free motions, without what stands for loops."""
+    U, positive = mass_on_motions(plant.system, plant.motions, plant.m)
+    if not positive.all():
+        raise no_mass(plant.system, plant.x.q[int((~positive).argmax())])
+    U[:, :, loops] = 0.0
+    return U
+
+
+def _held(plant: Plant, commands: Sequence[PlantChannel], found: Array) -> None:
+    """Put into motions (P, size, c) those by commands of drives that hold what they are told to hold, Eq. (T20.5)."""
+    system = plant.system
+    stroke = system.kernel.shapes.l_index
     for k, channel in enumerate(commands):
         i, at = channel.leg, int(plant.port[channel.leg])
         if not system.held[i, at]:
             continue
-        follow = {at} | ({l} if plant.robot.legs[i].gives and system.held[i, l] else set())
+        follow = {at} | ({stroke} if plant.robot.legs[i].gives and system.held[i, stroke] else set())
         found[:, :, k] = held_motions(system, plant.m, [(i, x) for x in sorted(follow)]).sum(axis=2)
-    return found
 
 
-def _springs(plant: Plant, commands: Sequence[Channel]) -> tuple[Array, Array]:
+def _springs(plant: Plant, commands: Sequence[PlantChannel]) -> tuple[Array, Array]:
     """What unit commands, and unit rates of them, of springs and loops add to all balances, two (P, size, c)."""
     system, x, wrench = plant.system, plant.x, plant.locked.acts.wrench
     none = np.zeros((len(x), system.legs, system.ports.size))
@@ -162,7 +168,7 @@ def _springs(plant: Plant, commands: Sequence[Channel]) -> tuple[Array, Array]:
 
 
 def point_motion(plant: Plant, at: Array) -> Array:
-    """Displacements (P, 3, 6) of a point of the payload, from its centre of mass in its axes, by the payload's steps."""
+    """Displacements (P, 3, 6) of a point of the payload, from its CoM in its axes, by the payload's steps."""
     R = matrix(plant.x.pose[:, 3:])
     cross = np.cross(np.eye(3), at)  # rows e_i x at
     found = np.zeros((len(R), 3, 6))
@@ -170,7 +176,7 @@ def point_motion(plant: Plant, at: Array) -> Array:
     return found
 
 
-def _forces(plant: Plant, inputs: Sequence[Channel], gravity: Array, about: Array) -> Array:
+def _forces(plant: Plant, inputs: Sequence[PlantChannel], gravity: Array, about: Array) -> Array:
     """Forces (P, size, m) on all coordinates per unit input, Eqs. (T18.3)-(T18.5), (T20.8)-(T20.9)."""
     system = plant.system
     P, hub = len(plant.x), slice(system.legs * system.n, system.size)
@@ -183,7 +189,7 @@ def _forces(plant: Plant, inputs: Sequence[Channel], gravity: Array, about: Arra
             case "force" if channel.at is not None:
                 found[:, hub, k] = point_motion(plant, channel.at)[:, channel.axis]
             case "drive":
-                found[:, channel.leg * system.n + plant.port[channel.leg], k] = 1.0
+                found[:, channel.leg * system.n + plant.pushed(channel.leg), k] = 1.0
             case "floor" if channel.axis < 3:
                 found[:, :, k] = gravity[:, :, channel.axis]
             case "floor" if turning is not None:

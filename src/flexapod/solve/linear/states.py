@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod.arrays import Array
+from flexapod.arrays import Array, Mask
 from flexapod.model import Robot
-from flexapod.solve.linear.channels import Channel
+from flexapod.solve.linear.channels import PlantChannel
 from flexapod.solve.linear.first_order import FirstOrder, first_order, with_mass
 from flexapod.solve.linear.motions import coordinate_names, on_motions
 from flexapod.solve.linear.outputs import Seen
@@ -67,7 +67,7 @@ class Descriptor:
     coordinates: tuple[str, ...]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    held: Array
+    held: Mask
 
 
 def condensed(second: SecondOrder, k: int = 0) -> FirstOrder:
@@ -83,8 +83,8 @@ def condensed(second: SecondOrder, k: int = 0) -> FirstOrder:
 
 def states_of(
     plant: Plant,
-    inputs: Sequence[Channel],
-    outputs: Sequence[Channel],
+    inputs: Sequence[PlantChannel],
+    outputs: Sequence[PlantChannel],
     *,
     tilt: bool = True,
     about: Array | None = None,
@@ -108,7 +108,7 @@ def states_of(
 
 
 def _with_geophones(
-    A: Array, B: Array, C: Array, D: Array, names: Sequence[str], outputs: Sequence[Channel]
+    A: Array, B: Array, C: Array, D: Array, names: Sequence[str], outputs: Sequence[PlantChannel]
 ) -> tuple[Array, Array, Array, Array, list[str]]:
     """Proof masses of geophones behind the accelerations that move them, Eq. (T20.22)."""
     names = list(names)
@@ -127,17 +127,17 @@ def _with_geophones(
     return A, B, C, D, names
 
 
-def units_of(robot: Robot, channels: Sequence[Channel]) -> dict[str, str]:
+def units_of(robot: Robot, channels: Sequence[PlantChannel]) -> dict[str, str]:
     """Units of channels by name."""
     return {channel.name: _unit(robot, channel) for channel in channels}
 
 
-def _unit(robot: Robot, channel: Channel) -> str:
+def _unit(robot: Robot, channel: PlantChannel) -> str:
     crank = channel.leg >= 0 and _turns(robot, channel.leg)
     match channel.group:
         case "wrench":
             return "N" if channel.axis < 3 else "N m"
-        case "tool":
+        case "tool" | "tool-base":
             return "m" if channel.axis < 3 else "rad"
         case "floor":
             return "m/s^2" if channel.axis < 3 else "rad/s^2"
@@ -147,7 +147,7 @@ def _unit(robot: Robot, channel: Channel) -> str:
             return "rad/s^2" if crank else "m/s^2"
         case "stroke" | "encoder":
             return "rad" if crank else "m"
-        case "com":
+        case "com" | "com-base":
             return "m"
         case "accelerometer":
             return "m/s^2"
@@ -161,14 +161,16 @@ def _turns(robot: Robot, leg: int) -> bool:
     return carriage is not None and carriage.kind == "crank" and robot.legs[leg].driven == "carriage"
 
 
-def descriptor_of(plant: Plant, inputs: Sequence[Channel], outputs: Sequence[Channel]) -> Descriptor:
-    """The equations in flat coordinates at the one pose of a plant."""
+def descriptor_of(
+    plant: Plant, inputs: Sequence[PlantChannel], outputs: Sequence[PlantChannel], about: Array | None = None
+) -> Descriptor:
+    """The equations in flat coordinates at the one pose of a plant; ``about``: as of `second_order`."""
     system = plant.system
-    second = second_order(plant, inputs)
+    second = second_order(plant, inputs, about=about)
     M, D, K = (x[0] for x in on_motions(system, plant.m, np.eye(system.size)[None]))
     m = len(inputs)
     seen = Seen(plant=plant, second=second, first=condensed(second), inputs=inputs)
-    places = [c for c in outputs if c.group in ("tool", "com", "stroke", "encoder")]
+    places = [c for c in outputs if c.group in ("tool", "com", "tool-base", "com-base", "stroke", "encoder")]
     B, B_rate = second.forces[0].copy(), np.zeros((system.size, m))
     for k, channel in enumerate(inputs):
         if channel.group == "command" and not system.held[channel.leg, plant.port[channel.leg]]:

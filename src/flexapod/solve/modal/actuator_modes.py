@@ -106,7 +106,7 @@ def amplitude_groups(shapes: Shapes) -> dict[str, slice]:
 def turning_matrices(actuator: Actuator, simulation: Simulation, rate: float) -> tuple[Array, Array, Array]:
     """M, D, K (k, k) of the amplitudes of the beam in steady rotation, Eq. (T9.6); in space at its steady stretch."""
     shapes = actuator_shapes(actuator, simulation, rate)
-    residual, matrices, tangents = _functions(shapes)
+    residual, matrices, tangents = functions(shapes)
     p, at, none = actuator_parameters(actuator, shapes)[0], places(shapes), np.zeros(0)
     load = [np.zeros(LOAD_SIZE)] * shapes.loaded
     (q, v), still = np.zeros((2, shapes.size)), np.zeros(shapes.size)
@@ -136,7 +136,7 @@ def stretching_lag(actuator: Actuator, simulation: Simulation, rate: float) -> A
 
 
 @lru_cache(maxsize=16)
-def _functions(shapes: Shapes) -> tuple[Function, Function, Function]:
+def functions(shapes: Shapes) -> tuple[Function, Function, Function]:
     """Residual, matrices at rest and tangents in motion of the leg, interpreted: each is called once per analysis."""
     from flexapod.mechanics.assembly import leg_functions, leg_tangents
     from flexapod.symbolic.functions import Interpreted

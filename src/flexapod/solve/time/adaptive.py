@@ -12,7 +12,7 @@ from flexapod.errors import ComputationError
 from flexapod.solve.system import Flow
 from flexapod.solve.time import native
 from flexapod.solve.time.chebyshev import Series
-from flexapod.solve.time.problem import ADVICE, CAUSES, Chunk, Problem
+from flexapod.solve.time.problem import CAUSES, Chunk, Problem
 from flexapod.solve.time.radau import MOST, OUT_OF_REACH, SHORTEST, Advanced, Within
 from flexapod.solve.time.recording import Counters, Recording, unpack
 from flexapod.solve.time.stops import NEAR, Stop, after
@@ -62,9 +62,9 @@ def _chunk_end(problem: Problem, done: int, count: int) -> int:
 
 def _recorded(problem: Problem, flow: Flow, t: float) -> tuple[Flow, Recording]:
     """Flow with its powers, and its record, stored as that of time t; commands are those at t."""
-    table, load = problem.tables(np.array([t]))
+    table, load = problem.tables_under(flow)(np.array([t]))
     flow, row = native.first_record(problem.system, flow, table, load)
-    return flow, unpack(problem.system, np.array([t]), row)
+    return flow, unpack(problem.system, np.array([t]), row, problem.loop and np.zeros((1, problem.loop.width)))
 
 
 def _sound(problem: Problem, recording: Recording) -> tuple[int, ComputationError | None]:
@@ -92,7 +92,7 @@ class _Run:
         knots = problem.knots[(problem.knots > 0) & (problem.knots < edges[-1])]
         edges = _apart(sorted([*edges, *knots]))
         series = Series(problem.tables, edges, min(FINEST, problem.output_step))
-        self.within = Within(problem.system, series, edges[-1], problem.tolerance or 0.0)
+        self.within = Within(problem.system, series, edges[-1], problem.tolerance or 0.0, problem.loop)
         self.steps = 0  # of the last chunk
         self.look = MOST  # steps to the next look at the scales
         self._scale(first)
@@ -101,7 +101,7 @@ class _Run:
 
     def chunk(self, flow: Flow, done: int, to: int) -> tuple[Chunk, Flow, ComputationError | None]:
         """Outputs after `done` up to `to`, or as far as it goes, the flow at their end, and what went wrong."""
-        p, rows, before = self.problem, [], self.counters.steps
+        p, rows, control, before = self.problem, [], [], self.counters.steps
         begin, end, failure = done * p.output_step, to * p.output_step, None
         between = slice(*(bisect_right(self.ends, t, key=_first) for t in (begin + NEAR, end - NEAR)))
         passed: list[float] = []
@@ -113,6 +113,7 @@ class _Run:
             passed.clear()
             flow = found.flow
             rows.append(found.rows)
+            control.append(found.control)
             done += len(found.rows)
             if found.status:
                 failure = self._failure(found)
@@ -123,9 +124,9 @@ class _Run:
                 except ComputationError as error:
                     failure = error
                     break
-        whole = rows[0] if len(rows) == 1 else np.concatenate(rows)
+        whole = _joined(rows)
         time = np.asarray((done - len(whole) + 1 + np.arange(len(whole))) * p.output_step, dtype=float)
-        recording = unpack(p.system, time, whole)
+        recording = unpack(p.system, time, whole, _joined(control) if p.loop else None)
         if failure is None and to in p.stops.ends:  # what is stored there is the value after the jump
             flow, last = self.restarted(flow, end, p.stops.ends[to])
             recording = recording.ending(last)
@@ -140,15 +141,16 @@ class _Run:
 
     def _advance(self, flow: Flow, stops: Sequence[float], done: int, to: int) -> Advanced:
         """Advance to the last of `stops`; where many steps lie between outputs, with looks at the scales on the way."""
-        rows, now, step = [], self.within.time, self.problem.output_step
+        rows, control, now, step = [], [], self.within.time, self.problem.output_step
         while True:
             at = done + sum(map(len, rows))
             outputs, ahead = ((at + 1) * step, step, to - at), np.array([t for t in stops if t > now])
             most = self.look if self.look < MOST else MOST * max(to - at, 1)
             found = self.within.advance(flow, ahead, self._weights(), outputs, most, self.counters)
             rows.append(found.rows)
+            control.append(found.control)
             if found.status != OUT_OF_REACH or found.time - now <= (0.0 if most < MOST else MOST * FEWEST):
-                return found if len(rows) == 1 else replace(found, rows=np.concatenate(rows))
+                return replace(found, rows=_joined(rows), control=_joined(control) if self.problem.loop else None)
             flow, now = found.flow, found.time
             self._scale(_recorded(self.problem, flow, now)[1])
 
@@ -172,11 +174,8 @@ class _Run:
                 f"{1e6 * SHORTEST:g} us",
             )
         where = f" in leg {found.leg + 1}" if 0 <= found.leg < self.problem.system.legs else ""
-        return ComputationError(
-            f"the integration stopped at t = {found.time:.6g} s (step {self.within.step:.3g} s): "
-            f"{CAUSES[found.status]}{where}",
-            next_step=ADVICE,
-        )
+        at = f"at t = {found.time:.6g} s (step {self.within.step:.3g} s)"
+        return self.problem.failed(found.status, f"{at}: {CAUSES[found.status]}{where}")
 
     def _out_of_reach(self, now: float, why: str) -> ComputationError:
         return ComputationError(
@@ -212,6 +211,10 @@ def _ends(problem: Problem) -> list[Stop]:
     found += [Stop(first=t, last=t, jumps=False) for t in problem.knots[apart].tolist()]
     last = problem.outputs * problem.output_step - NEAR
     return sorted((stop for stop in found if NEAR < stop.first < last), key=_first)
+
+
+def _joined(parts: list[Array]) -> Array:
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
 
 def _first(stop: Stop) -> float:

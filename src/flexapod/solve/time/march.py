@@ -11,7 +11,7 @@ from flexapod.errors import ComputationError
 from flexapod.solve.system import Flow, System
 from flexapod.solve.time import interpreted, native
 from flexapod.solve.time.adaptive import adaptive_march
-from flexapod.solve.time.problem import ADVICE, CAUSES, Chunk, Problem
+from flexapod.solve.time.problem import CAUSES, Chunk, Problem
 from flexapod.solve.time.recording import Counters, Recording, unpack
 from flexapod.solve.time.stops import Stop, after, before
 
@@ -47,8 +47,8 @@ def march(problem: Problem, start: Flow, first_step: float, counters: Counters) 
         yield from adaptive_march(problem, start, counters)
         return
     table, wrench = problem.tables(np.zeros(1))
-    flow, row = _first_record(problem.system, start, table, wrench)
-    first = unpack(problem.system, np.zeros(1), row)
+    flow, row = first_record(problem.system, start, table, wrench)
+    first = unpack(problem.system, np.zeros(1), row, problem.loop and np.zeros((1, problem.loop.width)))
     yield Chunk(recording=first, error=0.0, step=first_step)
     control = _Control(problem, counters, first_step, [np.abs(x).max(initial=0.0) for x in problem.measure(first)])
     longest = CHUNK_STEPS if problem.tolerance is None and problem.system.kernel.library else CHUNK
@@ -126,7 +126,7 @@ class _Control:
         """Return the next ``count`` outputs with the fixed step, or up to ``count`` within the tolerance."""
         if self.problem.tolerance is None:
             result, self.h = self._once(flow, done, count, 1)
-            return result.flow, self._chunk(result.rows, done, 0.0, self.per_output)
+            return result.flow, self._chunk(result.rows, done, 0.0, self.per_output, result.control)
         while True:
             count = self._whole(self.problem.stops.next(done, done + count, self.coarse) - done)
             # Errors of chunks add up in part (damping forgets): each may use the root of its share.
@@ -185,7 +185,11 @@ class _Control:
     def _through(self, flow: Flow, done: int, stops: Sequence[Stop], parts: int) -> tuple[native.Advance, float]:
         """Run one output interval piece by piece, from break to break, with a restart after each that jumps."""
         p, prepared = self.problem, self.h
-        edges = [done * p.output_step, *(stop.first for stop in stops), (done + 1) * p.output_step]
+        begin, end = done * p.output_step, (done + 1) * p.output_step
+        samples = p.loop.instants(begin, end, [stop.first for stop in stops]) if p.loop else []
+        stops = [*stops, *(Stop(first=t, last=t, jumps=False) for t in samples)]
+        stops.sort(key=lambda stop: stop.first)
+        edges = [begin, *(stop.first for stop in stops), end]
         spans = np.diff(edges)
         counts = [parts * max(1, int(np.ceil(x / p.output_step * self.coarse - 1e-6))) for x in spans]
         steps, times = spans / counts, _pieces(edges, counts, [*stops, p.stops.ends.get(done + 1)])
@@ -232,20 +236,20 @@ class _Control:
         while result is None or first < len(t) - 1:
             tables = (grid[1], grid[2]) if grid[1:] else p.tables(t[first : first + CHUNK_STEPS + 1])
             many = min(every, len(tables[0]) - 1)
-            result = _loop(p.system).advance(p.system, p.method, flow, h, tables, many, self.counters, before=result)
+            around = {"loop": p.loop, "begin": float(t[first])} if p.loop else {}
+            result = _loop(p.system).advance(
+                p.system, p.method, flow, h, tables, many, self.counters, before=result, **around
+            )
             if result.status:
                 where = f" in leg {result.leg + 1}" if 0 <= result.leg < p.system.legs else ""
-                raise ComputationError(
-                    f"the integration stopped at t = {t[first + result.step]:.6g} s (step {h:.3g} s): "
-                    f"{CAUSES[result.status]}{where}",
-                    next_step=ADVICE,
-                )
+                at = f"at t = {t[first + result.step]:.6g} s (step {h:.3g} s)"
+                raise p.failed(result.status, f"{at}: {CAUSES[result.status]}{where}")
             flow, first = result.flow, first + len(tables[0]) - 1
         return result
 
-    def _chunk(self, rows: Array, done: int, error: float, per_output: int) -> Chunk:
+    def _chunk(self, rows: Array, done: int, error: float, per_output: int, control: Array | None = None) -> Chunk:
         time = np.asarray((done + 1 + np.arange(len(rows))) * self.problem.output_step, dtype=float)
-        recording = unpack(self.problem.system, time, rows)
+        recording = unpack(self.problem.system, time, rows, control)
         return Chunk(recording=recording, error=error, step=self.problem.output_step / per_output)
 
     def _measured(self, rows: Array, done: int, every: int) -> list[Array]:
@@ -272,12 +276,13 @@ def _pieces(edges: list[float], counts: list[int], ends: Sequence[Stop | None]) 
 def _restarted(problem: Problem, flow: Flow, t: float, stop: Stop, h: float) -> tuple[Flow, Recording]:
     """Flow after a jump at time t, prepared for steps h, with the new powers; and what is recorded of it."""
     now = after(max(t, stop.last))
-    table, wrench = problem.tables(np.array([now]))
-    flow, row = _first_record(problem.system, problem.restart(flow, now, h), table, wrench)
+    table, wrench = problem.tables_under(flow)(np.array([now]))
+    flow, row = first_record(problem.system, problem.restart(flow, now, h), table, wrench)
     return flow, unpack(problem.system, np.array([t]), row)
 
 
-def _first_record(system: System, flow: Flow, table: Array, wrench: Array) -> tuple[Flow, Array]:
+def first_record(system: System, flow: Flow, table: Array, wrench: Array) -> tuple[Flow, Array]:
+    """Flow with its powers set, and the record of it, (1, record_width)."""
     return _loop(system).first_record(system, flow, table, wrench)
 
 

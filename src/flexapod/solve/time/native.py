@@ -5,6 +5,7 @@ from ctypes import Structure, byref, c_double, c_long, c_void_p
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,9 +17,13 @@ from flexapod.solve.system import Flow, System
 from flexapod.solve.time.recording import Counters, record_width
 from flexapod.symbolic.compiler import lanes, written_library
 
+if TYPE_CHECKING:
+    from flexapod.solve.time.sampled import SampledLoop
+
 NATIVE = Path(__file__).parent / "native"
 SOURCES = tuple(
-    NATIVE / name for name in ("system.h", "lu.c", "legs.c", "arrow.c", "state.c", "march.c", "complex.c", "radau.c")
+    NATIVE / name
+    for name in ("system.h", "lu.c", "legs.c", "arrow.c", "state.c", "loop.c", "march.c", "complex.c", "radau.c")
 )
 PORTS = 24  # as in system.h
 LINE = 64  # bytes of the processor's cache, and of its longest vectors
@@ -54,7 +59,10 @@ class _State(Structure):
 
 @dataclass(frozen=True, kw_only=True)
 class Advance:
-    """Outcome of a chunk: new flow, output rows, status (0 = done), where it failed, and C's memory of its end."""
+    """Outcome of a chunk: new flow, output rows, status (0 = done), where it failed, and C's memory of its end.
+
+    ``control``: rows of a controller's record.
+    """
 
     flow: Flow
     rows: Array
@@ -62,6 +70,7 @@ class Advance:
     step: int
     leg: int
     memory: Array | None = None
+    control: Array | None = None
 
 
 def address(array: Array) -> c_void_p:
@@ -137,10 +146,13 @@ def advance(
     every: int,
     counters: Counters,
     before: Advance | None = None,
+    loop: "SampledLoop | None" = None,
+    begin: float = 0.0,
 ) -> Advance:
     """Advance by the rows of ``tables`` ((T, legs, ports, 4), (T, load_size)), recording each ``every`` steps.
 
-    ``before``: the call that ended there, to go on with the bits of a single call for both.
+    ``before``: the call that ended there, to go on with the bits of a single call for both. ``loop``: a controller;
+    ``begin``: instant of the first row [s].
     """
     table, wrench = (np.ascontiguousarray(x) for x in tables)
     steps = len(table) - 1
@@ -148,14 +160,20 @@ def advance(
     call = Call(system, new, rows, method, h, every)
     state, left = call.state, before.memory if before else None
     kept, given = _of_march(system, call) if left is None else left, [address(x) for x in (table, wrench)]
+    control = np.empty((len(rows), loop.width if loop else 0))
+    around, _held = loop.call(new, begin, begin + steps * h, control) if loop else (None, ())
     status = loops(system.kernel).march(
-        byref(call.settings), byref(state), *given, c_long(steps), c_long(left is not None), address(kept)
-    )
+        byref(call.settings), byref(state), *given, c_long(steps), c_long(left is not None), address(kept),
+        byref(around) if around else None,
+    )  # fmt: skip
     counters.steps += state.steps
     counters.iterations += state.iterations
     counters.factorisations += state.factorisations
     done = steps if status == 0 else state.steps - 1
-    return Advance(flow=new, rows=rows[: done // every], status=status, step=done, leg=state.bad_leg, memory=kept)
+    return Advance(
+        flow=new, rows=rows[: done // every], status=status, step=done, leg=state.bad_leg, memory=kept,
+        control=control[: done // every] if loop else None,
+    )  # fmt: skip
 
 
 def first_record(system: System, flow: Flow, table: Array, wrench: Array) -> tuple[Flow, Array]:

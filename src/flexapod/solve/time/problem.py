@@ -2,25 +2,32 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flexapod.arrays import Array
+from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.solve.system import Flow, System
 from flexapod.solve.time.recording import Recording
 from flexapod.solve.time.stops import Stops
 from flexapod.solve.time.tables import Law
 
-__all__ = ["ADVICE", "CAUSES", "Chunk", "Measure", "Problem", "Weight"]
+if TYPE_CHECKING:
+    from flexapod.solve.time.sampled import SampledLoop
+
+__all__ = ["CAUSES", "Chunk", "Measure", "Problem", "Weight"]
 
 Measure = Callable[[Recording], list[Array]]
+ASKED = 5  # as in loop.c
 CAUSES = {
     1: "the step's equations were not solved",
     2: "numbers became infinite",
     3: "the linear equations are singular",
+    ASKED: "a controller's function failed",
 }
-ADVICE = (
+_ADVICE = (
     "Reduce the step, check for a singular pose, a leg near buckling or a piston almost inside its cylinder, "
     "or start from equilibrium."
 )
@@ -41,7 +48,7 @@ class Problem:
     ``tables`` see `tables.Law`; ``measure`` gives the quantities whose error is controlled, as
     groups (T, ...) with a common scale each, ``weights`` what moves them; ``restart(flow, t, h)`` goes on after a jump
     of a command or a load just before t, of which ``stops`` tells the instants; between ``knots`` (n,), its ends
-    included, the commanded path is smooth.
+    included, the commanded path is smooth; ``loop``: a sampled controller.
     """
 
     system: System
@@ -56,6 +63,17 @@ class Problem:
     tolerance: float | None
     weights: tuple[Weight, ...] = ()
     knots: Array = field(default_factory=lambda: np.zeros(0))
+    loop: "SampledLoop | None" = None
+
+    def tables_under(self, flow: Flow) -> Law:
+        """Commands and loads with what a controller holds."""
+        return self.loop.onto(self.tables, flow) if self.loop else self.tables
+
+    def failed(self, status: int, where: str) -> ComputationError:
+        """What to raise where an integration stopped; the fault of a controller's function as it is."""
+        if status == ASKED and self.loop and self.loop.fault:
+            raise self.loop.fault
+        return ComputationError(f"the integration stopped {where}", next_step=_ADVICE)
 
     @property
     def adaptive(self) -> bool:

@@ -2,6 +2,7 @@
 
 from ctypes import Structure, byref, c_double, c_long, c_void_p
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +13,9 @@ from flexapod.solve.time.chebyshev import Series
 from flexapod.solve.time.native import Call, address, loops, memory, settings
 from flexapod.solve.time.pieces import NODES
 from flexapod.solve.time.recording import Counters, record_width
+
+if TYPE_CHECKING:
+    from flexapod.solve.time.sampled import SampledLoop
 
 __all__ = ["OUT_OF_REACH", "Advanced", "Within"]
 
@@ -38,13 +42,17 @@ class _Control(Structure):
 
 @dataclass(frozen=True, kw_only=True)
 class Advanced:
-    """Outcome of a call: new flow, output rows so far, status (0: done), where it failed and when."""
+    """Outcome of a call: new flow, output rows so far, status (0: done), where it failed and when.
+
+    ``control``: rows of a controller's record.
+    """
 
     flow: Flow
     rows: Array
     status: int
     leg: int
     time: float
+    control: Array | None = None
 
 
 class Within:
@@ -58,10 +66,15 @@ class Within:
     horizon : float
         When the run ends [s]: the local errors up to there may add up to the tolerance.
     tolerance : float
+    loop : SampledLoop, optional
+        A controller, at whose samples steps end.
     """
 
-    def __init__(self, system: System, series: Series, horizon: float, tolerance: float) -> None:
+    def __init__(
+        self, system: System, series: Series, horizon: float, tolerance: float, loop: "SampledLoop | None" = None
+    ) -> None:
         self.system, self.series, self.horizon, self.tolerance = system, series, horizon, tolerance
+        self.loop = loop
         self._along = _along(system)
         self._memory = memory(loops(system.kernel).radau_memory(byref(settings(system, GeneralizedAlpha(1.0), 1.0, 1))))
         self._memory[STEP] = FIRST
@@ -116,16 +129,21 @@ class Within:
             UNSOLVED, *outputs, len(series), NODES, most, len(stops),
             address(edges), address(series), address(stops), *self._along,
         )  # fmt: skip
-        before = self._memory[REJECTED]
+        before, found = self._memory[REJECTED], np.empty((len(rows), self.loop.width if self.loop else 0))
+        around, _held = self.loop.call(new, self.time, float(stops[-1]), found) if self.loop else (None, ())
         status = loops(self.system.kernel).radau(
-            byref(call.settings), byref(call.state), byref(control), address(self._memory)
-        )
+            byref(call.settings), byref(call.state), byref(control), address(self._memory),
+            byref(around) if around else None,
+        )  # fmt: skip
         counters.steps += call.state.steps
         counters.iterations += call.state.iterations
         counters.factorisations += call.state.factorisations
         counters.rejected += int(self._memory[REJECTED] - before)
-        rows = rows[: int(self._memory[RECORDED])]
-        return Advanced(flow=new, rows=rows, status=status, leg=call.state.bad_leg, time=float(self._memory[TIME]))
+        written = int(self._memory[RECORDED])
+        return Advanced(
+            flow=new, rows=rows[:written], status=status, leg=call.state.bad_leg, time=self.time,
+            control=found[:written] if self.loop else None,
+        )  # fmt: skip
 
 
 def _along(system: System) -> tuple[int, int]:

@@ -27,7 +27,8 @@ class Recording:
 
     ``drive``, (T, legs, ports): the whole force of each port, whatever makes it: held, pushed, a spring [N, N m];
     ``reaction``, (T, 6): force and moment on what is held of the payload; ``energy``: kinetic, gravity, strain;
-    ``sums``: lost, drives, wrench, base; ``friction``, (T, legs, bristles): force or moment of what slides.
+    ``sums``: lost, drives, wrench, base; ``friction``, (T, legs, bristles): force or moment of what slides;
+    ``control``, (T, any): of a sampled controller its last readings, the outputs that it held, its work [J].
     """
 
     time: Array
@@ -42,19 +43,20 @@ class Recording:
     sums: Array
     closure: Array
     friction: Array
+    control: Array
 
     def part(self, which: slice) -> "Recording":
         """Some of the instants."""
         return replace(self, **{field.name: getattr(self, field.name)[which] for field in fields(self)})
 
     def ending(self, last: "Recording") -> "Recording":
-        """The same with another last instant."""
-        names = [field.name for field in fields(self) if field.name != "time"]
+        """The same with another last instant; a controller's readings and outputs there are still those before it."""
+        names = [field.name for field in fields(self) if field.name not in ("time", "control")]
         ends = {name: np.concatenate([getattr(self, name)[:-1], getattr(last, name)]) for name in names}
         return replace(self, **ends)
 
 
-def _shapes(system: System) -> dict[str, tuple[int, ...]]:
+def record_shapes(system: System) -> dict[str, tuple[int, ...]]:
     """Names and shapes of the parts of an output row, in their order."""
     legs, every = system.legs, (system.size,)
     return {
@@ -74,13 +76,13 @@ def _shapes(system: System) -> dict[str, tuple[int, ...]]:
 
 def record_width(system: System) -> int:
     """Numbers in one output row."""
-    return sum(map(math.prod, _shapes(system).values()))
+    return sum(map(math.prod, record_shapes(system).values()))
 
 
-def unpack(system: System, time: Array, rows: Array) -> Recording:
-    """Name the columns of output rows (T, record_width)."""
+def unpack(system: System, time: Array, rows: Array, control: Array | None = None) -> Recording:
+    """Name the columns of output rows (T, record_width); `control`: rows of a controller's record."""
     parts, end = {}, 0
-    for name, shape in _shapes(system).items():
+    for name, shape in record_shapes(system).items():
         begin, end = end, end + math.prod(shape)
         parts[name] = rows[:, begin:end].reshape(len(rows), *shape)
-    return Recording(time=time, **parts)
+    return Recording(time=time, control=np.zeros((len(rows), 0)) if control is None else control, **parts)

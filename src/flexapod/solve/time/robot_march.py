@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -34,6 +35,9 @@ from flexapod.solve.time.start import consistent_start
 from flexapod.solve.time.stops import Stops
 from flexapod.solve.time.tables import Law, robot_law
 
+if TYPE_CHECKING:
+    from flexapod.solve.time.sampled import Sampled, SampledLoop
+
 AHEAD = 2000  # outputs whose rigid places are made at once
 ROUNDING = 1e-12  # of the sum of what rounding makes along the legs [m]
 
@@ -50,10 +54,11 @@ class RobotMarch:
     impact: float
     step: float
     chunks: Iterator[Chunk]
+    problem: Problem
     counters: Counters = field(default_factory=Counters)
 
 
-def prepare(study: Study, state: State | None = None) -> RobotMarch:
+def prepare(study: Study, state: State | None = None, sampled: "Sampled | None" = None) -> RobotMarch:
     """Start and time integration of a robot study.
 
     Parameters
@@ -61,6 +66,8 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     study : Study
     state : State, optional
         Configuration (closures satisfied) and velocities in place of the study's start.
+    sampled : Sampled, optional
+        A controller.
 
     Raises
     ------
@@ -77,18 +84,13 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
     path = _Path(study)
     law = robot_law(system, robot, study.load, path.poses, path.knots)
     method = GeneralizedAlpha(simulation.rho_inf)
-    if state is None:
-        state = _configuration(study, system)
-        if system.kernel.shapes.has("j"):
-            rests = study.initial.start == "equilibrium"
-            table, wrench = (part[0] for part in law(np.zeros(1)))
-            table[..., 1:3] *= not rests
-            state = settled(system, state, table, wrench, rests=rests)
+    state = _begun(study, system, law) if state is None else state
     refuse_flipped(system, robot, RestStates.of(state))
     system = independent(system, state)
     counters, output_step = Counters(), simulation.stored_step
     outputs = simulation.outputs(study.duration)
     measure = _Measure(study, system, path)
+    loop = _around(sampled, system, study, path)
     far = 0.0 if simulation.tolerance is not None and system.kernel.library else None  # steps end on every row
     problem = Problem(
         system=system,
@@ -99,17 +101,38 @@ def prepare(study: Study, state: State | None = None) -> RobotMarch:
         measure=measure,
         weights=measure.weights(),
         knots=path.knots,
-        restart=lambda flow, t, h: after_impact(system, flow, law, t, method, h),
+        restart=lambda flow, t, h: after_impact(system, flow, loop.onto(law, flow) if loop else law, t, method, h),
         stops=Stops.of(kinematics.robot_breaks(study, far), output_step, simulation.step, outputs),
         check=_Range(study, system),
         tolerance=simulation.tolerance,
+        loop=loop,
     )
     step = initial_step(problem, simulation.step)
     start, impact = consistent_start(system, state, law, 0.0, method, step)
+    if loop is not None:
+        loop.refuse_off(step)
+        start = replace(start, loop=loop.start())
     chunks = march(problem, start, step, counters)
     if system.slack is not None:
         chunks = (replace(x, recording=shared(system, x.recording, law(x.recording.time)[0])) for x in chunks)
-    return RobotMarch(system=system, start=start, impact=impact, step=step, chunks=chunks, counters=counters)
+    return RobotMarch(
+        system=system, start=start, impact=impact, step=step, chunks=chunks, problem=problem, counters=counters
+    )
+
+
+def _around(sampled: "Sampled | None", system: System, study: Study, path: "_Path") -> "SampledLoop | None":
+    """A controller around a robot, which compiled equations alone have."""
+    if sampled is None:
+        return None
+    from flexapod.solve.time.sampled import SampledLoop
+
+    if system.kernel.library is None:
+        raise InputError(
+            "needs compiled equations",
+            key="controller",
+            next_step="Install gcc or clang, or `pip install ziglang`",
+        )
+    return SampledLoop(sampled, system, study.robot, lambda t: path.exact(np.minimum(t, study.duration)))
 
 
 def refuse_massless(study: Study) -> None:
@@ -161,6 +184,17 @@ def refuse_growing_plates(study: Study) -> None:
             )
 
 
+def _begun(study: Study, system: System, law: Law) -> State:
+    """State before the impact projection, with what motors that lag ask for."""
+    state = _configuration(study, system)
+    if not system.kernel.shapes.has("j"):
+        return state
+    rests = study.initial.start == "equilibrium"
+    table, wrench = (part[0] for part in law(np.zeros(1)))
+    table[..., 1:3] *= not rests
+    return settled(system, state, table, wrench, rests=rests)
+
+
 def _configuration(study: Study, system: System) -> State:
     """Configuration and velocities before the impact projection, by the kind of start and what acts until then."""
     path = kinematics.poses(study.robot, study.motion, np.zeros(1))
@@ -203,7 +237,7 @@ class _Path:
         self.robot, self.motion = study.robot, study.motion
         self.knots = kinematics.path_knots(study.motion, study.duration)
         self.time, self.last = np.zeros(0), None
-        self.guided = Pieces(self._centre, self.knots) if kinematics.rigid_limbs(study.robot).guides else None
+        self.guided = Pieces(self.exact, self.knots) if kinematics.rigid_limbs(study.robot).guides else None
         self.output_step, self.outputs = study.simulation.stored_step, study.simulation.outputs(study.duration)
         self.stored, self.centres = np.zeros(0), (np.zeros((0, 3)), np.zeros((0, 3, 3)))
 
@@ -221,14 +255,15 @@ class _Path:
         if len(t) > 1 and not (len(self.stored) and self.stored[0] <= t[0] and t[-1] <= self.stored[-1]):
             first = round(t[0] / self.output_step)
             self.stored = np.arange(first, min(first + AHEAD, self.outputs) + 1) * self.output_step
-            self.centres = self._centre(self.stored)
+            self.centres = self.exact(self.stored)
         at = np.minimum(np.searchsorted(self.stored, t), max(len(self.stored) - 1, 0))
         if not len(self.stored) or (self.stored[at] != t).any():
-            return self._centre(t)
+            return self.exact(t)
         place, rotation = self.centres
         return place[at], rotation[at]
 
-    def _centre(self, t: Array) -> tuple[Array, Array]:
+    def exact(self, t: Array) -> tuple[Array, Array]:
+        """The same at any instants, computed one by one."""
         place, rotation = kinematics.places(self.robot, self.motion, t)
         return place + rotation @ self.robot.com, rotation
 
@@ -279,7 +314,7 @@ class _Measure:
 def after_impact(system: System, flow: Flow, law: Law, now: float, method: GeneralizedAlpha, h: float) -> Flow:
     """Flow after a jump in the commanded rates; the drives do the work of the impact."""
     start, impact = consistent_start(system, flow, law, now, method, h)
-    return replace(start, sums=flow.sums + np.array([0.0, impact, 0.0, 0.0]))
+    return replace(start, sums=flow.sums + np.array([0.0, impact, 0.0, 0.0]), loop=flow.loop)
 
 
 class _Range:

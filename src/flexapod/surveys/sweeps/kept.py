@@ -162,7 +162,8 @@ def _records(study: Study | ActuatorStudy) -> dict[str, Variable]:
         return planar | ({name: over_time[name] for name in space} | SPACE_FORMS if study.actuator.space else {})
     kinematics = ("leg_length_rate", "leg_length_acceleration", "leg_angle_rigid", "platform_position")
     reactions = ("base_force_rigid", "base_moment_rigid", "held_force_rigid", "joint_moment_rigid")
-    others = {*actuator, *space, *kinematics, *reactions, *absent(study.robot)}
+    others = {*actuator, *space, *kinematics, *reactions, *absent(study.robot), "sensor_reading", "control_input"}
+    others |= {"work_control"} if study.control is None else set()
     return {name: entry for name, entry in over_time.items() if name not in others}
 
 

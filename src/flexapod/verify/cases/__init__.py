@@ -9,6 +9,8 @@ from flexapod.verify.cases import (
     bricard,
     calculix_beams,
     calculix_robots,
+    control,
+    exports,
     exudyn,
     exudyn_parts,
     feed_forward,
@@ -16,6 +18,7 @@ from flexapod.verify.cases import (
     frequencies,
     hexapods,
     integration,
+    linear,
     machines,
     mechanisms,
     mujoco_forces,
@@ -32,9 +35,9 @@ __all__ = ["CASES"]
 
 _SUBJECTS = (
     bending, solids, turning, sliding, integration, hexapods, frequencies, stiffness, mechanisms,
-    slider_crank, squeezer, four_bar, bricard, real_parts, machines, feed_forward,
+    slider_crank, squeezer, four_bar, bricard, real_parts, machines, linear, control, feed_forward,
     mujoco_forces, calculix_beams, calculix_robots, exudyn,
-    exudyn_parts,
+    exudyn_parts, exports,
 )  # fmt: skip
 
 NOT_MODELLED = Case(

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.optimize import brentq, least_squares
+from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
 from flexapod import model
 from flexapod.arrays import Array
 from flexapod.control import StateSpace
 from flexapod.feedforward import compensate
-from flexapod.feedforward.beam import beam_plant, tip_inversion
+from flexapod.feedforward.beam import tip_inversion
 from flexapod.feedforward.inversion import inverse
 from flexapod.feedforward.shapers import insensitivity, shaper
 from flexapod.feedforward.switching import switched
@@ -100,25 +100,6 @@ def _beam(**settings: object) -> model.ActuatorStudy:
         initial=study.initial.replace(tip_displacement=0.0),
         simulation=model.Simulation(**settings),  # type: ignore[arg-type]
     )
-
-
-@case(
-    "Zeros from the torque on a hub to the tip of its beam, which do not depend on the hub",
-    source="2 a^2 sqrt(EI / (m L^4)) with tan a + tanh a = 0",
-    argument="six cubic elements: (wave h)^4 / 720 with waves of sqrt(2) a / L, 1.3e-4 and 3.9e-3",
-)
-def _tip_zeros() -> Iterator[Check]:
-    a = [brentq(lambda x: np.tan(x) + np.tanh(x), (k - 0.5) * np.pi + 1e-9, k * np.pi) for k in (1, 2)]
-    for inertia in (0.0, 5.0):
-        study = _beam(fidelity="beam-fem", modes=12)
-        study = study.replace(actuator=study.actuator.replace(hub_inertia=inertia))
-        b = study.actuator
-        zeros = beam_plant(study).select(outputs="tip").zeros()
-        right = np.sort(zeros[(np.abs(zeros.imag) < 1e-6 * np.abs(zeros)) & (zeros.real > 0)].real)[:2]
-        exact = 2 * np.square(a) * np.sqrt(b.EI / (b.rhoA * b.free_length**4))
-        yield from checks(
-            [f"hub of {inertia:g} kg m^2, {x}" for x in ("first", "second")], exact, right, [2e-4, 5e-3], "1/s"
-        )
 
 
 @case(

@@ -44,7 +44,9 @@ class MujocoForces:
     joint_force: Array
 
 
-def inverse_dynamics(robot: Robot, path: Poses, wrench: Array | None = None) -> MujocoForces:
+def inverse_dynamics(
+    robot: Robot, path: Poses, wrench: Array | None = None, *, text: str | None = None
+) -> MujocoForces:
     """Drive and joint forces that move the rigid robot along a path, computed by MuJoCo.
 
     `mj_inverse` gives the force that each coordinate of the open chains needs. Those without a drive, and those of the
@@ -59,6 +61,8 @@ def inverse_dynamics(robot: Robot, path: Poses, wrench: Array | None = None) -> 
         T poses of the platform frame, with rates and accelerations.
     wrench : ndarray, shape (T, 6) or (6,), optional
         External force and moment at the tool, world axes [N], [N m].
+    text : str, optional
+        The rigid robot as MJCF with the same bodies and joints, in place of ours; what closes its loops is left out.
 
     Returns
     -------
@@ -69,14 +73,15 @@ def inverse_dynamics(robot: Robot, path: Poses, wrench: Array | None = None) -> 
     ComputationError
         MuJoCo is not installed, or the chains do not close at a pose.
     """
-    chains = _Chains(robot)
+    chains = _Chains(robot, mjcf(robot) if text is None else text)
     loads = np.broadcast_to(np.zeros(6) if wrench is None else np.asarray(wrench, dtype=float), (len(path), 6))
     rows = [chains.forces(path, t, loads[t]) for t in range(len(path))]
     length, angle, force, joint = (np.array(part) for part in zip(*rows, strict=True))
     return MujocoForces(leg_length=length, leg_angle=angle, actuator_force=force, joint_force=joint)
 
 
-def _mujoco() -> ModuleType:
+def mujoco_module() -> ModuleType:
+    """MuJoCo; ComputationError where it is not installed."""
     if not MUJOCO.found():
         raise ComputationError("MuJoCo is not installed", next_step=f"Install it: {MUJOCO.install}")
     import mujoco
@@ -87,9 +92,10 @@ def _mujoco() -> ModuleType:
 class _Chains:
     """Open chains in MuJoCo: coordinates of leg after leg, then the payload's six."""
 
-    def __init__(self, robot: Robot) -> None:
-        self.robot, self.mujoco, self.limbs = robot, _mujoco(), rigid_limbs(robot)
-        self.model: Any = self.mujoco.MjModel.from_xml_string(mjcf(robot))
+    def __init__(self, robot: Robot, text: str) -> None:
+        self.robot, self.mujoco, self.limbs = robot, mujoco_module(), rigid_limbs(robot)
+        self.model: Any = self.mujoco.MjModel.from_xml_string(text)
+        self.model.opt.disableflags |= self.mujoco.mjtDisableBit.mjDSBL_EQUALITY
         self.data: Any = self.mujoco.MjData(self.model)
         pose = self.limbs.pose_closure
         ends = [f"{'tip' if posed else 'piston'}_{i}" for i, posed in enumerate(pose, start=1)]

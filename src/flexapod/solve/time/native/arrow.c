@@ -66,7 +66,7 @@ static void invert_pivots(long ROWS, const lanes *m, lanes *inv) {
   product3(1, m + 3, 6, first, 3, left, 3);
   product3(-1, m + 3, 6, right, 3, inner, 3);
   invert3(inner, last);
-  memset(inv, 0, sizeof(lanes)*36);
+  memset(inv, 0, BYTES(lanes, 36));
   product3(-1, right, 3, last, 3, inv + 18, 6);
   product3(-1, last, 3, left, 3, inv + 3, 6);
   for (int j = 0; j < 3; j++) for (int i = 0; i < 3; i++) { inv[i + 6*j] = first[i + 3*j]; inv[21 + i + 6*j] = last[i + 3*j]; }
@@ -92,7 +92,7 @@ static int invert_each(const Settings *s, int group, const lanes *A, lanes *inve
 static int invert_legs(const Settings *s, int group, const lanes *A, lanes *inverse) {
   SIZES(s);
   lane_bits positive = ~(lane_bits){0};
-  memcpy(inverse, A, sizeof(lanes)*M*M);
+  memcpy(inverse, A, BYTES(lanes, M*M));
   for (long k = 0; k < M; k++) {
     lanes pivot = inverse[k + k*M], d = 1.0/pivot;
     positive &= pivot > 1e-12*A[k + k*M];
@@ -116,7 +116,7 @@ static void arrow_hold(Arrow *w, const Settings *s) {
   for (int group = 0; group < groups(s); group++) {
     LegBlock *b = &w->leg[group];
     lanes held[PORTS];
-    memset(b->held, 0, sizeof(lanes)*N); memset(b->unknown, 0, sizeof b->unknown);
+    memset(b->held, 0, BYTES(lanes, N)); memset(b->unknown, 0, sizeof b->unknown);
     gather(s, group, s->held, s->ports, s->ports, held);
     for (long k = 0; k < s->ports; k++) b->held[PLACE[s->port[k]]] = held[k];
     for (int p = 0; p < ROWS; p++) {
@@ -137,18 +137,18 @@ static int leg_factor(const Settings *s, int group, const Arrow *w) {
   lanes *AN = w->AN, *B = w->B, AY[N*HUB];
   double *border = w->sum;
   long size = w->size;
-  memset(b->N1, 0, sizeof(lanes)*ROWS*M); memset(b->Y1, 0, sizeof(lanes)*ROWS*HUB);
+  memset(b->N1, 0, BYTES(lanes, ROWS*M)); memset(b->Y1, 0, BYTES(lanes, ROWS*HUB));
   invert_pivots(ROWS, b->J, b->J1inv);
   for (long j = 0; j < M; j++) lanes_gemv(ROWS, ROWS, -1, b->J1inv, b->J + ROWS*(ROWS + j), b->N1 + ROWS*j);
   for (long j = 0; j < 6; j++) lanes_gemv(ROWS, ROWS, 1, b->J1inv, b->P + ROWS*j, b->Y1 + ROWS*j);
   for (long j = 6; j < HUB; j++) lanes_gemv(ROWS, ROWS, -1, b->J1inv, b->J + ROWS*(ROWS + M + j - 6), b->Y1 + ROWS*j);
   for (long j = 0; j < M; j++) for (int p = 0; p < ROWS; p++) b->N1[p + ROWS*j] *= 1.0 - b->held[ROWS + j];
-  memcpy(AN, b->A + ROWS*N, sizeof(lanes)*N*M); memset(AY, 0, sizeof(lanes)*N*HUB);
-  memcpy(AY + 6*N, b->A + (ROWS + M)*N, sizeof(lanes)*COMMON*N);
+  memcpy(AN, b->A + ROWS*N, BYTES(lanes, N*M)); memset(AY, 0, BYTES(lanes, N*HUB));
+  memcpy(AY + 6*N, b->A + (ROWS + M)*N, BYTES(lanes, COMMON*N));
   for (long j = 0; j < M; j++) lanes_gemv(N, ROWS, 1, b->A, b->N1 + ROWS*j, AN + j*N);
   for (long j = 0; j < HUB; j++) lanes_gemv(N, ROWS, 1, b->A, b->Y1 + ROWS*j, AY + j*N);
-  for (long j = 0; j < M; j++) { memcpy(B + j*M, AN + j*N + ROWS, sizeof(lanes)*M); lanes_gemv_t(ROWS, M, 1, b->N1, AN + j*N, B + j*M); }
-  for (long j = 0; j < HUB; j++) { memcpy(b->Et + j*M, AY + j*N + ROWS, sizeof(lanes)*M); lanes_gemv_t(ROWS, M, 1, b->N1, AY + j*N, b->Et + j*M); }
+  for (long j = 0; j < M; j++) { memcpy(B + j*M, AN + j*N + ROWS, BYTES(lanes, M)); lanes_gemv_t(ROWS, M, 1, b->N1, AN + j*N, B + j*M); }
+  for (long j = 0; j < HUB; j++) { memcpy(b->Et + j*M, AY + j*N + ROWS, BYTES(lanes, M)); lanes_gemv_t(ROWS, M, 1, b->N1, AY + j*N, b->Et + j*M); }
   for (long k = 0; k < M; k++) {
     lanes held = b->held[ROWS + k], free = 1.0 - held;
     for (long j = 0; j < M; j++) { B[k + j*M] *= free; B[j + k*M] *= free; }
@@ -162,12 +162,12 @@ static int leg_factor(const Settings *s, int group, const Arrow *w) {
     b->Er[k + j*M] = t*(1.0 - b->held[ROWS + k]);
   }
   if (invert_legs(s, group, B, b->Binv)) return SINGULAR;
-  if (b->half) for (long j = 0; j < M; j++) memcpy(b->half + j*(j + 1)/2, b->Binv + j*M, sizeof(lanes)*(j + 1));
-  memset(b->C, 0, sizeof(lanes)*M*HUB); memset(b->Bd, 0, sizeof(lanes)*ROWS*M);
+  if (b->half) for (long j = 0; j < M; j++) memcpy(b->half + j*(j + 1)/2, b->Binv + j*M, BYTES(lanes, (j + 1)));
+  memset(b->C, 0, BYTES(lanes, M*HUB)); memset(b->Bd, 0, BYTES(lanes, ROWS*M));
   for (long j = 0; j < HUB; j++) lanes_gemv(M, M, 1, b->Binv, b->Et + j*M, b->C + j*M);
   for (long j = 0; j < HUB; j++) {
     lanes payload[HUB];
-    memset(payload, 0, sizeof(lanes)*HUB);
+    memset(payload, 0, BYTES(lanes, HUB));
     for (int i = 6; i < HUB; i++) payload[i] = AY[ROWS + M + i - 6 + j*N];
     lanes_gemv_t(ROWS, HUB, 1, b->Y1, AY + j*N, payload);
     lanes_gemv_t(M, HUB, -1, b->Er, b->C + j*M, payload);
@@ -203,7 +203,7 @@ static int arrow_factor(Arrow *w, const Settings *s, const double *A_payload) {
   SIZES(s);
   double *border = w->sum;
   long size = w->size;
-  memset(border, 0, sizeof(double)*size*size);
+  memset(border, 0, BYTES(double, size*size));
   for (int j = 0; j < HUB; j++) for (int i = 0; i < HUB; i++) border[i + j*size] = A_payload[i + HUB*j];
   for (int group = 0; group < groups(s); group++) if (leg_factor(s, group, w)) return SINGULAR;
   for (int k = 0; k < 6; k++) {
@@ -235,12 +235,12 @@ INLINE void arrow_solve_of(long rows, long common, const Arrow *w, const Setting
   SIZES_OF(s, rows, common);
   lanes z[GROUPS][M + 1], g0[GROUPS][CLOSURES];
   double rhs[w->size], x[w->size];
-  memset(rhs, 0, sizeof(double)*w->size); memset(x, 0, sizeof(double)*w->size);
+  memset(rhs, 0, BYTES(double, w->size)); memset(x, 0, BYTES(double, w->size));
   for (int i = 0; i < HUB; i++) rhs[i] = -rp[i];
   for (int group = 0; group < groups(s); group++) {
     const LegBlock *b = &w->leg[group];
     lanes t[N], part[HUB];
-    memset(part, 0, sizeof(lanes)*HUB); memset(g0[group], 0, sizeof(lanes)*ROWS); memset(z[group], 0, sizeof(lanes)*M);
+    memset(part, 0, BYTES(lanes, HUB)); memset(g0[group], 0, BYTES(lanes, ROWS)); memset(z[group], 0, BYTES(lanes, M));
     lanes_gemv(ROWS, ROWS, -1, b->J1inv, g[group], g0[group]);
     for (long j = 0; j < N; j++) t[j] = r[group][ORDER[j]];
     lanes_gemv(N, ROWS, 1, b->A, g0[group], t);                            /* r + A g0 */
@@ -265,8 +265,8 @@ INLINE void arrow_solve_of(long rows, long common, const Arrow *w, const Setting
     const LegBlock *b = &w->leg[group];
     lanes change[N], f[CLOSURES], y[HUB], *dz = change + ROWS;
     for (int i = 0; i < HUB; i++) y[i] = (lanes){0} + x[i];
-    memcpy(change + ROWS + M, y + 6, sizeof(lanes)*COMMON);
-    memcpy(change, g0[group], sizeof(lanes)*ROWS); memcpy(dz, z[group], sizeof(lanes)*M);
+    memcpy(change + ROWS + M, y + 6, BYTES(lanes, COMMON));
+    memcpy(change, g0[group], BYTES(lanes, ROWS)); memcpy(dz, z[group], BYTES(lanes, M));
     lanes_gemv(M, HUB, -1, b->C, y, dz);
     for (int p = 0; p < ROWS; p++) {
       f[p] = (lanes){0};
@@ -283,7 +283,7 @@ INLINE void arrow_solve_of(long rows, long common, const Arrow *w, const Setting
     for (int p = 0; p < ROWS; p++) left[p] = r[group][ORDER[p]];
     for (long j = 0; j < N; j++) for (int p = 0; p < ROWS; p++) left[p] += b->A[p + j*N] * change[j];
     for (int p = 0; p < ROWS; p++) left[p] -= f[p];
-    memset(dlam[group], 0, sizeof(lanes)*ROWS);
+    memset(dlam[group], 0, BYTES(lanes, ROWS));
     lanes_gemv_t(ROWS, ROWS, -1, b->J1inv, left, dlam[group]);             /* rows of the pivots give dlam */
     for (long k = 0; k < s->ports; k++) {
       long at = PLACE[s->port[k]];

@@ -67,12 +67,12 @@ static void complex_leg(const Settings *s, int group, const Arrow *w, const Comp
   long size = w->size;
   for (int part = 0; part < 2; part++) {
     lanes *B = c->Binv[part], *Et = c->Et[part];
-    memcpy(AN[part], c->A[part] + ROWS*N, sizeof(lanes)*N*M); memset(AY[part], 0, sizeof(lanes)*N*HUB);
-    memcpy(AY[part] + 6*N, c->A[part] + (ROWS + M)*N, sizeof(lanes)*COMMON*N);
+    memcpy(AN[part], c->A[part] + ROWS*N, BYTES(lanes, N*M)); memset(AY[part], 0, BYTES(lanes, N*HUB));
+    memcpy(AY[part] + 6*N, c->A[part] + (ROWS + M)*N, BYTES(lanes, COMMON*N));
     for (long j = 0; j < M; j++) lanes_gemv(N, ROWS, 1, c->A[part], b->N1 + ROWS*j, AN[part] + j*N);
     for (long j = 0; j < HUB; j++) lanes_gemv(N, ROWS, 1, c->A[part], b->Y1 + ROWS*j, AY[part] + j*N);
-    for (long j = 0; j < M; j++) { memcpy(B + j*M, AN[part] + j*N + ROWS, sizeof(lanes)*M); lanes_gemv_t(ROWS, M, 1, b->N1, AN[part] + j*N, B + j*M); }
-    for (long j = 0; j < HUB; j++) { memcpy(Et + j*M, AY[part] + j*N + ROWS, sizeof(lanes)*M); lanes_gemv_t(ROWS, M, 1, b->N1, AY[part] + j*N, Et + j*M); }
+    for (long j = 0; j < M; j++) { memcpy(B + j*M, AN[part] + j*N + ROWS, BYTES(lanes, M)); lanes_gemv_t(ROWS, M, 1, b->N1, AN[part] + j*N, B + j*M); }
+    for (long j = 0; j < HUB; j++) { memcpy(Et + j*M, AY[part] + j*N + ROWS, BYTES(lanes, M)); lanes_gemv_t(ROWS, M, 1, b->N1, AY[part] + j*N, Et + j*M); }
     for (long k = 0; k < M; k++) {
       lanes held = b->held[ROWS + k], free = 1.0 - held;
       for (long j = 0; j < M; j++) { B[k + j*M] *= free; B[j + k*M] *= free; }
@@ -87,11 +87,11 @@ static void complex_leg(const Settings *s, int group, const Arrow *w, const Comp
     }
   }
   complex_invert(M, c->Binv[0], c->Binv[1]);
-  for (int part = 0; part < 2; part++) { memset(c->C[part], 0, sizeof(lanes)*M*HUB); memset(c->Bd[part], 0, sizeof(lanes)*ROWS*M); }
+  for (int part = 0; part < 2; part++) { memset(c->C[part], 0, BYTES(lanes, M*HUB)); memset(c->Bd[part], 0, BYTES(lanes, ROWS*M)); }
   for (long j = 0; j < HUB; j++) complex_gemv(M, M, 1, PARTS(c->Binv, 0), PARTS(c->Et, j*M), PARTS(c->C, j*M));
   for (long j = 0; j < HUB; j++) {
     lanes payload[2][HUB];
-    for (int part = 0; part < 2; part++) memset(payload[part], 0, sizeof(lanes)*HUB);
+    for (int part = 0; part < 2; part++) memset(payload[part], 0, BYTES(lanes, HUB));
     for (int part = 0; part < 2; part++) for (int i = 6; i < HUB; i++) payload[part][i] = AY[part][ROWS + M + i - 6 + j*N];
     for (int part = 0; part < 2; part++) lanes_gemv_t(ROWS, HUB, 1, b->Y1, AY[part] + j*N, payload[part]);
     complex_gemv_t(M, HUB, -1, PARTS(c->Er, 0), PARTS(c->C, j*M), PARTS(payload, 0));
@@ -130,7 +130,7 @@ static int complex_factor(ComplexArrow *c, const Arrow *w, const Settings *s, co
   SIZES(s);
   double *border = c->sum;
   long size = w->size, wide = 2*size;
-  memset(border, 0, sizeof(double)*wide*wide);
+  memset(border, 0, BYTES(double, wide*wide));
   for (int j = 0; j < HUB; j++) for (int i = 0; i < HUB; i++) add_complex(border, size, i, j, A_payload[0][i + HUB*j], A_payload[1][i + HUB*j]);
   for (int i = 0; i < groups(s); i++) complex_leg(s, i, w, c);
   for (int k = 0; k < 6; k++) {
@@ -161,14 +161,14 @@ INLINE void complex_solve_of(long rows, long common, const ComplexArrow *c, cons
   long size = w->size;
   lanes z[GROUPS][2][M + 1], g0[GROUPS][2][CLOSURES];
   double rhs[2*size], x[2*size];
-  memset(rhs, 0, sizeof(double)*2*size); memset(x, 0, sizeof(double)*2*size);
+  memset(rhs, 0, BYTES(double, 2*size)); memset(x, 0, BYTES(double, 2*size));
   for (int part = 0; part < 2; part++) for (int i = 0; i < HUB; i++) rhs[part*size + i] = -r[part].hub[i];
   for (int group = 0; group < groups(s); group++) {
     const LegBlock *b = &w->leg[group];
     const ComplexBlock *a = &c->leg[group];
     lanes t[2][N], part6[2][HUB];
     for (int part = 0; part < 2; part++) {
-      memset(part6[part], 0, sizeof(lanes)*HUB); memset(g0[group][part], 0, sizeof(lanes)*ROWS); memset(z[group][part], 0, sizeof(lanes)*M);
+      memset(part6[part], 0, BYTES(lanes, HUB)); memset(g0[group][part], 0, BYTES(lanes, ROWS)); memset(z[group][part], 0, BYTES(lanes, M));
       lanes_gemv(ROWS, ROWS, -1, b->J1inv, g[part][group], g0[group][part]);
       for (long j = 0; j < N; j++) t[part][j] = r[part].leg[group][ORDER[j]];
     }
@@ -200,8 +200,8 @@ INLINE void complex_solve_of(long rows, long common, const ComplexArrow *c, cons
     lanes change[2][N], t[2][CLOSURES], f[2][CLOSURES], y[2][HUB];
     for (int part = 0; part < 2; part++) {
       for (int i = 0; i < HUB; i++) y[part][i] = (lanes){0} + x[part*size + i];
-      memcpy(change[part], g0[group][part], sizeof(lanes)*ROWS); memcpy(change[part] + ROWS, z[group][part], sizeof(lanes)*M);
-      memcpy(change[part] + ROWS + M, y[part] + 6, sizeof(lanes)*COMMON);
+      memcpy(change[part], g0[group][part], BYTES(lanes, ROWS)); memcpy(change[part] + ROWS, z[group][part], BYTES(lanes, M));
+      memcpy(change[part] + ROWS + M, y[part] + 6, BYTES(lanes, COMMON));
     }
     complex_gemv(M, HUB, -1, PARTS(a->C, 0), PARTS(y, 0), PARTS(change, ROWS));
     for (int p = 0; p < ROWS; p++) {
@@ -226,7 +226,7 @@ INLINE void complex_solve_of(long rows, long common, const ComplexArrow *c, cons
     }
     for (int part = 0; part < 2; part++) {
       lanes *dlam = df[part].lam[group];
-      memset(dlam, 0, sizeof(lanes)*ROWS);
+      memset(dlam, 0, BYTES(lanes, ROWS));
       lanes_gemv_t(ROWS, ROWS, -1, b->J1inv, t[part], dlam);
       for (long j = 0; j < N; j++) dq[part].leg[group][ORDER[j]] = change[part][j];
       for (long k = 0; k < s->ports; k++) {

@@ -19,8 +19,8 @@ static void *room(Room *m, long bytes) {
   m->used += (bytes + 63)/64*64;
   return at;
 }
-static lanes *room_of_lanes(Room *m, long count) { return (lanes *)room(m, sizeof(lanes)*count); }
-static double *room_of_numbers(Room *m, long count) { return (double *)room(m, sizeof(double)*count); }
+static lanes *room_of_lanes(Room *m, long count) { return (lanes *)room(m, (long)BYTES(lanes, count)); }
+static double *room_of_numbers(Room *m, long count) { return (double *)room(m, (long)BYTES(double, count)); }
 
 /* `size` lanes for each vector of legs, one behind the other */
 static void room_of_legs(Room *m, const Settings *s, long size, lanes **to) {
@@ -79,8 +79,8 @@ INLINE void few_columns(int cols, long rows, double s, const lanes *A, const lan
 /* y += s A x, A (rows, cols) column-major */
 #define KNOWN(size) (__builtin_constant_p(size) && (size) <= 8)
 INLINE void lanes_gemv(long rows, long cols, double s, const lanes *A, const lanes *x, lanes *y) {
-  if (KNOWN(rows)) some_rows(rows, rows, cols, s, A, x, y);
-  else if (KNOWN(cols)) few_columns(cols, rows, s, A, x, y);
+  if (KNOWN(rows)) some_rows((int)rows, rows, cols, s, A, x, y);
+  else if (KNOWN(cols)) few_columns((int)cols, rows, s, A, x, y);
   else all_rows(rows, cols, s, A, x, y);
 }
 
@@ -103,8 +103,8 @@ INLINE void few_rows(int rows, long cols, double s, const lanes *A, const lanes 
 
 /* y += s A^T x */
 INLINE void lanes_gemv_t(long rows, long cols, double s, const lanes *A, const lanes *x, lanes *y) {
-  if (KNOWN(cols)) some_columns(cols, rows, s, A, x, y);
-  else if (KNOWN(rows)) few_rows(rows, cols, s, A, x, y);
+  if (KNOWN(cols)) some_columns((int)cols, rows, s, A, x, y);
+  else if (KNOWN(rows)) few_rows((int)rows, cols, s, A, x, y);
   else all_columns(rows, cols, s, A, x, y);
 }
 

@@ -40,7 +40,7 @@ SHARED int invert(long n, double *A, double *inverse) {
   long pivot[n];
   Lu f = {A, pivot, n};
   if (lu_factor(&f)) return SINGULAR;
-  memset(inverse, 0, sizeof(double)*n*n);
+  memset(inverse, 0, BYTES(double, n*n));
   for (long j = 0; j < n; j++) { inverse[j + j*n] = 1; lu_solve(&f, inverse + j*n); }
   return OK;
 }

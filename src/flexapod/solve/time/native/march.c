@@ -105,7 +105,7 @@ static void residual(const Settings *s, const double *wrench, Work *w) {
   if (!s->hub) return;
   double shared[3*COMMON + 1];
   shared_state(s, w, shared);
-  memset(w->rp + 6, 0, sizeof(double)*COMMON);
+  memset(w->rp + 6, 0, BYTES(double, COMMON));
   const double *in[] = {w->payload.pose, w->payload.u, w->payload.u_dot, net, wrench, s->payload_p, shared, shared + COMMON, shared + 2*COMMON};
   double *out[] = {w->rp, w->powers + 2};
   s->of->payload_residual(in, out);
@@ -148,7 +148,7 @@ static int factor(const Settings *s, const double *wrench, double c_v, double c_
   SIZES(s);
   double mass[BODY*BODY], stiffness[BODY*BODY], Ap[HUB*HUB], shared[3*COMMON + 1], c[3] = {c_a, c_v, c_q};
   lanes around[OUTSIDE];
-  memset(Ap, 0, sizeof(double)*HUB*HUB);
+  memset(Ap, 0, BYTES(double, HUB*HUB));
   outside(s, w, wrench, around);
   for (int i = 0; i < groups(s); i++) matrices_of_legs(s, i, around, c, w, Ap);
   if (s->hub) {
@@ -248,7 +248,7 @@ static void write_record(const Settings *s, State *x, const Work *w) {
   memcpy(o, w->reaction, sizeof w->reaction); o += 6;
   e[2] += w->stored;
   memcpy(o, e, sizeof e); o += 3;
-  memcpy(o, x->sums, sizeof(double)*WORKS); o[0] -= w->stored; o += WORKS;
+  memcpy(o, x->sums, BYTES(double, WORKS)); o[0] -= w->stored; o += WORKS;
   *o++ = w->closure;
   for (int i = 0; i < groups(s); i++) scatter(s, i, w->rubs[i], BRISTLES, BRISTLES, o);
   o += BRISTLES*s->legs;
@@ -256,14 +256,14 @@ static void write_record(const Settings *s, State *x, const Work *w) {
 }
 
 /* Memory of a run with fixed steps [bytes], all zero before its first call; it begins where a cache line does */
-long march_memory(const Settings *s) {
+EXPORTED long march_memory(const Settings *s) {
   Room m = {0, 0};
   work(&m, s);
   return m.used;
 }
 
 /* Record of the present state (used once, at the start); returns the largest closure through x->closure. */
-void record_state(const Settings *s, State *x, const double *row, const double *wrench, char *memory) {
+EXPORTED void record_state(const Settings *s, State *x, const double *row, const double *wrench, char *memory) {
   Room m = {memory, 0};
   Work *w = work(&m, s);
   SIZES(s);
@@ -375,35 +375,106 @@ static int iterate(const Settings *s, State *x, const double *wrench, double *po
   }
 }
 
+/* Shift what the predictor remembers, and what it starts from, by a jump */
+INLINE void shift(long LARGE, long count, double scale, const double *jump, double *x, double *before, long gap) {
+  for (long j = 0; j < count; j++) {
+    x[j] += scale*jump[j];
+    for (long k = 0; k < (LARGE ? PAST : 1); k++) before[k*gap + j] += scale*jump[j];
+  }
+}
+
+/* A row of the table with what the controller holds: in `held`, or as it is */
+static const double *held_row(const Settings *s, const Loop *c, const double *row, double *held) {
+  if (!c) return row;
+  memcpy(held, row, BYTES(double, s->legs*s->ports*COLUMNS));
+  hold(s, c, split(c).u, held);
+  return held;
+}
+
+/* Take a sample, if one is due, and jump to the accelerations and forces that belong to its outputs, (T26.5) */
+static int take_sample(const Settings *s, State *x, const Loop *c, const double *row, const double *wrench, double now, Work *w) {
+  SIZES(s);
+  if (!is_due(c, now)) return OK;
+  double change[c->actions + 1], dy[6], c_v = s->gamma/(s->beta*s->h), c_a = (1 - s->alpha_m)/((1 - s->alpha_f)*s->beta*s->h*s->h);
+  double before = split(c).power[0], held[s->legs*s->ports*COLUMNS];
+  const Past *past = &w->past;
+  if (!foresees(c)) read_sample(s, c, w);
+  int fault = hold_outputs(s, c, w, change);
+  if (fault) return fault;
+  follow_table(s, held_row(s, c, row, held), w);
+  x->powers[1] += split(c).power[0] - before;
+  if (w->age >= s->max_age) {
+    x->factorisations++;
+    if (factor(s, wrench, c_v, c_a, 1, w)) return SINGULAR;
+    w->age = 0;
+  }
+  jump(s, c, change, w, dy);
+  for (int i = 0; i < groups(s); i++) {
+    LegState *leg = &w->leg[i];
+    for (long j = 0; j < N; j++) leg->a[j] += c_a*w->dq[i][j];
+    shift(LARGE, N*LANES, c_a, (double *)w->dq[i], (double *)leg->v_dot, (double *)past->v_dot[i], w->gap);
+    shift(LARGE, ROWS*LANES, 1, (double *)w->dlam[i], (double *)leg->lam, (double *)past->lam[i], w->gap);
+    shift(LARGE, s->ports*LANES, 1, (double *)w->df[i], (double *)leg->drive, (double *)past->drive[i], w->gap);
+  }
+  for (int j = 0; j < 6 && s->hub; j++) w->payload.a[j] += c_a*dy[j];
+  if (s->hub) shift(LARGE, 6, c_a, dy, w->payload.u_dot, past->u_dot, w->gap);
+  if (foresees(c)) read_sample(s, c, w);
+  end_sample(c);
+  return OK;
+}
+
+/* Work of the controller in a step, which is none of the drives' */
+static void work_of_loop(const Settings *s, State *x, const Loop *c, const Work *w) {
+  Remembered m = split(c);
+  lanes *v[GROUPS];
+  rates_of_legs(s, w, v);
+  double now = power_of_loop(s, c, v, m.u), done = 0.5*s->h*(m.power[0] + now);
+  m.power[0] = now; m.work[0] += done; x->sums[1] -= done;
+}
+
 /* Advance `steps` steps; tables have steps + 1 rows (row 0 is the present time). `resumed`: the call before with
-   this memory ended there: all goes on from what it left, as if it were one. */
-int march(const Settings *s, State *x, const double *table, const double *wrench, long steps, long resumed, char *memory) {
+   this memory ended there: all goes on from what it left, as if it were one. `loop`: a controller, or 0. */
+EXPORTED int march(const Settings *s, State *x, const double *table, const double *wrench, long steps, long resumed, char *memory, Loop *loop) {
   Room m = {memory, 0};
   Work *w = work(&m, s);
   const Past *past = &w->past;
   SIZES(s);
   long width = s->legs*s->ports*COLUMNS;
-  double pose_step[6];
+  double pose_step[6], held[loop ? width : 1];
   if (!resumed) {
     w->age = s->max_age;
     load(s, x, w);
     w->h = s->h;
     for (int i = 0; i < groups(s); i++) {
-      memcpy(past->v_dot[i], w->leg[i].v_dot, sizeof(lanes)*N);
-      memcpy(past->lam[i], w->leg[i].lam, sizeof(lanes)*ROWS);
-      memcpy(past->drive[i], w->leg[i].drive, sizeof(lanes)*PORTS);
+      memcpy(past->v_dot[i], w->leg[i].v_dot, BYTES(lanes, N));
+      memcpy(past->lam[i], w->leg[i].lam, BYTES(lanes, ROWS));
+      memcpy(past->drive[i], w->leg[i].drive, BYTES(lanes, PORTS));
     }
     memcpy(past->u_dot, w->payload.u_dot, sizeof w->payload.u_dot);
-    for (int k = 1; k < PAST && LARGE; k++) memcpy(past->u_dot + k*w->gap, past->u_dot, sizeof(double)*w->gap);
+    for (int k = 1; k < PAST && LARGE; k++) memcpy(past->u_dot + k*w->gap, past->u_dot, BYTES(double, w->gap));
+  }
+  if (loop) {
+    follow_table(s, held_row(s, loop, table, held), w);
+    lanes *v[GROUPS];
+    rates_of_legs(s, w, v);
+    split(loop).power[0] = power_of_loop(s, loop, v, split(loop).u);
   }
   for (long t = 1; t <= steps; t++) {
-    predict_body(s, table + t*width, w, pose_step);
-    int fault = iterate(s, x, wrench + load_size(s)*t, pose_step, w);
+    const double *load = wrench + load_size(s)*t;
+    int fault = loop ? take_sample(s, x, loop, table + (t - 1)*width, load - load_size(s), loop->begin + (double)(t - 1)*s->h, w) : OK;
+    if (!fault) {
+      predict_body(s, held_row(s, loop, table + t*width, held), w, pose_step);
+      fault = iterate(s, x, load, pose_step, w);
+    }
     if (fault) { x->steps += t; x->bad_leg = worst_leg(s, w); return fault; }
     w->age++;
-    memcpy(w->bristles[0], w->bent[0], sizeof(lanes)*groups(s)*2*BRISTLES);
+    memcpy(w->bristles[0], w->bent[0], BYTES(lanes, groups(s)*2*BRISTLES));
     for (int j = 0; j < WORKS; j++) { x->sums[j] += 0.5*s->h*(x->powers[j] + w->powers[j]); x->powers[j] = w->powers[j]; }
-    if (t % s->output_every == 0) { set_commands(s, w); write_record(s, x, w); }
+    if (loop) work_of_loop(s, x, loop, w);
+    if (t % s->output_every == 0) {
+      set_commands(s, w); write_record(s, x, w);
+      if (loop) record_loop(loop, split(loop).work[0]);
+    }
   }
   x->steps += steps;
   store(s, w, x);
@@ -412,18 +483,18 @@ int march(const Settings *s, State *x, const double *table, const double *wrench
 
 /* Add `share` times the part of the velocities that is normal to the closures in the mass metric, Eq. (T6.14):
    M n + J^T pi = 0, J n - P n_p = J v - P u, held coordinates apart. */
-int scale_normal_velocity(const Settings *s, State *x, const double *wrench, double share, char *memory) {
+EXPORTED int scale_normal_velocity(const Settings *s, State *x, const double *wrench, double share, char *memory) {
   Room m = {memory, 0};
   Work *w = work(&m, s);
   SIZES(s);
   lanes v[N];
   double still[HUB], dy[6];
-  memset(still, 0, sizeof(double)*HUB);
+  memset(still, 0, BYTES(double, HUB));
   load(s, x, w);
   if (factor(s, wrench, 0, 1, 0, w)) return SINGULAR;
   for (int i = 0; i < groups(s); i++) {
     const LegBlock *b = &w->arrow.leg[i];
-    memset(w->r[i], 0, sizeof(lanes)*N); memset(w->g[i], 0, sizeof(lanes)*ROWS);
+    memset(w->r[i], 0, BYTES(lanes, N)); memset(w->g[i], 0, BYTES(lanes, ROWS));
     for (long j = 0; j < N; j++) v[j] = w->leg[i].v[ORDER[j]];
     lanes_gemv(ROWS, N, -1, b->J, v, w->g[i]);
     for (int j = 0; j < 6; j++) for (int a = 0; a < ROWS; a++) w->g[i][a] += b->P[a + ROWS*j] * w->payload.u[j];

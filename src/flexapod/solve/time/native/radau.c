@@ -30,7 +30,7 @@ typedef struct {
   Vector last_A[STAGES]; Forces last_F[STAGES];         /* of the last step */
   lanes *gap[STAGES][GROUPS];
   lanes *bristles[STAGES + 1][GROUPS];                  /* the last: at the start */
-  double pose[7], *row[STAGES], powers[STAGES][WORKS];
+  double pose[7], *row[STAGES], powers[STAGES][WORKS], held[STAGES];      /* held: power of the controller's forces */
   lanes *M[GROUPS], *D[GROUPS], *K[GROUPS];
   double *hub_M, *hub_K;
   ComplexArrow complex;
@@ -93,7 +93,7 @@ static void evaluate_series(const Control *c, long width, double t, double *row)
   while (k < c->pieces - 1 && t >= c->edges[k + 1]) k++;
   double a = c->edges[k], b = c->edges[k + 1], x = (2*t - a - b)/(b - a), before = 1, now = x;
   const double *term = c->series + k*c->terms*width;
-  memcpy(row, term, sizeof(double)*width);
+  memcpy(row, term, BYTES(double, width));
   for (long j = 1; j < c->terms; j++) {
     term += width;
     for (long i = 0; i < width; i++) row[i] += now*term[i];
@@ -184,8 +184,8 @@ static void place(const Settings *s, const Radau *r, const Vector *Z, const Vect
     const lanes *q = r->q.leg[i], *moved = Z->leg[i];
     lanes *to = leg->q;
     for (long j = 0; j < N; j++) to[j] = q[j] + moved[j];
-    memcpy(leg->v, V->leg[i], sizeof(lanes)*N); memcpy(leg->v_dot, A->leg[i], sizeof(lanes)*N);
-    memcpy(leg->lam, F->lam[i], sizeof(lanes)*ROWS); memcpy(leg->drive, F->drive[i], sizeof(lanes)*s->ports);
+    memcpy(leg->v, V->leg[i], BYTES(lanes, N)); memcpy(leg->v_dot, A->leg[i], BYTES(lanes, N));
+    memcpy(leg->lam, F->lam[i], BYTES(lanes, ROWS)); memcpy(leg->drive, F->drive[i], BYTES(lanes, s->ports));
   }
   follow_table(s, row, w);
   if (!s->hub) return;
@@ -224,7 +224,7 @@ static void bend(const Settings *s, double h, Radau *r, Work *w) {
       const lanes *in[] = {w->leg[i].q, w->leg[i].v, w->p[i]};
       lanes *out[] = {r->slide[k][i], r->lose[k][i]};
       s->of->leg_sliding(in, out);
-      memcpy(r->bristles[k][i] + BRISTLES, r->slide[k][i], sizeof(lanes)*BRISTLES);
+      memcpy(r->bristles[k][i] + BRISTLES, r->slide[k][i], BYTES(lanes, BRISTLES));
     }
   }
   for (int i = 0; i < groups(s); i++) for (int b = 0; b < BRISTLES; b++) {
@@ -259,7 +259,7 @@ static void rest(const Settings *s, const double *load, double h, Radau *r, Work
   SIZES(s);
   lanes around[OUTSIDE], H[36], *const *A = w->at_rest;
   outside(s, w, load, around);
-  memset(r->hub_K, 0, sizeof(double)*BODY*BODY);
+  memset(r->hub_K, 0, BYTES(double, BODY*BODY));
   for (int g = 0; g < groups(s); g++) {
     legs_at_rest(s, g, around, w, H);
     for (int j = 0; j < N; j++) for (int k = 0; k < N; k++) {
@@ -284,12 +284,12 @@ static int factor_soft(const Settings *s, Radau *r, Work *w) {
   SIZES(s);
   if (!BRISTLES) return OK;
   double hub[HUB*HUB];
-  memset(hub, 0, sizeof(double)*HUB*HUB);
+  memset(hub, 0, BYTES(double, HUB*HUB));
   r->soft.size = w->arrow.size;
   for (int g = 0; g < groups(s); g++) {
     const LegBlock *from = &w->arrow.leg[g];
     LegBlock *to = &r->soft.leg[g];
-    memcpy(to->J, from->J, sizeof(lanes)*ROWS*N); memcpy(to->P, from->P, sizeof(lanes)*ROWS*6); memcpy(to->held, from->held, sizeof(lanes)*N);
+    memcpy(to->J, from->J, BYTES(lanes, ROWS*N)); memcpy(to->P, from->P, BYTES(lanes, ROWS*6)); memcpy(to->held, from->held, BYTES(lanes, N));
     memcpy(to->unknown, from->unknown, sizeof to->unknown); memcpy(to->any, from->any, sizeof to->any);
     for (int j = 0; j < N*N; j++) to->A[j] = FREE*r->M[g][j] + r->K[g][j];
   }
@@ -302,7 +302,7 @@ static int factor_stages(const Settings *s, double h, Radau *r, Work *w) {
   double c[3][3] = {{REAL*REAL/(h*h), REAL/h, 1}, {(PAIR[0]*PAIR[0] - PAIR[1]*PAIR[1])/(h*h), PAIR[0]/h, 1}, {2*PAIR[0]*PAIR[1]/(h*h), PAIR[1]/h, 0}};
   double hub[3][HUB*HUB];
   const double *pair[2] = {hub[1], hub[2]};
-  for (int k = 0; k < 3; k++) memset(hub[k], 0, sizeof(double)*HUB*HUB);
+  for (int k = 0; k < 3; k++) memset(hub[k], 0, BYTES(double, HUB*HUB));
   for (int g = 0; g < groups(s); g++) {
     lanes *to[3] = {w->arrow.leg[g].A, r->complex.leg[g].A[0], r->complex.leg[g].A[1]};
     for (int k = 0; k < 3; k++) for (int j = 0; j < N*N; j++) to[k][j] = c[k][0]*r->M[g][j] + c[k][1]*r->D[g][j] + c[k][2]*r->K[g][j];
@@ -364,7 +364,7 @@ static void arrow_solve_vector(const Settings *s, const Arrow *a, const Vector *
 }
 
 static void copy_bristles(const Settings *s, lanes *const *from, lanes *const *to) {
-  for (int i = 0; i < groups(s); i++) memcpy(to[i], from[i], sizeof(lanes)*2*s->of->bristles);
+  for (int i = 0; i < groups(s); i++) memcpy(to[i], from[i], BYTES(lanes, 2*s->of->bristles));
 }
 
 /* Residuals of a stage */
@@ -375,8 +375,8 @@ static void evaluate_stage(const Settings *s, int k, Radau *r, Work *w) {
   copy_bristles(s, r->bristles[k], w->bristles);
   residual(s, load, w);
   closing(s, load, w, r->open, r->gap[k]);
-  for (int i = 0; i < groups(s); i++) memcpy(r->R[k].leg[i], w->r[i], sizeof(lanes)*N);
-  memcpy(r->R[k].hub, w->rp, sizeof(double)*HUB);
+  for (int i = 0; i < groups(s); i++) memcpy(r->R[k].leg[i], w->r[i], BYTES(lanes, N));
+  memcpy(r->R[k].hub, w->rp, BYTES(double, HUB));
   memcpy(r->powers[k], w->powers, sizeof w->powers);
 }
 
@@ -421,18 +421,18 @@ static void through(double theta, int start, double *c) {
 
 static void copy_vector(const Settings *s, const Vector *from, Vector *to) {
   SIZES(s);
-  for (int i = 0; i < groups(s); i++) memcpy(to->leg[i], from->leg[i], sizeof(lanes)*N);
-  memcpy(to->hub, from->hub, sizeof(double)*HUB);
+  for (int i = 0; i < groups(s); i++) memcpy(to->leg[i], from->leg[i], BYTES(lanes, N));
+  memcpy(to->hub, from->hub, BYTES(double, HUB));
 }
 static void copy_forces(const Settings *s, const Forces *from, Forces *to) {
   for (int i = 0; i < groups(s); i++) {
-    memcpy(to->lam[i], from->lam[i], sizeof(lanes)*s->of->rows); memcpy(to->drive[i], from->drive[i], sizeof(lanes)*s->ports);
+    memcpy(to->lam[i], from->lam[i], BYTES(lanes, s->of->rows)); memcpy(to->drive[i], from->drive[i], BYTES(lanes, s->ports));
   }
 }
 static void clear_vector(const Settings *s, Vector *x) {
   SIZES(s);
-  for (int i = 0; i < groups(s); i++) memset(x->leg[i], 0, sizeof(lanes)*N);
-  memset(x->hub, 0, sizeof(double)*HUB);
+  for (int i = 0; i < groups(s); i++) memset(x->leg[i], 0, BYTES(lanes, N));
+  memset(x->hub, 0, BYTES(double, HUB));
 }
 
 /* Accelerations and forces of the stages extrapolated from those of the last step (none: as at the start), and what follows */
@@ -492,7 +492,7 @@ static double estimate(const Settings *s, const Control *c, double h, Radau *r, 
   multiply(s, -1, r->K, s->hub ? r->hub_K : 0, error, rhs);
   multiply(s, -FREE, r->M, s->hub ? r->hub_M : 0, error, rhs);
   arrow_solve_vector(s, &w->arrow, rhs, r->closed, second, 0);
-  memset(r->thrust, 0, sizeof(lanes)*groups(s));
+  memset(r->thrust, 0, BYTES(lanes, groups(s)));
   add_thrust(s, c, second, 1, r);
   return norm(s, c, second);
 }
@@ -507,7 +507,7 @@ static double estimate_bristles(const Settings *s, const Control *c, double h, R
   for (int i = 0; i < groups(s); i++) {
     LegState *leg = &w->leg[i];
     lanes bent[2*BRISTLES], wrong[N], state[2*BRISTLES], force[BRISTLES], rate[BRISTLES], energies[2], still = {0};
-    memcpy(bent, r->bristles[2][i], sizeof(lanes)*2*BRISTLES);
+    memcpy(bent, r->bristles[2][i], BYTES(lanes, 2*BRISTLES));
     const lanes *in[] = {leg->q, leg->v, leg->lam, bent, &still, w->p[i]};
     lanes *out[] = {wrong, state, force, rate, energies};
     s->of->leg_friction(in, out);
@@ -563,9 +563,9 @@ static void start_step(const Settings *s, const Work *w, Radau *r) {
     s->of->leg_sliding(in, out);
   }
   for (int i = 0; i < groups(s); i++) {
-    memcpy(r->q.leg[i], w->leg[i].q, sizeof(lanes)*N); memcpy(r->v0.leg[i], w->leg[i].v, sizeof(lanes)*N);
-    memcpy(r->a0.leg[i], w->leg[i].v_dot, sizeof(lanes)*N);
-    memcpy(r->f0.lam[i], w->leg[i].lam, sizeof(lanes)*ROWS); memcpy(r->f0.drive[i], w->leg[i].drive, sizeof(lanes)*s->ports);
+    memcpy(r->q.leg[i], w->leg[i].q, BYTES(lanes, N)); memcpy(r->v0.leg[i], w->leg[i].v, BYTES(lanes, N));
+    memcpy(r->a0.leg[i], w->leg[i].v_dot, BYTES(lanes, N));
+    memcpy(r->f0.lam[i], w->leg[i].lam, BYTES(lanes, ROWS)); memcpy(r->f0.drive[i], w->leg[i].drive, BYTES(lanes, s->ports));
   }
   copy_bristles(s, w->bristles, r->bristles[STAGES]);
   memcpy(r->pose, w->payload.pose, sizeof r->pose);
@@ -616,21 +616,25 @@ static void state_at(const Settings *s, double theta, double h, const Radau *r, 
   turned_pose(r->pose, moved, w->payload.pose);
 }
 
-/* Energies up to theta of a step, over its length: integrals of the polynomial of the powers */
-static void powers_until(double theta, double h, const Radau *r, double *sums) {
+/* Energies up to theta of a step, over its length: integrals of the polynomial of the powers. `work`: of a controller, or 0 */
+static void powers_until(double theta, double h, const Radau *r, double *sums, double *work) {
   static const double at[3] = {0.11270166537925831148, 0.5, 0.88729833462074168852}, weight[3] = {5.0/18, 8.0/18, 5.0/18};
   for (int i = 0; i < 3; i++) {
     double c[4];
     through(at[i]*theta, 0, c);
     for (int j = 0; j < WORKS; j++) sums[j] += h*theta*weight[i]*(c[0]*r->powers[0][j] + c[1]*r->powers[1][j] + c[2]*r->powers[2][j]);
+    if (!work) continue;
+    double done = h*theta*weight[i]*(c[0]*r->held[0] + c[1]*r->held[1] + c[2]*r->held[2]);
+    *work += done; sums[1] -= done;
   }
 }
 
 /* Record of an instant within a step */
-static void record_within(const Settings *s, State *x, const Control *c, double t, double theta, double h, Radau *r, Work *w) {
-  double row[WIDTH], sums[WORKS];
+static void record_within(const Settings *s, State *x, const Control *c, double t, double theta, double h, Loop *loop, Radau *r, Work *w) {
+  double row[WIDTH], sums[WORKS], work = loop ? split(loop).work[0] : 0;
   long width = s->legs*s->ports*COLUMNS;
   evaluate_series(c, width + load_size(s), t, row);
+  if (loop) hold(s, loop, split(loop).u, row);
   state_at(s, theta, h, r, row, w);
   w->closure = 0;
   if (s->of->rows) close_record(s, row + width, r, w);
@@ -639,8 +643,9 @@ static void record_within(const Settings *s, State *x, const Control *c, double 
   for (int j = 0; j < 6; j++) more |= s->hub_held[j] != 0;
   if (more) residual(s, row + width, w);
   memcpy(sums, x->sums, sizeof sums);
-  powers_until(theta, h, r, x->sums);
+  powers_until(theta, h, r, x->sums, loop ? &work : 0);
   write_record(s, x, w);
+  if (loop) record_loop(loop, work);
   memcpy(x->sums, sums, sizeof sums);
 }
 
@@ -660,11 +665,47 @@ long radau_memory(const Settings *s) {
   return room.used;
 }
 
+/* The sample that is due at the start of a step: what its outputs jump by moves accelerations and forces there, (T26.5), and
+   those of the last step, which the next one starts from. `row`: of the table, with what was held */
+static int take_sample_within(const Settings *s, const Loop *c, double h, double *row, Radau *r, Work *w) {
+  SIZES(s);
+  double change[c->actions + 1], dy[6], c_a = REAL*REAL/(h*h);
+  if (!foresees(c)) read_sample(s, c, w);
+  int fault = hold_outputs(s, c, w, change);
+  if (fault) return fault;
+  hold(s, c, change, row);
+  follow_table(s, row, w);
+  jump(s, c, change, w, dy);
+  for (int i = 0; i < groups(s); i++) {
+    LegState *leg = &w->leg[i];
+    for (long j = 0; j < N; j++) {
+      leg->v_dot[j] += c_a*w->dq[i][j];
+      for (int k = 0; k < STAGES; k++) r->last_A[k].leg[i][j] += c_a*w->dq[i][j];
+    }
+    for (long j = 0; j < ROWS; j++) {
+      leg->lam[j] += w->dlam[i][j];
+      for (int k = 0; k < STAGES; k++) r->last_F[k].lam[i][j] += w->dlam[i][j];
+    }
+    for (long j = 0; j < s->ports; j++) {
+      leg->drive[j] += w->df[i][j];
+      for (int k = 0; k < STAGES; k++) r->last_F[k].drive[i][j] += w->df[i][j];
+    }
+  }
+  for (int j = 0; j < 6 && s->hub; j++) {
+    w->payload.u_dot[j] += c_a*dy[j];
+    for (int k = 0; k < STAGES; k++) r->last_A[k].hub[j] += c_a*dy[j];
+  }
+  if (foresees(c)) read_sample(s, c, w);
+  end_sample(c);
+  start_step(s, w, r);
+  return OK;
+}
+
 enum { OUT_OF_REACH = 4, OLDEST = 16 }; /* steps for which the matrices at rest are kept */
 
 /* Advance to the last stop with steps of their own, recording the instants asked for. The memory is the caller's; zero but for the
-   present time and the step to try, it begins anew. */
-int radau(const Settings *s, State *x, const Control *c, char *memory) {
+   present time and the step to try, it begins anew. `loop`: a controller, at whose samples steps end, or 0. */
+int radau(const Settings *s, State *x, const Control *c, char *memory, Loop *loop) {
   SIZES(s);
   Room room = {memory, 0};
   Memory *m;
@@ -677,11 +718,14 @@ int radau(const Settings *s, State *x, const Control *c, char *memory) {
   load(s, x, w);
   w->h = w->stored = 0;
   evaluate_series(c, width, m->time, row);
+  if (loop) { hold(s, loop, split(loop).u, row); follow_table(s, row, w); }
   start_step(s, w, r);
   while (status == OK) {
     while (stop < c->stops && c->stop[stop] <= m->time) stop++;
     if (stop == c->stops) break;
-    double left = c->stop[stop] - m->time, h = fmin(m->h, c->longest), rest_of_it = fmax(c->tolerance - m->spent, 0.1*c->tolerance);
+    int due = loop && is_due(loop, m->time);
+    double end = loop ? end_of_step(loop, c->stop[stop], due) : c->stop[stop];
+    double left = end - m->time, h = fmin(m->h, c->longest), rest_of_it = fmax(c->tolerance - m->spent, 0.1*c->tolerance);
     double allowed = fmin(rest_of_it/fmax(c->horizon - m->time, left), 3*c->tolerance/c->horizon), rounding = 1e-15*unit;
     if (h >= left*(1 - 1e-9)) h = left; else if (h > 0.5*left) h = 0.5*left;
     int renewed = age >= OLDEST;
@@ -692,8 +736,12 @@ int radau(const Settings *s, State *x, const Control *c, char *memory) {
       if ((renewed && factor_soft(s, r, w)) || factor_stages(s, h, r, w)) { x->bad_leg = s->legs; status = SINGULAR; break; }
       factored = h;
     }
-    double until = h < left ? m->time + h : c->stop[stop];
-    for (int k = 0; k < STAGES; k++) evaluate_series(c, width, k < 2 ? m->time + NODE[k]*h : until, r->row[k]);
+    if (due && (status = take_sample_within(s, loop, h, row, r, w))) { x->bad_leg = s->legs; break; }
+    double until = h < left ? m->time + h : end;
+    for (int k = 0; k < STAGES; k++) {
+      evaluate_series(c, width, k < 2 ? m->time + NODE[k]*h : until, r->row[k]);
+      if (loop) hold(s, loop, split(loop).u, r->row[k]);
+    }
     predict_stages(s, m, h, r);
     double goal = c->unsolved*allowed*h/(1 + REAL/(h*sqrt(FREE)));          /* rates are off by REAL/h of it, for 1/sqrt(FREE) */
     int fault = iterate_stages(s, x, c, h, goal, rounding, &m->rate, r, w);
@@ -715,16 +763,17 @@ int radau(const Settings *s, State *x, const Control *c, char *memory) {
       if (m->h < c->shortest) { x->bad_leg = s->legs; status = OUT_OF_REACH; }
       continue;
     }
+    for (int k = 0; k < STAGES && loop; k++) r->held[k] = power_of_loop(s, loop, r->V[k].leg, split(loop).u);
     for (; next < c->outputs; next++) {
       double t = c->output_first + (double)next*c->output_step;
       if (t > until + 1e-6*c->output_step) break;
-      record_within(s, x, c, fmin(t, until), fmin((t - m->time)/h, 1), h, r, w);
+      record_within(s, x, c, fmin(t, until), fmin((t - m->time)/h, 1), h, loop, r, w);
     }
     memcpy(row, r->row[2], sizeof row);
     place(s, r, &r->Z[2], &r->V[2], &r->A[2], &r->F[2], row, w);
     copy_bristles(s, r->bristles[2], w->bristles);
     if (ROWS) { closing(s, row + tables, w, r->open, r->rate); close_places(s, r->open, r, w); }
-    powers_until(1, h, r, x->sums);
+    powers_until(1, h, r, x->sums, loop ? split(loop).work : 0);
     memcpy(x->powers, r->powers[2], sizeof r->powers[2]);
     for (int k = 0; k < STAGES; k++) { copy_vector(s, &r->A[k], &r->last_A[k]); copy_forces(s, &r->F[k], &r->last_F[k]); }
     m->stages = 1; m->last_h = h; m->time = until; m->spent += error + rubbed;

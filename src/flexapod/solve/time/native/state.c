@@ -31,8 +31,7 @@ static double *past_room(Room *m, const Settings *s, Past *past) {
 /* The work space at the begin of the caller's memory; all of it zero before the first call */
 static Work *work(Room *m, const Settings *s) {
   SIZES(s);
-  Work none, *w = (Work *)room(m, sizeof(Work));
-  if (!w) w = &none;                    /* it is counted only */
+  Work none, *at = (Work *)room(m, sizeof(Work)), *w = at ? at : &none;      /* it is counted only */
   for (int i = 0; i < groups(s); i++) {
     LegState *leg = &w->leg[i];
     lanes **each[] = {&leg->q, &leg->v, &leg->v_dot, &leg->a};
@@ -51,7 +50,7 @@ static Work *work(Room *m, const Settings *s) {
   Past older;
   double *now = past_room(m, s, &w->past);
   for (int k = 1; k < (LARGE ? PAST : 1); k++) { double *before = past_room(m, s, &older); if (k == 1) w->gap = before - now; }
-  return w == &none ? 0 : w;
+  return at;
 }
 
 static void load(const Settings *s, const State *x, Work *w) {
@@ -68,7 +67,7 @@ static void load(const Settings *s, const State *x, Work *w) {
     if (s->hub) gather(s, i, s->joint_p, s->of->joint, s->of->joint, w->joint[i]);
   }
   arrow_hold(&w->arrow, s);
-  memset(w->rp, 0, sizeof(double)*HUB); memset(w->reaction, 0, sizeof w->reaction);
+  memset(w->rp, 0, BYTES(double, HUB)); memset(w->reaction, 0, sizeof w->reaction);
   if (!s->hub) return;
   memcpy(w->payload.pose, x->pose, sizeof w->payload.pose);
   memcpy(w->payload.u, x->v + k, 6*sizeof(double));

@@ -2,6 +2,10 @@
    This text knows no robot: sizes and equations come with each call, so that it is compiled once for all. */
 #define INLINE static inline __attribute__((always_inline))
 #define SHARED static __attribute__((noinline))  /* called from many places: a copy in each takes the compiler long */
+#ifndef EXPORTED
+#define EXPORTED                        /* what others call; static where all is one unit */
+#endif
+#define BYTES(type, count) (sizeof(type)*(size_t)(count))
 
 enum { LEGS = 16, PORTS = 24, CLOSURES = 6 };     /* at most */
 enum { COLUMNS = 4 };                   /* of a port in a table: value, rate, acceleration, force */

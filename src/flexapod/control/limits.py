@@ -1,0 +1,193 @@
+"""Margins of loops with an exact delay, and how many of their poles grow, (T21.31)-(T21.32)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from flexapod.arrays import Array
+from flexapod.control.closing import DelayedLoop
+from flexapod.control.interconnect import closed, law_of
+from flexapod.control.poles import damping_of
+from flexapod.control.sampling import held
+from flexapod.errors import ComputationError, InputError
+from flexapod.units import to_si
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from flexapod.control.controllers import Controller
+    from flexapod.control.state_space import StateSpace
+
+__all__ = ["margins"]
+
+Complex = NDArray[np.complex128]
+Gains = Callable[[Array], Complex]  # around all loops at frequencies [Hz], (f, k, k)
+Kind = Literal["real", "one", "nearest"]
+
+STEPS = 40  # frequencies in a decade
+NEAR = 12  # frequencies on each side of a resonance, farther and farther
+SPAN = 100.0  # of frequencies beyond the slowest and fastest poles
+FINEST = 1e-9  # of the largest frequency, or the middle pole: less is none
+CUTS, ROUNDS = 41, 6  # of a bracket: 41^-6 of it is left; its middle, often an undamped pole, is none
+CLOSE = 3  # brackets of each loop in which the nearest point to -1 is looked for
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bracket:
+    """Frequencies [Hz] between which loop `loop` crosses the real axis or the size 1, or is nearest to -1."""
+
+    loop: int
+    kind: Kind
+    low: float
+    high: float
+
+
+def margins(system: StateSpace, controller: Controller | StateSpace, *, delay: float | str = 0.0) -> Dataset:
+    """How far each loop is from its limit, the others closed, its `delay` [s] exact, Eqs. (T21.31)-(T21.32).
+
+    Returns
+    -------
+    xarray.Dataset
+        By `actuator`: `gain_margin`, the factors nearest to 1 above and below it (`side`) at which the loop is at its
+        limit; `phase_margin` [rad] and `delay_margin` [s] beyond the delay it has; `modulus_margin`, the least distance
+        of the loop from -1; `..._frequency` [Hz] of each. Infinite where there is no limit. Attribute `unstable_poles`:
+        how many poles grow; margins of a loop that has some say how far it is from having others.
+    """
+    from flexapod.control.datasets import margins_dataset
+
+    law = law_of(controller, system.outputs, system.inputs, system.units)
+    law = held(law, system.sample) if system.sample is not None and law.sample is None else law
+    late = to_si(delay, "time", key="delay")
+    if system.sample is not None and late:
+        raise InputError("is for continuous systems", key="delay", value=delay, next_step=".sampled(period, delay)")
+    around = _around(DelayedLoop(system=system, controller=law, delay=late))
+    poles = closed(system, law).poles()
+    hz = _frequencies(np.concatenate([system.poles(), law.poles(), poles]), system.sample)
+    whole = around(hz)
+    cut = _cut(whole, late, hz)
+    found = _refined([*_brackets(cut, hz)], lambda f: _cut(around(f), late, f))
+    each = [_of_loop(k, found) for k in range(len(law.outputs))]
+    return margins_dataset(law.outputs, each, _growing(poles, system.sample, late, around, hz, whole))
+
+
+def _around(loop: DelayedLoop) -> Gains:
+    """Gains around all loops from actuators back to them, (f, k, k), without the delay."""
+    at = [loop.system.inputs.index(name) for name in loop.controller.outputs]
+
+    def around(hz: Array) -> Complex:
+        _, read, K = loop.opened(hz)
+        return K @ read[:, :, at]
+
+    return around
+
+
+def _cut(whole: Complex, delay: float, hz: Array) -> Complex:
+    """Minus the gain around each loop, cut at its actuator while the others stay closed, (k, f), Eq. (T21.31)."""
+    L = np.exp(-2j * np.pi * hz * delay)[:, None, None] * whole
+    found = np.empty((L.shape[1], len(L)), dtype=complex)
+    for k in range(L.shape[1]):
+        o = [i for i in range(L.shape[1]) if i != k]
+        inner = np.eye(len(o)) - L[:, o][:, :, o]
+        found[k] = -(L[:, k, k] + (L[:, [k]][:, :, o] @ np.linalg.solve(inner, L[:, o][:, :, [k]]))[:, 0, 0])
+    return found
+
+
+def _brackets(cut: Complex, hz: Array) -> list[Bracket]:
+    """Neighbouring frequencies between which something happens, by loop."""
+    found = []
+    for k, L in enumerate(cut):
+        kinds: tuple[tuple[Kind, Array], ...] = (("real", L.imag), ("one", np.abs(L) - 1))
+        for kind, values in kinds:
+            at = np.flatnonzero(values[1:] * values[:-1] < 0).tolist()
+            found += [Bracket(loop=k, kind=kind, low=float(hz[i]), high=float(hz[i + 1])) for i in at]
+        for i in np.argsort(np.abs(1 + L), kind="stable")[:CLOSE].tolist():
+            low, high = hz[[max(i - 1, 0), min(i + 1, len(hz) - 1)]].tolist()
+            found.append(Bracket(loop=k, kind="nearest", low=low, high=high))
+    return found
+
+
+def _refined(brackets: list[Bracket], loops: Callable[[Array], Complex]) -> list[tuple[Bracket, float, complex]]:
+    """Each with its frequency [Hz] and the loop's gain there: all cut at once, again and again."""
+    values = np.zeros(0, dtype=complex)
+    for _ in range(ROUNDS if brackets else 0):
+        f = np.linspace([b.low for b in brackets], [b.high for b in brackets], CUTS + 1, axis=1)
+        L = loops(f.ravel()).reshape(-1, *f.shape)
+        some = [L[b.loop, i] for i, b in enumerate(brackets)]
+        at = [_place(b.kind, one) for b, one in zip(brackets, some, strict=True)]
+        values = np.array([one[min(i + 1, CUTS)] for i, one in zip(at, some, strict=True)])
+        width = [2 if b.kind == "nearest" else 1 for b in brackets]
+        brackets = [
+            Bracket(loop=b.loop, kind=b.kind, low=row[i], high=row[min(i + w, CUTS)])
+            for b, row, i, w in zip(brackets, f, at, width, strict=True)
+        ]
+    places = [0.5 * (b.low + b.high) if b.kind == "nearest" else b.high for b in brackets]
+    return list(zip(brackets, places, values.tolist(), strict=True))
+
+
+def _place(kind: Kind, L: Complex) -> int:
+    """Where in a bracket what it is about happens: the part that begins there, for the nearest point the one before."""
+    if kind == "nearest":
+        return int(np.clip(np.abs(1 + L).argmin() - 1, 0, CUTS - 2))
+    values = L.imag if kind == "real" else np.abs(L) - 1
+    at = np.flatnonzero(values[1:] * values[:-1] <= 0)
+    return int(at[0]) if len(at) else int(np.abs(values[:-1]).argmin())
+
+
+def _of_loop(k: int, found: list[tuple[Bracket, float, complex]]) -> dict[str, tuple[float, float]]:
+    """Margins of one loop, each with its frequency [Hz]."""
+    own = {kind: [(f, L) for b, f, L in found if (b.loop, b.kind) == (k, kind)] for kind in ("real", "one", "nearest")}
+    limits = [(-1.0 / L.real, f) for f, L in own["real"] if L.real < 0]
+    phases = [(float(np.angle(-L)), f) for f, L in own["one"]]
+    delays = [((angle % (2 * np.pi)) / (2 * np.pi * f), f) for angle, f in phases]
+    return {
+        "above": min((x for x in limits if x[0] > 1), default=(np.inf, np.nan)),
+        "below": max((x for x in limits if x[0] <= 1), default=(0.0, np.nan)),
+        "phase": min(phases, key=lambda x: abs(x[0]), default=(np.inf, np.nan)),
+        "delay": min(delays, default=(np.inf, np.nan)),
+        "modulus": min((abs(1 + L), f) for f, L in own["nearest"]),
+    }
+
+
+def _growing(poles: Complex, sample: float | None, delay: float, around: Gains, hz: Array, whole: Complex) -> int:
+    """Poles of a delayed loop that grow, Eq. (T21.32): those without delay, and those that cross as it rises."""
+    s, _, _ = damping_of(poles, sample)
+    drifts = FINEST * np.median(np.abs(s)) if len(s) else 0.0
+    count = sum(1 if pole.imag == 0 else 2 for pole in s if pole.real > drifts)
+    if not delay:
+        return count
+    values = np.linalg.eigvals(whole)
+    for i in range(1, len(values)):
+        values[i] = values[i][linear_sum_assignment(np.abs(values[i - 1][:, None] - values[i]))[1]]
+    size = np.abs(values)
+    for i, j in np.argwhere((size[1:] - 1) * (size[:-1] - 1) < 0).tolist():
+        share = (1 - size[i, j]) / (size[i + 1, j] - size[i, j])
+        at = float(hz[i] + share * (hz[i + 1] - hz[i]))
+        there = np.linalg.eigvals(around(np.array([at])))[0]
+        angle = float(np.angle(there[np.abs(there - (1 - share) * values[i, j] - share * values[i + 1, j]).argmin()]))
+        turns = np.arange((angle % (2 * np.pi)) / (2 * np.pi * at), delay, 1 / at)
+        count += 2 * len(turns) * (1 if size[i + 1, j] < size[i, j] else -1)
+    return count
+
+
+def _frequencies(poles: Complex, sample: float | None) -> Array:
+    """Frequencies [Hz] all over poles of system, controller and loop, and closer and closer about resonances."""
+    s, frequency, ratio = damping_of(poles, sample)
+    frequency = np.where(np.isfinite(frequency), frequency, 0.0)
+    known = frequency[frequency > FINEST * frequency.max(initial=0.0)]
+    if not known.size:
+        raise ComputationError("nothing in the loop has a frequency", next_step="Give the controller a filter")
+    top = SPAN * known.max() if sample is None else 0.5 / sample
+    low = min(known.min(), top) / SPAN
+    spread = np.geomspace(low, top, int(STEPS * np.log10(top / low)) + 2)
+    sharp = (ratio < 0.3) & (frequency > 0) & (s.imag > 0)
+    near = np.maximum(np.abs(ratio[sharp]), FINEST)[:, None] * 3.0 ** np.arange(-3, NEAR)
+    about = frequency[sharp][:, None] * np.where(near < 0.5, near, np.inf)
+    sides = [frequency[sharp][:, None] + sign * about for sign in (-1, 1)]
+    whole = np.unique(np.concatenate([spread, *sides], axis=None))
+    return whole[(whole >= low) & (whole <= top)]

@@ -1,0 +1,241 @@
+"""Measured frequency responses from files: universal files of datasets 58, CSV, MATLAB."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexapod.arrays import Array
+from flexapod.errors import InputError
+from flexapod.runtime.files import LARGEST_TABLE, read_bytes
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["read_frf"]
+
+RESPONSE = 4  # function type of a frequency response
+REAL, COMPLEX = (2, 4), (5, 6)  # ordinate data types, single and double
+DIRECTIONS = ("", "x", "y", "z", "rx", "ry", "rz")
+SAME = 1e-6  # relative: frequencies of responses that stand beside each other
+
+
+@dataclass(frozen=True, kw_only=True)
+class Response:
+    """One response: frequencies (f,) [Hz], values (f,), names and units of output and input."""
+
+    frequency: Array
+    values: NDArray[np.complex128]
+    output: str
+    input: str
+    units: tuple[str, str] = ("1", "1")
+
+
+def read_frf(path: str | Path) -> Dataset:
+    """Frequency responses of a file, as those of a linear system.
+
+    Parameters
+    ----------
+    path : path
+        ``.uff``, ``.unv``, ``.58``: ASCII datasets 58 whose function is a frequency response. ``.csv``: a line of
+        names, then frequency [Hz] and for each response two columns, ``real`` and ``imag`` or ``magnitude`` (``[dB]``)
+        and ``phase [deg]``; names before them say which, as ``tool:z/wrench:fz real``. ``.mat``: ``frequency`` [Hz] and
+        ``frf`` (outputs, inputs, f), (outputs, f) or (f,), complex, with ``outputs``, ``inputs``, ``output_units``,
+        ``input_units`` or without.
+
+    Returns
+    -------
+    xarray.Dataset
+        `frequency_response` (output, input, frequency, part); channels that were not measured are NaN.
+
+    Raises
+    ------
+    InputError
+        A file that cannot be read, or without responses, or with frequencies that differ.
+    """
+    path = Path(path)
+    reader = READERS.get(path.suffix.lower())
+    if reader is None:
+        raise InputError("is not a format of responses", file=path, allowed=", ".join(READERS))
+    try:
+        content = read_bytes(path, LARGEST_TABLE)
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror}", file=path) from None
+    try:
+        found = reader(content)
+    except InputError as error:
+        raise error.located(file=path) from None
+    except (ValueError, IndexError, KeyError) as error:
+        raise InputError(f"cannot be understood: {error}", file=path) from None
+    if not found:
+        raise InputError("holds no frequency response", file=path, allowed="at least one")
+    return _together(found, path)
+
+
+def _together(found: list[Response], path: Path) -> Dataset:
+    from flexapod.control.datasets import frf_dataset
+
+    f = found[0].frequency
+    for one in found[1:]:
+        if len(one.frequency) != len(f) or np.abs(one.frequency - f).max() > SAME * np.abs(f).max():
+            raise InputError(
+                f"has other frequencies for {one.output} by {one.input} than for {found[0].output} by {found[0].input}",
+                file=path, allowed="the same frequencies for all responses",
+            )  # fmt: skip
+    outputs, inputs = (list(dict.fromkeys(getattr(one, key) for one in found)) for key in ("output", "input"))
+    values = np.full((len(outputs), len(inputs), len(f)), np.nan + 0j)
+    units = {}
+    for one in found:
+        values[outputs.index(one.output), inputs.index(one.input)] = one.values
+        units |= {one.output: one.units[0], one.input: one.units[1]}
+    return frf_dataset(f, values, tuple(outputs), tuple(inputs), units)
+
+
+def _universal(content: bytes) -> list[Response]:
+    lines = content.decode("ascii", errors="replace").splitlines()
+    found, at = [], 0
+    while at < len(lines):
+        if lines[at].strip() == "-1" and at + 1 < len(lines) and lines[at + 1].strip()[:3] in ("58", "58b"):
+            if lines[at + 1].strip().startswith("58b"):
+                raise InputError("is a binary dataset 58", allowed="ASCII", next_step="Write it as ASCII")
+            end = next((k for k in range(at + 2, len(lines)) if lines[k].strip() == "-1"), len(lines))
+            one = _dataset_58(lines[at + 2 : end])
+            found += [one] if one is not None else []
+            at = end
+        at += 1
+    return found
+
+
+def _dataset_58(lines: list[str]) -> Response | None:
+    """A dataset of eleven lines and its numbers; None of another function than a response."""
+    ids = lines[5]
+    if int(ids[:5]) != RESPONSE:
+        return None
+    frequency: Array
+    names = [part.strip() for part in lines[0].split(" / ")]
+    if len(names) != 2 or not all(names):
+        names = [_channel(ids[31:41], ids[41:51], ids[51:55]), _channel(ids[56:66], ids[66:76], ids[76:80])]
+    kind, count, even = (int(lines[6][k : k + 10]) for k in (0, 10, 20))
+    start, step = float(lines[6][30:43]), float(lines[6][43:56])
+    width = 20 if kind in (4, 6) else 13
+    numbers = _numbers(lines[11:], width, kind, bool(even))
+    units = tuple(line[42:62].strip() or "1" for line in (lines[8], lines[9]))
+    if kind in COMPLEX:
+        rows = numbers.reshape(-1, 2 if even else 3)[:count]
+        frequency = np.asarray(start + step * np.arange(count) if even else rows[:, 0], dtype=float)
+        values = rows[:, -2] + 1j * rows[:, -1]
+    elif kind in REAL:
+        rows = numbers.reshape(-1, 1 if even else 2)[:count]
+        frequency = np.asarray(start + step * np.arange(count) if even else rows[:, 0], dtype=float)
+        values = rows[:, -1].astype(complex)
+    else:
+        raise InputError("has ordinates of an unknown type", key="58", value=kind, allowed="2, 4, 5, 6")
+    if len(rows) != count:
+        raise InputError(f"has {len(rows)} of {count} values", key="58")
+    units = tuple("1" if unit == "NONE" else unit for unit in units)
+    return Response(frequency=frequency, values=values, output=names[0], input=names[1], units=(units[0], units[1]))
+
+
+def _channel(entity: str, node: str, direction: str) -> str:
+    """A name of what the format has for a channel: entity and node, direction with its sign."""
+    where = entity.strip() if entity.strip() not in ("", "NONE") else "node"
+    axis = int(direction or 0)
+    sign = "-" if axis < 0 else ""
+    return f"{where} {int(node or 0)}:{sign}{DIRECTIONS[abs(axis)]}" if axis else f"{where} {int(node or 0)}"
+
+
+def _numbers(lines: list[str], width: int, kind: int, even: bool) -> Array:
+    """Numbers of the data lines: columns of the format, or where these do not hold separated by blanks.
+
+    Abscissas of uneven data have 13 columns.
+    """
+    found: list[float] = []
+    for line in lines:
+        if not line.strip():
+            continue
+        if even:
+            parts = [line[k : k + width] for k in range(0, len(line.rstrip()), width)]
+        else:
+            parts, k, group = [], 0, (13, width, width) if kind in COMPLEX else (13, width)
+            while k < len(line.rstrip()):
+                parts.append(line[k : k + group[len(parts) % len(group)]])
+                k += group[(len(parts) - 1) % len(group)]
+        try:
+            found += [float(part.replace("D", "E")) for part in parts if part.strip()]
+        except ValueError:
+            found += [float(part.replace("D", "E")) for part in line.split()]
+    return np.array(found)
+
+
+def _csv(content: bytes) -> list[Response]:
+    lines = [line for line in content.decode("utf-8-sig").splitlines() if line.strip() and not line.startswith("#")]
+    heads = [part.strip().strip('"') for part in lines[0].split(",")]
+    table = np.array([[float(part) for part in line.split(",")] for line in lines[1:]])
+    if table.ndim != 2 or table.shape[1] != len(heads) or len(heads) < 3 or len(heads) % 2 == 0:
+        raise InputError(
+            f"has {len(heads)} columns",
+            key="columns",
+            allowed="frequency, then two of each response: real, imag, or magnitude, phase [deg]",
+        )
+    found = []
+    for k in range(1, len(heads), 2):
+        one, other = heads[k].lower(), heads[k + 1].lower()
+        a, b = table[:, k], table[:, k + 1]
+        if "im" in other:
+            values = a + 1j * b
+        elif "phase" in other or "angle" in other:
+            turn = b if "rad" in other else np.radians(b)
+            size = 10 ** (a / 20) if "db" in one.split("[")[-1] else a
+            values = size * np.exp(1j * turn)
+        else:
+            words = "real, imag, or magnitude, phase"
+            raise InputError(f"has the columns {heads[k]!r}, {heads[k + 1]!r}", allowed=words)
+        output, _, input = heads[k].partition(" ")[0].partition("/") if "/" in heads[k] else ("", "", "")
+        labels = (output or f"response {(k + 1) // 2}", input or "input")
+        found.append(Response(frequency=table[:, 0], values=values.astype(complex), output=labels[0], input=labels[1]))
+    return found
+
+
+def _mat(content: bytes) -> list[Response]:
+    from io import BytesIO
+
+    from scipy.io import loadmat
+
+    data = loadmat(BytesIO(content))
+    names = {key: next((k for k in data if k.lower() in words), None) for key, words in WORDS.items()}
+    if names["frequency"] is None or names["frf"] is None:
+        raise InputError("lacks a variable", allowed="frequency and frf, with outputs, inputs, or without")
+    f = np.asarray(data[names["frequency"]], dtype=float).ravel()
+    H = np.asarray(data[names["frf"]], dtype=complex)
+    H = H.reshape(1, 1, -1) if H.size == len(f) else H[:, None] if H.ndim == 2 else H
+    if H.shape[2] != len(f):
+        raise InputError(f"has the shape {H.shape}", key=names["frf"], allowed=f"(outputs, inputs, {len(f)})")
+
+    def texts(key: str, count: int, plain: str) -> list[str]:
+        given = data.get(key)
+        if given is None:
+            return [plain.format(i + 1) for i in range(count)]
+        return [str(np.ravel(cell)[0]) if np.size(cell) else "1" for cell in np.ravel(given)]
+
+    outputs, inputs = texts("outputs", H.shape[0], "response {}"), texts("inputs", H.shape[1], "input {}")
+    top, bottom = texts("output_units", H.shape[0], "1"), texts("input_units", H.shape[1], "1")
+    return [
+        Response(frequency=f, values=H[i, j], output=outputs[i], input=inputs[j], units=(top[i], bottom[j]))
+        for i in range(H.shape[0])
+        for j in range(H.shape[1])
+    ]
+
+
+WORDS = {"frequency": ("frequency", "freq", "f", "hz"), "frf": ("frf", "h", "response", "frequency_response")}
+READERS: dict[str, Callable[[bytes], list[Response]]] = {
+    ".uff": _universal,
+    ".unv": _universal,
+    ".58": _universal,
+    ".csv": _csv,
+    ".mat": _mat,
+}

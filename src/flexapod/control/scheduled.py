@@ -1,0 +1,119 @@
+"""Controllers whose gains change with the pose: interpolated between those of a grid, (T21.43)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexapod.arrays import Array
+from flexapod.control.controllers import Controller
+from flexapod.control.function import Function
+from flexapod.control.interconnect import law_of
+from flexapod.control.sampling import period_of
+from flexapod.errors import InputError
+
+if TYPE_CHECKING:
+    from flexapod.control.state_space import StateSpace
+
+__all__ = ["Scheduled"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scheduled:
+    """Controllers at the points of a grid of poses; between them matrices are interpolated straight, Eq. (T21.43).
+
+    Parameters
+    ----------
+    axes : mapping
+        Values of each coordinate of the grid, rising, by its name: ``{"heave": [-0.1, 0, 0.1]}`` [m, rad].
+    controllers : sequence
+        One for each point, in the order of the axes, the last changing fastest; all of one kind, so that states mean
+        the same.
+    """
+
+    axes: Mapping[str, Sequence[float]]
+    controllers: Sequence[Controller | StateSpace]
+
+    def __post_init__(self) -> None:
+        """Axes that rise, a controller for each point."""
+        for name, values in self.axes.items():
+            if len(values) < 2 or (np.diff(np.asarray(values, dtype=float)) <= 0).any():
+                raise InputError("does not rise", key=f"axes.{name}", value=list(values), allowed="two values or more")
+        points = int(np.prod([len(values) for values in self.axes.values()]))
+        if len(self.controllers) != points:
+            raise InputError(f"are {len(self.controllers)}", key="controllers", allowed=f"{points}, one for each point")
+
+    def at(
+        self, pose: Mapping[str, float], outputs: Sequence[str], inputs: Sequence[str], period: float | None = None
+    ) -> StateSpace:
+        """The controller at a pose, from `outputs` of a system to `inputs`, for samples of a `period` [s] if given.
+
+        Raises
+        ------
+        InputError
+            A pose outside of the grid, or controllers of several kinds.
+        """
+        each = [_law(one, outputs, inputs, period) for one in self.controllers]
+        _check_alike(each)
+        found = dict.fromkeys("ABCD", 0.0)
+        for k, weight in _weights(self.axes, pose):
+            found = {name: value + weight * getattr(each[k], name) for name, value in found.items()}
+        return replace(each[0], **found)
+
+    def following(
+        self, pose: Callable[[float], Mapping[str, float]], period: float | str, outputs: Sequence[str],
+        inputs: Sequence[str],
+    ) -> Function:  # fmt: skip
+        """For simulations: the controller along a path, `pose` of an instant [s], sampled with a `period` [s].
+
+        States are remembered by their sample, so that samples that come again after a step that failed find their own.
+        """
+        T = period_of(period)
+        each = [_law(one, outputs, inputs, T) for one in self.controllers]
+        _check_alike(each)
+        known: dict[int, Array] = {}
+
+        def asked(t: float, y: Array) -> Array:
+            k = round(t / T)
+            x = known.get(k, np.zeros(len(each[0].A))) if k else np.zeros(len(each[0].A))
+            shares = list(_weights(self.axes, pose(t)))
+            A, B, C, D = (sum(w * getattr(each[i], name) for i, w in shares) for name in "ABCD")
+            known[k + 1] = A @ x + B @ y
+            return C @ x + D @ y
+
+        return Function(function=asked, inputs=each[0].inputs, outputs=each[0].outputs)
+
+
+def _law(
+    one: Controller | StateSpace, outputs: Sequence[str], inputs: Sequence[str], period: float | None
+) -> StateSpace:
+    law = law_of(one, outputs, inputs, {})
+    return law if period is None or law.sample is not None else law.sampled(period)
+
+
+def _check_alike(each: Sequence[StateSpace]) -> None:
+    kinds = {(one.inputs, one.outputs, one.states) for one in each}
+    if len(kinds) > 1:
+        raise InputError("are of several kinds", key="controllers", allowed="the same channels and states everywhere")
+
+
+def _weights(axes: Mapping[str, Sequence[float]], pose: Mapping[str, float]) -> list[tuple[int, float]]:
+    """Points about a pose and their weights, which add up to 1."""
+    sides = []
+    for name, values in axes.items():
+        grid, x = np.asarray(values, dtype=float), float(pose.get(name, 0.0))
+        if not grid[0] <= x <= grid[-1]:
+            raise InputError("is outside of the grid", key=name, value=x, allowed=f"{grid[0]:g} to {grid[-1]:g}")
+        k = min(int(np.searchsorted(grid, x, side="right")) - 1, len(grid) - 2)
+        share = (x - grid[k]) / (grid[k + 1] - grid[k])
+        sides.append([(k, 1 - share), (k + 1, share)])
+    shape = tuple(len(values) for values in axes.values())
+    return [
+        (int(np.ravel_multi_index([k for k, _ in corner], shape)), float(np.prod([w for _, w in corner])))
+        for corner in product(*sides)
+        if all(w for _, w in corner)
+    ]

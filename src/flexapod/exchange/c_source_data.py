@@ -1,0 +1,239 @@
+"""A robot's numbers for the C that marches it: start, commands, and which outputs are made of what."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod import kinematics, model
+from flexapod.arrays import Array
+from flexapod.errors import InputError
+from flexapod.results.leg_results import drive_forms, leg_results
+from flexapod.results.legs import per_turn
+from flexapod.results.names import VARIABLES
+from flexapod.results.path import RigidPath
+from flexapod.results.record import Record
+from flexapod.solve.statics.drive_forces import force_ports, push_ports
+from flexapod.solve.system import Flow
+from flexapod.solve.time.chebyshev import Series
+from flexapod.solve.time.march import first_record
+from flexapod.solve.time.recording import record_shapes, unpack
+from flexapod.solve.time.robot_march import RobotMarch, prepare
+from flexapod.solve.time.tables import Law
+
+__all__ = ["Channel", "Marched", "marched"]
+
+OF_LEGS = ("drive_position", "drive_force", "joint_force")
+ENERGIES = ("energy_kinetic", "energy_potential", "energy_strain", "energy_dissipated", "work_drive", "work_external")
+OF_PAYLOAD = {"com_position": 3, "tool_position": 3, "platform_quaternion": 4, "platform_angular_velocity": 3}
+FINEST = 1e-3  # s: of a piece of the built-in commands
+ROUNDING = 1e-9  # of an output that is linear in the state
+
+
+@dataclass(frozen=True, kw_only=True)
+class Channel:
+    """A variable of inputs or outputs: name and unit as in results, shape, where its numbers begin, start values."""
+
+    name: str
+    units: str
+    words: str
+    shape: tuple[int, ...]
+    first: int
+    start: Array
+
+    @property
+    def size(self) -> int:
+        """Its numbers."""
+        return int(np.prod(self.shape))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Marched:
+    """A prepared march and all that its C has to know beside the equations.
+
+    ``row``: record of the start; ``drive_port``, ``force_port`` (legs,): ports that commands and forces of the drives
+    go to, -1 for none; ``keeps``: legs whose drive keeps its command; ``turns``, ``zero``: of the drives' units;
+    ``edges``, ``series``: of the built-in commands, if there are; ``matrix`` (outputs, row), ``offset`` (outputs,): of
+    the outputs that are linear in a row.
+    """
+
+    study: model.Study
+    march: RobotMarch
+    law: Law
+    commanded: bool
+    row: Array
+    inputs: tuple[Channel, ...]
+    outputs: tuple[Channel, ...]
+    drive_port: Array
+    force_port: Array
+    keeps: Array
+    turns: Array
+    zero: Array
+    edges: Array
+    series: Array
+    matrix: Array
+    offset: Array
+    left_out: tuple[str, ...]
+
+    @property
+    def start(self) -> Flow:
+        """Where it begins."""
+        return self.march.start
+
+
+def marched(study: model.Study, commands: str, step: float | None) -> Marched:
+    """The march of a study with fixed steps, prepared for C.
+
+    Raises
+    ------
+    InputError
+        Unknown commands; no fixed step; a robot as built whose commands would come from outside.
+    """
+    if commands not in ("inputs", "motion"):
+        raise InputError("is not known", key="commands", value=commands, allowed='"inputs" or "motion"')
+    h = step if step is not None else study.simulation.step
+    if h is None:
+        raise InputError("is missing: what is written goes by fixed steps", key="step", next_step="Give step = 5e-4")
+    robot, commanded = study.robot, commands == "inputs"
+    if commanded and (kinematics.built_parts(robot) or robot.base_motion is not None):
+        raise InputError(
+            "come from outside, and this robot has errors of building, heat or a base that moves",
+            key="commands",
+            value=commands,
+            allowed='"motion", which has them built in',
+        )
+    study = model.override(study, step=h, output_step=h)
+    march = prepare(study)
+    if march.system.kernel.library is None:
+        raise InputError("needs a C compiler", key="format", next_step="Install gcc or clang")
+    problem = march.problem
+    _, row = first_record(march.system, march.start, *problem.tables(np.zeros(1)))
+    edges, series = np.zeros(1), np.zeros((0, 0, 0))
+    if not commanded:
+        end = problem.outputs * problem.output_step
+        knots = [t for t in problem.knots.tolist() if 0 < t < end]
+        edges, series = Series(problem.tables, [0.0, *knots, end], FINEST).between(0.0, end)
+    parts = _drives(march, study)
+    matrix, offset, outputs = _outputs(study, march, row[0])
+    return Marched(
+        study=study, march=march, law=problem.tables, commanded=commanded, row=row[0], **parts,
+        inputs=_inputs(study, march, parts, commanded), outputs=outputs, edges=edges, series=series,
+        matrix=matrix, offset=offset, left_out=_left_out(study, march, commanded),
+    )  # fmt: skip
+
+
+def _drives(march: RobotMarch, study: model.Study) -> dict[str, Array]:
+    system, robot = march.system, study.robot
+    driven, pushed = push_ports(system, robot), force_ports(system, robot)
+    at = {int(coordinate): k for k, coordinate in enumerate(system.ports)}
+    drive = np.array([at.get(int(x), -1) for x in driven])
+    keeps = np.array([k >= 0 and bool(system.enforced[i, driven[i]]) for i, k in enumerate(drive)])
+    force = np.array([-1 if keeps[i] or k < 0 else at[int(pushed[i])] for i, k in enumerate(drive)])
+    zero = kinematics.robot_limbs(robot).carriage_zero * (driven != system.kernel.shapes.l_index)
+    return {
+        "drive_port": drive, "force_port": force, "keeps": keeps, "turns": per_turn(robot),
+        "zero": np.broadcast_to(zero, drive.shape).astype(float),
+    }  # fmt: skip
+
+
+def _inputs(study: model.Study, march: RobotMarch, parts: dict[str, Array], commanded: bool) -> tuple[Channel, ...]:
+    table = march.problem.tables(np.zeros(1))[0][0]
+    legs = np.arange(march.system.legs)
+    given = table[legs, np.maximum(parts["drive_port"], 0)] / parts["turns"][:, None]
+    units = drive_forms(study.robot).get("drive_command", VARIABLES["drive_command"]).units
+    found: list[tuple[str, str, str, Array]] = []
+    if commanded:
+        names = {"": (units, "place"), "_rate": (f"{units} s-1", "rate"), "_acceleration": (f"{units} s-2", "change")}
+        for k, (ending, (unit, words)) in enumerate(names.items()):
+            start = np.where(parts["drive_port"] >= 0, given[:, k] + parts["zero"] * (k == 0), 0.0)
+            found.append((f"drive_command{ending}", unit, f"commanded {words} of the drive", start))
+    force = drive_forms(study.robot).get("drive_force", VARIABLES["drive_force"]).units
+    words = "force of the drive beside its own; of no effect where it keeps its command"
+    found.append(("control_input", force, words, np.zeros(len(legs))))
+    if march.system.hub:
+        words = "force [N] and moment [N m] at the tool beside the load, world axes"
+        found.append(("wrench", "mixed", words, np.zeros(6)))
+    channels, first = [], 0
+    for name, unit, words, start in found:
+        channels.append(Channel(name=name, units=unit, words=words, shape=start.shape, first=first, start=start))
+        first += start.size
+    return tuple(channels)
+
+
+def _outputs(study: model.Study, march: RobotMarch, row: Array) -> tuple[Array, Array, tuple[Channel, ...]]:
+    """Outputs that are linear in a row, and their names; those of the payload that are not have no part of it."""
+    system, robot, at = march.system, study.robot, _places(march)
+    path = RigidPath(study, np.zeros(1))
+
+    def of_legs(rows: Array) -> dict[str, Array]:
+        record = _record(march, rows)
+        made = leg_results(robot, system, path, record)
+        return {name: np.asarray(x() if callable(x := made[name]) else x) for name in OF_LEGS}
+
+    moved = np.concatenate([np.arange(*at[name]) for name in ("q", "lam", "drive")])
+    rows = np.repeat(row[None], len(moved) + 2, axis=0)
+    rows[:, moved] = 0.0
+    rows[np.arange(len(moved)) + 1, moved] += 1.0
+    rows[-1, moved] += np.sin(np.arange(len(moved)))
+    forms = {**VARIABLES, **drive_forms(robot)}
+    matrices, offsets, channels, first = [], [], [], 0
+
+    def add(name: str, shape: tuple[int, ...], matrix: Array, offset: Array) -> None:
+        nonlocal first
+        start = matrix @ row + offset
+        form = forms[name]
+        channels.append(
+            Channel(name=name, units=form.units, words=form.long_name, shape=shape, first=first, start=start)
+        )
+        matrices.append(matrix)
+        offsets.append(offset)
+        first += len(offset)
+
+    for name, size in OF_PAYLOAD.items() if system.hub else ():
+        matrix = np.zeros((size, len(row)))
+        if name == "com_position":
+            matrix[np.arange(3), at["pose"][0] + np.arange(3)] = 1.0
+        add(name, (size,), matrix, np.zeros(size))
+    for name, values in of_legs(rows).items():
+        flat = values.reshape(len(rows), -1)
+        matrix = np.zeros((flat.shape[1], len(row)))
+        matrix[:, moved] = (flat[1:-1] - flat[0]).T
+        offset = flat[0]
+        if np.abs(rows[-1] @ matrix.T + offset - flat[-1]).max() < ROUNDING * max(1.0, np.abs(flat).max()):
+            add(name, values.shape[1:], matrix, offset)
+    for k, name in enumerate([*ENERGIES, "closure_residual"]):
+        place = [*(at["energy"][0] + np.arange(3)), *(at["sums"][0] + np.arange(3)), at["closure"][0]][k]
+        matrix = np.zeros((1, len(row)))
+        matrix[0, place] = 1.0
+        add(name, (), matrix, np.zeros(1))
+    return np.concatenate(matrices), np.concatenate(offsets), tuple(channels)
+
+
+def _places(march: RobotMarch) -> dict[str, tuple[int, int]]:
+    found, end = {}, 0
+    for name, shape in record_shapes(march.system).items():
+        begin, end = end, end + int(np.prod(shape))
+        found[name] = (begin, end)
+    return found
+
+
+def _record(march: RobotMarch, rows: Array) -> Record:
+    """Rows of numbers as a record."""
+    r = unpack(march.system, np.zeros(len(rows)), rows)
+    legs, n = r.q.shape[1:]
+    return Record(
+        time=r.time, q=r.q, rate=r.v[:, : legs * n].reshape(-1, legs, n)[:, :, :0], turn=r.v[:, -3:], lam=r.lam,
+        drive=r.drive, pose=r.pose, reaction=r.reaction, energy=r.energy, sums=r.sums, closure=r.closure,
+        friction=r.friction, control=r.control, smallest_step=0.0, largest_error=0.0, force_error=None, wall_time=0.0,
+        failure=None, interrupted=False,
+    )  # fmt: skip
+
+
+def _left_out(study: model.Study, march: RobotMarch, commanded: bool) -> tuple[str, ...]:
+    found = ["steps within a tolerance, the rigid path and all deviations from it, figures: `flexapod run` has them"]
+    if study.control is not None:
+        found.append("the controller of [control]: its forces come in as control_input")
+    if not commanded and (march.problem.stops.ends or march.problem.stops.inside):
+        found.append("ends of steps on jumps of commands and loads: next to them forces are of first order in the step")
+    return tuple(found)

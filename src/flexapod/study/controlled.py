@@ -1,0 +1,232 @@
+"""A controller of a simulation, out of the arguments of a call, and its results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from flexapod import model
+from flexapod.arrays import Array
+from flexapod.errors import InputError, nearest
+from flexapod.results.asked import Made
+from flexapod.results.record import Record
+
+if TYPE_CHECKING:
+    from flexapod.control import AdaptiveDamping, Controller, Function, StateSpace
+    from flexapod.solve.time.sampled import Sampled
+
+    AnyController = Controller | AdaptiveDamping | StateSpace | Function
+
+__all__ = ["Noise", "PerChannel", "control_attributes", "control_coords", "control_results", "sampled_controller"]
+
+#: One number for all channels, or numbers by channels (``stroke:1``) and groups (``stroke``).
+PerChannel = float | Mapping[str, float] | None
+#: The same, or one-sided densities {"psd": unit^2/Hz} in place of numbers.
+Noise = float | Mapping[str, float] | Mapping[str, Mapping[str, float]] | None
+
+
+#: Groups of channels that controllers read and move without being told which.
+READ, MOVED = ("stroke", "encoder", "drive-force", "force-sensor:drive", "tool", "com"), ("drive", "command")
+
+
+def sampled_controller(
+    study: model.Study,
+    controller: AnyController | None = None,
+    sample: float | str | None = None,
+    delay_samples: int | None = None,
+    quantise: PerChannel = None,
+    saturate: PerChannel = None,
+    noise: Noise = None,
+    seed: int | None = None,
+) -> Sampled | None:
+    """The controller of a simulation: that of the call, else that of the study; None without one.
+
+    Parameters
+    ----------
+    study : Study
+    controller : Controller, AdaptiveDamping, StateSpace or Function, optional
+        Of `flexapod.control`. It reads at each sample what sensors
+        show from what they showed at the start, kinematic ones against the commanded path, and holds its outputs until
+        the next, Eqs. (T26.1)-(T26.3).
+    sample : float or str, optional
+        Time between samples [s], or as ``"5 kHz"``; of fixed steps a multiple.
+    delay_samples : int, optional
+        Samples from a reading to what is made of it.
+    quantise, saturate, noise : float or mapping, optional
+        Steps of the readings, largest magnitude of the outputs, standard deviation of the readings' noise: one number,
+        or numbers by channel or group. ``{"psd": S}`` in place of a deviation: one-sided [unit^2/Hz], Eq. (T26.4).
+    seed : int, optional
+        Of the noise: the same seed, the same bits.
+
+    Raises
+    ------
+    InputError
+        Settings without a controller, no period, a delay or limits that are none, a channel that it has not.
+    """
+    given = {"sample": sample, "delay_samples": delay_samples, "quantise": quantise, "saturate": saturate}
+    given |= {"noise": noise, "seed": seed}
+    given = {name: value for name, value in given.items() if value is not None}
+    if controller is None and study.control is not None:
+        controller, own = _of_table(study.control)
+        given = own | given
+    if controller is None:
+        if given:
+            raise InputError(
+                "is for a controller, and there is none", key=next(iter(given)), next_step="Give controller="
+            )
+        return None
+    return _made(controller, study.robot, **given)  # type: ignore[arg-type]
+
+
+def _of_table(table: model.Control) -> tuple[Controller, dict[str, object]]:
+    """Controller and settings of a study file."""
+    from flexapod.control.controllers import DVF, IFF
+
+    settings = {
+        name: getattr(table, name) for name in ("sample", "delay_samples", "saturate", "seed", "quantise", "noise")
+    }
+    found = {name: value for name, value in settings.items() if value is not None}
+    if isinstance(table, model.ForceControl):
+        return IFF(table.gain, high_pass=table.high_pass, sensor=table.reads), found
+    return DVF(table.gain, low_pass=table.low_pass, sensor=table.reads), found
+
+
+def _made(
+    controller: AnyController,
+    robot: model.Robot,
+    *,
+    sample: float | str | None = None,
+    delay_samples: int = 0,
+    quantise: PerChannel = None,
+    saturate: PerChannel = None,
+    noise: Noise = None,
+    seed: int = 0,
+) -> Sampled:
+    """A controller with all settings."""
+    from flexapod.control import StateSpace
+    from flexapod.solve.time.sampled import Sampled
+
+    period = _period(controller, sample)
+    if not isinstance(delay_samples, int) or delay_samples < 0:
+        raise InputError("is no number of samples", key="delay_samples", value=delay_samples, allowed="0, 1, 2, ...")
+    law = _law(controller, period, robot)
+    inputs, outputs = tuple(law.inputs), tuple(law.outputs)
+    for key, names in (("controller.inputs", inputs), ("controller.outputs", outputs)):
+        if not names or len(set(names)) < len(names):
+            raise InputError("are none, or one of them twice", key=key, value=", ".join(names))
+    matrices = {name: getattr(law, name) for name in "ABCD"} if isinstance(law, StateSpace) else {}
+    return Sampled(
+        readings=inputs,
+        outputs=outputs,
+        period=period,
+        function=None if isinstance(law, StateSpace) else law.function,
+        delay_samples=delay_samples,
+        quantum=_by_channel(quantise, inputs, "quantise", 0.0),
+        most=_by_channel(saturate, outputs, "saturate", np.inf),
+        sigma=_by_channel(_sigmas(noise, period), inputs, "noise", 0.0),
+        seed=seed,
+        **matrices,
+    )
+
+
+def _period(controller: AnyController, sample: float | str | None) -> float:
+    """Time between samples [s]: as given, or that of a law that has one."""
+    from flexapod.control import StateSpace
+    from flexapod.control.sampling import period_of
+
+    own = controller.sample if isinstance(controller, StateSpace) else None
+    period = own if sample is None else period_of(sample)
+    if period is None:
+        raise InputError("is missing", key="sample", allowed='a time [s], or a rate as "5 kHz"')
+    if own is not None and abs(own - period) > 1e-9 * period:
+        raise InputError(
+            "is not the time between its samples", key="sample", value=period, allowed=f"{own:.6g} s, that of the law"
+        )
+    return float(period)
+
+
+def _law(controller: AnyController, period: float, robot: model.Robot) -> StateSpace | Function:
+    """What is computed at each sample."""
+    from flexapod.control import AdaptiveDamping, Controller, Function, StateSpace
+    from flexapod.solve.linear.channels import asked
+
+    if isinstance(controller, StateSpace):
+        return controller if controller.sample is not None else controller.sampled(period)
+    if isinstance(controller, Controller | AdaptiveDamping):
+        read, moved = (
+            [channel.name for group in groups for channel in asked(group, robot, key)]
+            for groups, key in ((READ, "outputs"), (MOVED, "inputs"))
+        )
+        return controller.sampled(period, read, moved)
+    if not isinstance(controller, Function):
+        raise InputError(
+            "is no controller",
+            key="controller",
+            value=type(controller).__name__,
+            allowed="one of flexapod.control, a StateSpace, or a flexapod.control.Function",
+        )
+    return controller
+
+
+def _sigmas(noise: object, period: float) -> PerChannel:
+    """Standard deviations out of these, or out of one-sided densities {"psd": unit^2/Hz}, Eq. (T26.4)."""
+
+    def sigma(given: object) -> object:
+        if isinstance(given, Mapping) and set(given) == {"psd"}:
+            return float(np.sqrt(given["psd"] / (2 * period)))
+        return given
+
+    if isinstance(noise, Mapping) and set(noise) != {"psd"}:
+        return {name: sigma(value) for name, value in noise.items()}  # type: ignore[misc]
+    return sigma(noise)  # type: ignore[return-value]
+
+
+def _by_channel(given: PerChannel, names: Sequence[str], key: str, without: float) -> Array:
+    """A number for each channel; not below 0."""
+    found = np.full(len(names), without)
+    for name, value in given.items() if isinstance(given, Mapping) else [("", given)]:
+        which = [i for i, known in enumerate(names) if not name or known == name or known.startswith(f"{name}:")]
+        if not which:
+            like = nearest(name, names)
+            raise InputError(
+                "is no channel of this controller",
+                key=key,
+                value=name,
+                allowed=", ".join(names),
+                next_step=None if like is None else f"Did you mean {like!r}?",
+            )
+        if value is not None:
+            found[which] = value
+    if not (found >= 0).all():
+        raise InputError("is below 0, or no number", key=key, value=given)
+    return found
+
+
+def control_results(sampled: Sampled | None, record: Record) -> dict[str, Made]:
+    """What a controller read and held at the stored instants, and its work; nothing without one."""
+    if sampled is None:
+        return {}
+    read = len(sampled.readings)
+    return {
+        "sensor_reading": record.control[:, :read],
+        "control_input": record.control[:, read:-1],
+        "work_control": record.control[:, -1],
+    }
+
+
+def control_attributes(sampled: Sampled | None) -> dict[str, object]:
+    """Time between its samples [s], their delay, and the seed of its noise."""
+    if sampled is None:
+        return {}
+    return {
+        "control_sample": sampled.period,
+        "control_delay_samples": sampled.delay_samples,
+        "control_seed": sampled.seed,
+    }
+
+
+def control_coords(sampled: Sampled | None) -> dict[str, list[str]]:
+    """Names of its channels."""
+    return {} if sampled is None else {"sensor": list(sampled.readings), "actuator": list(sampled.outputs)}

@@ -1,0 +1,64 @@
+"""`frf` and `damp` as a user types them: words, files, JSON, refusals."""
+
+import json
+
+import numpy as np
+import pytest
+from scipy.io import loadmat
+from tests.cli.conftest import SHORT
+
+import flexapod as fx
+
+
+def test_responses_are_said_written_and_read_again(flexapod, study, folder):
+    path = study(*SHORT)
+    arguments = ("frf", path, "--input", "wrench:fz,floor:z", "--output", "tool:z", "--from", "5Hz", "--to", "500Hz")
+    said = flexapod(*arguments, "--points", "50", "--out", "found", "--uff", "a.uff", "--mat", "a.mat")
+    assert said.exit_code == 0, said.stderr
+    assert "About the static equilibrium at home" in said.stdout and "5 to 500 Hz, 50 frequencies" in said.stdout
+    assert {file.name for file in (folder / "found").iterdir()} == {"frf.nc", "frf.png", "frf.svg"}
+    model = fx.linearize(fx.load(path), inputs=["wrench:fz", "floor:z"], outputs="tool:z")
+    hz = np.geomspace(5, 500, 50)
+    exact = model.at(hz)
+    told = json.loads(flexapod(*arguments, "--points", "50", "--json").stdout)
+    assert [one["input"] for one in told["responses"]] == ["wrench:fz", "floor:z"]
+    np.testing.assert_allclose(told["responses"][1]["real"], exact[0, 1].real, rtol=1e-9)
+    measured = fx.read_frf(folder / "a.uff").frequency_response
+    assert measured.sel(part="real").values == pytest.approx(exact.real, rel=1e-9)
+    np.testing.assert_array_equal(loadmat(folder / "a.mat")["A"], model.A)
+    again = flexapod(*arguments, "--mat", "a.mat")
+    assert again.exit_code == 2 and "--force" in again.stderr
+
+
+def test_poles_are_listed_as_modes_are(flexapod, study):
+    path = study(*SHORT)
+    poles = json.loads(flexapod("damp", path, "--json").stdout)["poles"]
+    modes = json.loads(flexapod("modes", path, "--json").stdout)["modes"]
+    lowest = [mode["frequency"] for mode in modes[:6]]
+    found = [pole["frequency"] for pole in poles if pole["imaginary"] > 0][:6]
+    np.testing.assert_allclose(found, lowest, rtol=1e-3)  # size of a damped pole: 1e-9 but for coupled damping
+    said = flexapod("damp", path, "--count", "3")
+    assert said.exit_code == 0, said.stderr
+    assert "damping [%]" in said.stdout and "The slowest 3 of" in said.stdout
+
+
+def test_poles_that_grow_are_warned_of(flexapod, study):
+    said = flexapod("damp", study(*SHORT), "--drives", "force")
+    assert said.exit_code == 0, said.stderr
+    assert "drives released" in said.stdout and "poles grow: at" in said.stdout.replace("\n", " ")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("frf", "--input", "wrenc"), "Did you mean 'wrench'?"),
+        (("frf", "--from", "10Hz", "--to", "1Hz"), "0 < --from < --to"),
+        (("frf", "--mat", "a.txt"), "FILE.mat"),
+        (("damp", "--drives", "held"), '"given", "force"'),
+        (("damp", "--friction", "none"), "sliding, stuck"),
+    ],
+)
+def test_wrong_arguments_are_refused(flexapod, study, arguments, words):
+    said = flexapod(arguments[0], study(*SHORT), *arguments[1:])
+    assert said.exit_code == 2
+    assert words in said.stderr.replace("\n", " ")

@@ -1,0 +1,159 @@
+"""Motions as GLB files, read by another reader: where their vertices are is where the result says that the robot is."""
+
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.consistency.test_mounts import BASE, TOP
+from tests.readers import GlbReader, z_up
+
+import flexapod as fx
+from flexapod.kinematics.rotations import matrix
+from flexapod.model import Guide, override
+from flexapod.results.names import VARIABLES
+from flexapod.scene.geometry import RobotMotion
+
+SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
+SIDES, STATIONS = 16, 25
+FLOAT32 = 2.0**-23  # of a number: what its storage may lose; half of it by rounding
+ROBOTS = ("paper-robot", "tripod", "hexaglide", "delta", "planar", "in bushings", "on mounts")
+
+
+def study_of(name):
+    study = fx.preset("paper-robot")
+    robot = study.robot
+    if name == "in bushings":
+        legs = tuple(leg.replace(guide=Guide(gland=2e8, head=2e8)) for leg in robot.legs)
+        return override(study.replace(robot=robot.replace(legs=legs)), output_step=0.05)
+    if name == "on mounts":
+        return override(study.replace(robot=robot.replace(base_mount=BASE, platform_mount=TOP)), output_step=0.05)
+    study = fx.load(SAMPLES / f"{name}.toml") if (SAMPLES / f"{name}.toml").exists() else fx.preset(name)
+    return override(study, output_step=0.02)
+
+
+@pytest.fixture(scope="module", params=ROBOTS)
+def motion(request, tmp_path_factory):
+    """A study, its result, and the file of both."""
+    study = study_of(request.param)
+    data = fx.simulate(study)
+    path = tmp_path_factory.mktemp("gltf") / "robot.glb"
+    fx.export(study, "gltf", path, data=data)
+    return study, data, GlbReader(path)
+
+
+def instants(data):
+    return np.linspace(0, data.sizes["time"] - 1, 7).astype(int)
+
+
+def rings(points):
+    """Centres of the rings of a rod's vertices, (stations, 3)."""
+    return points.reshape(-1, SIDES, 3).mean(axis=1)
+
+
+def test_bending_is_that_of_the_result_to_float32(motion):
+    """A tip is bent off its cylinder's axis by `tip_deflection`: a sum of a few products of numbers in float32.
+
+    Rings are means of 16 vertices a radius from the axis; by targets alone nothing of that size is added.
+    """
+    _, data, file = motion
+    for k in instants(data):
+        for i in range(data.sizes["leg"]):
+            bent = rings(file.local(f"piston_{i + 1}", k))[-1, :2]
+            deflection = data.tip_deflection.values[k, i]
+            amplitudes = np.abs(data.lateral_amplitude.values[k, i]).sum()
+            assert np.abs(bent - deflection).max() < 4 * FLOAT32 * max(amplitudes, 1e-9)
+
+
+def test_tips_meet_the_platform_and_pistons_lie_where_the_page_draws_them(motion):
+    """To some float32 of the robot's size; the page's lines lean by small angles: second order of deflections."""
+    study, data, file = motion
+    drawn, size = RobotMotion(study, data), float(study.robot.home_lengths.max())
+    R = matrix(data.platform_quaternion.values)
+    centre = data.com_position.values - R @ study.robot.com
+    lost = 8 * FLOAT32 * size
+    second = np.abs(data.tip_deflection.values).max() ** 2 / size
+    for k in instants(data):
+        joints = study.robot.platform_joints
+        if study.robot.platform_mount is not None:  # they give way in platform axes
+            arms, turn = joints - study.robot.platform_mount.at, data.platform_mount_rotation.values[k]
+            joints = joints + data.platform_mount_displacement.values[k] + np.cross(turn, arms)
+        tips = centre[k] + joints @ R[k].T
+        flexible = drawn.at(float(data.time[k]), 1.0).flexible
+        for i in range(study.robot.count):
+            line = rings(z_up(file.vertices(f"piston_{i + 1}", k)))
+            assert line[-1] == pytest.approx(tips[i], abs=lost)
+            assert line == pytest.approx(flexible.piston[i], abs=lost + second)
+
+
+def test_the_payload_moves_as_the_result_says(motion):
+    study, data, file = motion
+    for time, _ in file.tracks.values():
+        assert time == pytest.approx(data.time.values, rel=FLOAT32)
+    R = matrix(data.platform_quaternion.values)
+    for k in instants(data):
+        T = file.transform(file.nodes["payload"], k)
+        up = file.transform(file.nodes["robot"], k)[:3, :3]
+        assert np.linalg.det(up) == pytest.approx(1) and up @ [0, 0, 1] == pytest.approx([0, 1, 0])
+        assert up.T @ T[:3, :3] == pytest.approx(R[k], abs=8 * FLOAT32)
+        com = up.T @ (T[:3, :3] @ study.robot.com + T[:3, 3])
+        assert com == pytest.approx(
+            data.com_position.values[k], abs=8 * FLOAT32 * float(study.robot.home_lengths.max())
+        )
+
+
+def test_quaternions_go_the_short_way(motion):
+    _, _, file = motion
+    for (_, path), (_, values) in file.tracks.items():
+        if path == "rotation":
+            assert (values[1:] * values[:-1]).sum(axis=1).min() > 0
+
+
+def test_a_node_for_each_body_and_names_of_results_alone(motion):
+    study, _, file = motion
+    count = study.robot.count
+    bodies = {f"{name}_{i + 1}" for name in ("cylinder", "piston") for i in range(count)}
+    bodies |= {f"carriage_{i + 1}" for i, leg in enumerate(study.robot.legs) if leg.carriage is not None}
+    assert set(file.nodes) == bodies | {"robot", "base", "payload"}
+    named = {x["name"].rstrip("0123456789").rstrip("_") for x in file.json["accessors"] if "name" in x}
+    assert named - {"time"} <= set(VARIABLES)
+    targets = [name for mesh in file.json["meshes"] for name in mesh.get("extras", {}).get("targetNames", ())]
+    assert {name.split()[0] for name in targets} <= {"lateral_amplitude", "tip_deflection"}
+    assert "/" not in json.dumps(file.json)
+
+
+def test_deflections_can_be_magnified_and_rigid_robots_do_not_bend(tmp_path):
+    study = study_of("tripod")
+    data = fx.simulate(study, fidelity="rigid")
+    plain = GlbReader(fx.export(study, "gltf", tmp_path / "rigid.glb", data=data).path)
+    assert not any("targets" in x for mesh in plain.json["meshes"] for x in mesh["primitives"])
+    data = fx.simulate(study)
+    bent = [GlbReader(fx.export(study, "gltf", tmp_path / "b.glb", data=data, magnify=m).path) for m in (1.0, 100.0)]
+    one, many = (rings(file.local("piston_1", 20))[-1, :2] for file in bent)
+    assert many == pytest.approx(100 * one, rel=1e-6)
+
+
+def test_a_result_of_something_else_is_refused_and_a_wrong_factor(tmp_path):
+    with pytest.raises(fx.InputError, match=r"magnify = 0.*above 0"):
+        fx.export(study_of("tripod"), "gltf", tmp_path / "a.glb", magnify=0)
+    with pytest.raises(fx.InputError, match=r"data.*a result of flexapod\.simulate"):
+        fx.export(study_of("tripod"), "gltf", tmp_path / "a.glb", data=fx.modes(study_of("tripod")))
+
+
+def test_khronos_validator_finds_nothing(motion, tmp_path):
+    """Their own program, where `npm install gltf-validator` has put it within the reach of node."""
+    script = (
+        "const v = require('gltf-validator'), fs = require('fs');"
+        "v.validateBytes(new Uint8Array(fs.readFileSync(process.argv[1])))"
+        ".then(r => console.log(JSON.stringify(r.issues)));"
+    )
+    path = tmp_path / "robot.glb"
+    study, data, _ = motion
+    fx.export(study, "gltf", path, data=data)
+    try:
+        run = subprocess.run(["node", "-e", script, path], capture_output=True, text=True, check=True, timeout=60)
+    except (OSError, subprocess.CalledProcessError):
+        pytest.skip("gltf-validator is not installed: npm install gltf-validator, and NODE_PATH")
+    issues = json.loads(run.stdout)
+    assert (issues["numErrors"], issues["numWarnings"]) == (0, 0), issues["messages"]

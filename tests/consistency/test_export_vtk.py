@@ -1,0 +1,91 @@
+"""Motions as time series for ParaView, read by another reader: points, displacements and results are the Dataset's."""
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from tests.readers import VtuReader
+
+import flexapod as fx
+from flexapod.kinematics.rotations import matrix
+from flexapod.model import override
+from flexapod.results.names import VARIABLES
+
+SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
+LINE, TRIANGLE, STATIONS = 4, 5, 25
+
+
+@pytest.fixture(scope="module", params=["tripod", "hexaglide"])
+def series(request, tmp_path_factory):
+    """A study, its result, and the files of both by instant."""
+    sample = SAMPLES / f"{request.param}.toml"
+    study = override(fx.load(sample), output_step=0.1)
+    data = fx.simulate(study)
+    found = fx.export(study, "vtk", tmp_path_factory.mktemp("vtk") / "motion.pvd", data=data)
+    return study, data, found
+
+
+def files_of(found):
+    """Instants and files, as the .pvd lists them."""
+    rows = ElementTree.parse(found.path).getroot().findall("Collection/DataSet")
+    assert all(row.get("file").startswith("motion/motion_") for row in rows)
+    return [(float(row.get("timestep")), VtuReader(found.path.parent / row.get("file"))) for row in rows]
+
+
+def test_all_instants_are_listed_and_all_files_are(series):
+    _, data, found = series
+    listed = files_of(found)
+    assert [time for time, _ in listed] == data.time.values.tolist()
+    assert [grid.arrays["FieldData", "TimeValue"] for _, grid in listed] == data.time.values.tolist()
+    assert set(found.files) == {found.path, *(found.path.parent / "motion").iterdir()}
+
+
+def test_points_and_displacements_are_those_of_the_result(series):
+    """The rigid robot where the points are, the flexible one displaced: joints at the platform to rounding, 1e-15 m.
+
+    Pistons bend off the lines that join their ends by `tip_deflection` or less.
+    """
+    study, data, found = series
+    robot, count = study.robot, study.robot.count
+    for k, (_, grid) in enumerate(files_of(found)):
+        points, moved = grid.arrays["Points", "points"], grid.arrays["PointData", "displacement"]
+        pistons = [cell for kind, cell in grid.cells if kind == LINE and len(cell) == STATIONS]
+        assert len(pistons) == count and sum(kind == TRIANGLE for kind, _ in grid.cells) > 3
+        for ending, places in (("_rigid", points), ("", points + moved)):
+            R = matrix(data[f"platform_quaternion{ending}"].values[k])
+            tips = data[f"com_position{ending}"].values[k] + (robot.platform_joints - robot.com) @ R.T
+            for cell, tip in zip(pistons, tips, strict=True):
+                assert places[cell[-1]] == pytest.approx(tip, abs=1e-14)
+        for i, cell in enumerate(pistons):
+            line = (points + moved)[cell]
+            straight = line[0] + np.linspace(0, 1, STATIONS)[:, None] * (line[-1] - line[0])
+            bent = np.linalg.norm(line - straight, axis=1).max()
+            assert bent <= np.linalg.norm(data.tip_deflection.values[k, i]) + 1e-12
+
+
+def test_results_stand_in_cells_and_field_under_their_names(series):
+    study, data, found = series
+    grid, k = files_of(found)[3][1], 3
+    leg = grid.arrays["CellData", "leg"]
+    assert sorted(set(leg)) == list(range(study.robot.count + 1))
+    for (section, name), values in grid.arrays.items():
+        if section == "FieldData" and name != "TimeValue":
+            assert np.array_equal(np.ravel(values), np.ravel(data[name].values[k]), equal_nan=True), name
+        if section == "CellData" and name != "leg":
+            assert np.array_equal(values[leg > 0], data[name].values[k][leg[leg > 0] - 1], equal_nan=True), name
+            assert np.isnan(values[leg == 0]).all()
+    names = {name for section, name in grid.arrays if section in ("FieldData", "CellData")} - {"TimeValue", "leg"}
+    assert names <= set(VARIABLES) and {"com_deviation", "drive_force", "energy_strain"} <= names
+    (words,) = found.left_out
+    assert set(words.split(": ")[1].split(", ")) == set(data.data_vars) - names
+
+
+def test_radii_are_those_of_the_pistons_and_no_path_is_told(series):
+    study, _, found = series
+    grid = files_of(found)[0][1]
+    radius = grid.arrays["PointData", "radius"]
+    piston = next(cell for kind, cell in grid.cells if kind == LINE and len(cell) == STATIONS)
+    assert radius[piston] == pytest.approx(study.robot.legs[0].piston.diameter / 2)
+    for path in found.files:
+        assert str(found.path.parent) not in path.read_text(encoding="ascii")

@@ -1,0 +1,258 @@
+"""Units for co-simulation and the C of a robot against the product's own march."""
+
+import getpass
+import os
+import re
+import socket
+import subprocess
+import zipfile
+from pathlib import Path
+from threading import Thread
+
+import numpy as np
+import pytest
+from tests.fmi_importer import Instance, Unit
+
+import flexapod as fx
+from flexapod.errors import InputError
+from flexapod.exchange.c_source import FLAGS
+from flexapod.model import override
+from flexapod.solve.time import native
+from flexapod.solve.time.recording import Counters, unpack
+from flexapod.solve.time.robot_march import prepare
+from flexapod.symbolic.compiler import compiler
+
+pytestmark = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
+STEP = 5e-4
+EXAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
+
+
+@pytest.fixture(scope="module")
+def units(tmp_path_factory):
+    """Units by study and commands; the file of each."""
+    known = {}
+
+    def unit(name, commands="inputs", step=STEP):
+        if (name, commands) not in known:
+            folder = tmp_path_factory.mktemp("unit")
+            found = fx.export(fx.preset(name), "fmu", folder / "robot.fmu", commands=commands, step=step)
+            known[name, commands] = (Unit(found.path, folder / "unpacked"), found)
+        return known[name, commands]
+
+    return unit
+
+
+@pytest.mark.parametrize("name", ["paper-robot", "machine-hexapod", "tripod"])
+def test_the_built_in_motion_is_the_march(units, name):
+    """The same steps, with commands as series to 1e-13 and vectors that sum in another order: 1e-12 of a metre."""
+    unit, _ = units(name, "motion")
+    data = fx.simulate(fx.preset(name), step=STEP, output_step=STEP, duration=400 * STEP)
+    one, found = Instance(unit), {x: [] for x in ("tool_position", "drive_force", "energy_strain")}
+    for k in range(401):
+        for variable, rows in found.items():
+            rows.append(one.get(variable))
+        if k < 400:
+            assert one.steps(STEP) == 0, one.said
+    assert np.abs(np.array(found["tool_position"]) - data.tool_position.values).max() < 1e-12
+    # forces by the masses over the step's square: 1e-13 m, 10 kg and 4 / h^2 make 2e-5 N of some 200 N
+    error = np.abs(np.array(found["drive_force"]) - data.drive_force.values).max()
+    assert error < 1e-7 * np.abs(data.drive_force.values).max()
+    np.testing.assert_allclose(np.array(found["energy_strain"]).ravel(), data.energy_strain.values, rtol=1e-7)
+
+
+def test_inputs_are_the_march_with_extrapolated_commands(units):
+    """Commands held for 4 steps with rate and acceleration: the table of the march made by the same rule."""
+    many, count = 4, 60
+    unit, _ = units("paper-robot")
+    march = prepare(override(fx.preset("paper-robot"), step=STEP, output_step=STEP))
+    system, law = march.system, march.problem.tables
+    port = int(np.flatnonzero(system.ports == system.kernel.shapes.l_index)[0])
+    table, load = law(np.arange(many * count + 1) * STEP)
+    force = np.array([20.0, -10.0, 5.0, 1.0, 2.0, -3.0])
+    load = load + force * (np.arange(len(load)) > 0)[:, None]
+    for k in range(1, many * count + 1):
+        at, since = (k - 1) // many * many, ((k - 1) % many + 1) * STEP
+        value, rate, change = law(np.array([at * STEP]))[0][0, :, port, :3].T
+        table[k, :, port, :3] = np.stack(
+            [value + since * rate + since**2 * change / 2, rate + since * change, change], 1
+        )
+    flow, _ = native.first_record(system, march.start, table[0], load[0] - force * 0)
+    made = native.advance(system, march.problem.method, flow, STEP, (table, load), many, Counters())
+    wanted = unpack(system, np.zeros(len(made.rows)), made.rows)
+    one = Instance(unit)
+    one.set("wrench", force)
+    for k in range(count):
+        value, rate, change = law(np.array([k * many * STEP]))[0][0, :, port, :3].T
+        one.set("drive_command", value)
+        one.set("drive_command_rate", rate)
+        one.set("drive_command_acceleration", change)
+        assert one.steps(many * STEP) == 0, one.said
+        assert np.abs(one.get("com_position") - wanted.pose[k, :3]).max() < 1e-12
+
+
+def run(unit, count, force=0.0):
+    one = Instance(unit)
+    if force:
+        one.set("control_input", np.full(6, force))
+    return one, [advance(one) for _ in range(count)]
+
+
+def advance(one):
+    assert one.steps(STEP) == 0, one.said
+    return np.concatenate([one.get(x) for x in ("tool_position", "drive_force", "energy_strain")])
+
+
+def test_two_instances_take_turns_and_threads(units):
+    unit, _ = units("nano-hexapod")
+    _, alone = run(unit, 30, 5.0)
+    one, other = Instance(unit), Instance(unit)
+    for x, force in ((one, 5.0), (other, -2.0)):
+        x.set("control_input", np.full(6, force))
+    rows = []
+    for _ in range(30):
+        rows.append(advance(one))
+        advance(other)
+    np.testing.assert_array_equal(rows, alone)
+    found = {}
+    threads = [Thread(target=lambda k=k: found.update({k: run(unit, 30, 5.0)[1]})) for k in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for k in range(3):
+        np.testing.assert_array_equal(found[k], alone)
+
+
+def test_saved_restored_and_reset(units):
+    """To the bit: into the same instance, into another one, and after a reset from the start."""
+    unit, _ = units("nano-hexapod")
+    one, first = run(unit, 13, 5.0)
+    saved, now = one.saved(), one.time
+    ahead = [advance(one) for _ in range(20)]
+    one.restore(saved, now)
+    np.testing.assert_array_equal([advance(one) for _ in range(20)], ahead)
+    other = Instance(unit)
+    other.restore(saved, now)
+    np.testing.assert_array_equal([advance(other) for _ in range(20)], ahead)
+    one.call("Reset")
+    one.time = 0.0
+    one.set("control_input", np.full(6, 5.0))
+    np.testing.assert_array_equal([advance(one) for _ in range(13)], first)
+    assert other.status("DeserializeFMUState", b"x", 1, None) == 3
+
+
+def test_steps_of_any_multiple(units):
+    unit, _ = units("nano-hexapod")
+    _, rows = run(unit, 10, 5.0)
+    one = Instance(unit)
+    one.set("control_input", np.full(6, 5.0))
+    for many, at in ((1, 1), (4, 5), (2, 7), (3, 10)):
+        assert one.steps(many * STEP) == 0
+        np.testing.assert_array_equal(one.get("tool_position"), rows[at - 1][:3])
+    assert one.get("time")[0] == pytest.approx(10 * STEP)
+    assert one.steps(1.5 * STEP) == 3
+    assert "no multiple of the step inside" in one.said[-1]
+    one.time += STEP
+    assert one.steps(STEP) == 3
+    assert "not the time reached" in one.said[-1]
+
+
+def test_a_held_prescribed_stroke_is_refused_in_words(units):
+    unit, _ = units("paper-robot")
+    one = Instance(unit)
+    assert one.steps(STEP) == 0
+    one.set("drive_command", unit.start("drive_command") + 1e-5)
+    assert one.steps(STEP) == 3
+    assert "give drive_command_rate and drive_command_acceleration" in one.said[-1]
+    servo = Instance(units("nano-hexapod")[0])
+    assert servo.steps(STEP) == 0
+    servo.set("drive_command", servo.unit.start("drive_command") + 1e-6)
+    assert servo.steps(STEP) == 0
+
+
+def test_another_token_is_refused(units):
+    unit, _ = units("nano-hexapod")
+    token = unit.root.get("instantiationToken")
+    try:
+        unit.root.set("instantiationToken", "another")
+        with pytest.raises(AssertionError, match="of another unit"):
+            Instance(unit)
+    finally:
+        unit.root.set("instantiationToken", token)
+
+
+def test_names_are_those_of_results(units):
+    unit, _ = units("machine-hexapod", "motion")
+    data = fx.simulate(fx.preset("machine-hexapod"), step=STEP, output_step=STEP, duration=2 * STEP)
+    outputs = [name for name, (_, _, said) in unit.variables.items() if said["causality"] == "output"]
+    assert set(outputs) <= set(data.data_vars)
+    assert {"tool_position", "platform_quaternion", "drive_force", "drive_position", "work_drive"} <= set(outputs)
+    for name in outputs:
+        _, shape, said = unit.variables[name]
+        assert data[name].shape[1:] == shape
+        assert said.get("unit", "mixed") == data[name].units
+        np.testing.assert_allclose(
+            Instance(unit).get(name).reshape(shape), data[name].values[0], rtol=1e-9, atol=1e-9, err_msg=name
+        )
+
+
+def test_nothing_of_this_machine_is_inside(units):
+    _, found = units("nano-hexapod")
+    with zipfile.ZipFile(found.path) as archive:
+        parts = b"".join(archive.read(name) for name in archive.namelist())
+        assert {info.date_time for info in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+    words = {str(Path.home()), os.getcwd(), "/tmp", socket.gethostname(), getpass.getuser()} - {"root", "user"}
+    assert not [
+        word for word in words if len(word) > 2 and re.search(rb"\b" + re.escape(word.encode()) + rb"\b", parts)
+    ]
+    assert b"march=native" not in parts
+
+
+def test_c_under_sanitizers_is_the_unit_to_the_bit(units, tmp_path):
+    unit, _ = units("nano-hexapod")
+    fx.export(fx.preset("nano-hexapod"), "c", tmp_path / "c", step=STEP)
+    one = Instance(unit)
+    assert one.steps(50 * STEP) == 0
+    wanted = [(name, one.get(name)) for name, (_, _, said) in unit.variables.items() if said["causality"] == "output"]
+    command = [*compiler(), *FLAGS, "robot.c", "main.c", "-lm", "-o"]
+    checked = ["-O1", "-Wconversion", "-Werror", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
+    for more, name in (([], "plain"), (checked, "checked")):
+        subprocess.run([*command, name, *more], cwd=tmp_path / "c", check=True)
+        said = subprocess.run(
+            [f"./{name}", "50"], cwd=tmp_path / "c", check=True, capture_output=True, text=True
+        ).stdout
+        numbers = [float(line.split()[1]) for line in said.splitlines()[:-2]]
+        np.testing.assert_array_equal(numbers, np.concatenate([values for _, values in wanted]))
+        assert re.search(r"longest step [\d.e+]+ us, at most [234] iterations", said)
+    text = (tmp_path / "c" / "robot.c").read_text()
+    assert not re.search(r"\b(malloc|calloc|free|printf)\s*\(", text)
+    assert not re.search(r"^static (?!const|inline|void|int|long|double|lanes|Settings|State|Instance|Work|Remembered|"
+                         r"__attribute__|size_t)", text, re.M)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["delta", "flexures", "planar", "strut", "tricept"])
+def test_c_of_other_mechanisms_is_their_march(tmp_path, name):
+    """Hinges, flexures with six closures a leg, a plane, struts, unlike legs: the tool to 1e-12 m."""
+    study = fx.load(EXAMPLES / f"{name}.toml")
+    fx.export(study, "c", tmp_path / "c", commands="motion", step=2e-4)
+    subprocess.run(
+        [*compiler(), *FLAGS, "-O1", "robot.c", "main.c", "-lm", "-o", "run"], cwd=tmp_path / "c", check=True
+    )
+    said = subprocess.run(["./run", "40"], cwd=tmp_path / "c", check=True, capture_output=True, text=True).stdout
+    found = dict(line.rsplit(" ", 1) for line in said.splitlines()[:-2])
+    data = fx.simulate(study, step=2e-4, output_step=2e-4, duration=40 * 2e-4)
+    tool = np.array([float(found[f"tool_position[{k}]"]) for k in (1, 2, 3)])
+    assert np.abs(tool - data.tool_position.values[-1]).max() < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"commands": "stroke"}, "is not known"),
+        ({}, "goes by fixed steps"),
+        ({"pose": None, "modes": 3}, "not an option"),
+    ],
+)
+def test_refusals(tmp_path, given, words):
+    with pytest.raises(InputError, match=words):
+        fx.export(fx.preset("tripod"), "fmu", tmp_path / "robot.fmu", **given)

@@ -1,0 +1,114 @@
+"""Measured responses: universal files as other programs write them, CSV, MATLAB; what is written is read again."""
+
+import numpy as np
+import pytest
+
+import flexapod as fx
+import flexapod.control as fc
+from flexapod.errors import InputError
+from flexapod.exchange.uff import uff
+
+HZ = np.array([1.0, 2.5, 7.0, 11.0])
+
+
+def mode():
+    return fc.StateSpace(
+        A=[[0, 1], [-900.0, -3.0]], B=[[0], [0.5]], C=[[1, 0], [0, 1]], D=[[0], [0]], inputs=("drive:3",),
+        outputs=("tool:z", "geophone:tool:z"), states=("z", "v"),
+        units={"drive:3": "N", "tool:z": "m", "geophone:tool:z": "m s-1"},
+    )  # fmt: skip
+
+
+def complex_values(data):
+    return data.frequency_response.sel(part="real").values + 1j * data.frequency_response.sel(part="imaginary").values
+
+
+@pytest.mark.parametrize(("hz", "digits"), [(HZ, 1e-5), (np.arange(1.0, 9.0), 1e-12)])
+def test_what_is_written_as_universal_file_is_read_again(tmp_path, hz, digits):
+    data = mode().frequency_response(hz)
+    (tmp_path / "a.uff").write_text(uff(data), encoding="ascii")
+    found = fx.read_frf(tmp_path / "a.uff")
+    assert found.output.values.tolist() == list(mode().outputs) and found.input.values.tolist() == ["drive:3"]
+    np.testing.assert_allclose(found.frequency, hz, rtol=digits)  # uneven ones have six digits
+    np.testing.assert_allclose(complex_values(found), mode().at(hz), rtol=1e-11)
+    assert found.output_units.values.tolist() == ["m", "m s-1"] and found.input_units.values.tolist() == ["N"]
+
+
+#: As written by an analyser: single precision, six numbers in a line, even spacing, beside a dataset of another kind.
+ANALYSER = """\
+    -1
+   151
+something else
+    -1
+    -1
+    58
+FRF of the plate
+NONE
+01-Jan-20 12:00:00
+NONE
+NONE
+    4         0    1         0 PLATE             12   3 HAMMER             7  -1
+         5         4         1  1.00000E+00  5.00000E-01  0.00000E+00
+        18    0    0    0 Frequency            Hz
+        12    0    0    0 Acceleration         m/s^2
+        13    0    0    0 Force                N
+         0    0    0    0 NONE                 NONE
+  1.00000E+00  2.00000E+00  3.00000E+00 -4.00000E+00-5.00000E+00  6.00000E+00
+  7.00000E+00  8.00000E+00
+    -1
+"""
+
+
+def test_a_file_of_an_analyser_is_read(tmp_path):
+    (tmp_path / "plate.unv").write_text(ANALYSER)
+    found = fx.read_frf(tmp_path / "plate.unv")
+    assert found.output.item() == "PLATE 12:z" and found.input.item() == "HAMMER 7:-x"
+    np.testing.assert_allclose(found.frequency, [1.0, 1.5, 2.0, 2.5])
+    np.testing.assert_allclose(complex_values(found)[0, 0], [1 + 2j, 3 - 4j, -5 + 6j, 7 + 8j])
+    assert found.output_units.item() == "m/s^2" and found.input_units.item() == "N"
+
+
+def test_tables_are_read(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text(
+        "frequency [Hz],tool:z/drive:1 real,tool:z/drive:1 imag,magnitude [dB],phase [deg]\n1,2,3,20,90\n2,4,5,0,180\n"
+    )
+    found = fx.read_frf(path)
+    assert found.output.values.tolist() == ["tool:z", "response 2"]
+    values = complex_values(found)
+    np.testing.assert_allclose(values[0, 0], [2 + 3j, 4 + 5j])
+    np.testing.assert_allclose(values[1, 1], [10j, -1], atol=1e-14)
+    assert np.isnan(values[0, 1]).all()  # not measured
+
+
+def test_matlab_files_are_read(tmp_path):
+    from scipy.io import savemat
+
+    H = np.arange(12.0).reshape(2, 1, 6) * (1 + 2j)
+    named = {"outputs": np.array(["a", "b"], dtype=object), "inputs": np.array(["u"], dtype=object)}
+    savemat(tmp_path / "a.mat", {"f": np.arange(6.0), "H": H, **named})
+    found = fx.read_frf(tmp_path / "a.mat")
+    assert found.output.values.tolist() == ["a", "b"]
+    np.testing.assert_allclose(complex_values(found), H)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("a.txt", "", r"Allowed: \.uff, \.unv"),
+        ("a.uff", "nothing", "no frequency response"),
+        ("a.uff", ANALYSER.replace("    58", "   58b"), "binary dataset 58"),
+        ("a.uff", ANALYSER.replace("         5         4", "         5         9"), "has 4 of 9 values"),
+        ("a.csv", "f,a,b,c\n1,2,3,4\n", "has 4 columns"),
+        ("a.csv", "f,a,b\n1,2,x\n", "cannot be understood"),
+    ],
+)
+def test_other_files_are_refused(tmp_path, name, text, words):
+    (tmp_path / name).write_text(text)
+    with pytest.raises(InputError, match=words):
+        fx.read_frf(tmp_path / name)
+
+
+def test_a_missing_file_is_refused(tmp_path):
+    with pytest.raises(InputError, match="cannot be read"):
+        fx.read_frf(tmp_path / "none.uff")
