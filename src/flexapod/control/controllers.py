@@ -13,7 +13,7 @@ from flexapod.arrays import Array
 from flexapod.control import laws
 from flexapod.control.channels import RATE, Names, chosen
 from flexapod.control.interconnect import law_of
-from flexapod.control.laws import Law, Number
+from flexapod.control.laws import ControlLaw, Number
 from flexapod.control.state_space import StateSpace
 from flexapod.errors import InputError
 
@@ -53,7 +53,7 @@ class Controller(ABC):
 
 
 def assembled(
-    columns: Sequence[Law], into: Array, out: Array, sensors: Sequence[str], actuators: Sequence[str],
+    columns: Sequence[ControlLaw], into: Array, out: Array, sensors: Sequence[str], actuators: Sequence[str],
     units: Mapping[str, str],
 ) -> StateSpace:  # fmt: skip
     """Laws between matrices: u = `out` (actuators, k) . laws (k) . `into` (k, sensors) y, Eq. (T21.12)."""
@@ -82,7 +82,7 @@ def assembled(
 class Decentralised(Controller):
     """Each actuator by the sensor of the same place, u_i = -law(y_i), Eq. (T21.13)."""
 
-    law: Law
+    law: ControlLaw
     _: KW_ONLY
     sensor: Names
     actuator: Names = "drive"
@@ -169,7 +169,7 @@ class PID(Controller):
 class Fused(Controller):
     """Two sensors of one motion, the first below, the second above a `corner` [Hz], u_i = -law(L y_i + H z_i)."""
 
-    law: Law
+    law: ControlLaw
     _: KW_ONLY
     low: Names
     high: Names
@@ -193,7 +193,7 @@ class Decoupled(Controller):
 
     Parameters
     ----------
-    law : Law or sequence of Law
+    law : ControlLaw or sequence of ControlLaw
         One for all directions, or one each.
     into : ndarray, shape (k, sensors)
         Directions by readings, for example the inverse of a Jacobian.
@@ -201,7 +201,7 @@ class Decoupled(Controller):
         Actuators by what the directions ask for, for example the inverse of its transpose.
     """
 
-    law: Law | Sequence[Law]
+    law: ControlLaw | Sequence[ControlLaw]
     _: KW_ONLY
     into: Array
     out: Array
@@ -214,7 +214,7 @@ class Decoupled(Controller):
         actuators = [inputs[i] for i in chosen(self.actuator, inputs, "actuator")]
         into, out = np.atleast_2d(np.asarray(self.into, float)), np.asarray(self.out, float)
         out = out[:, None] if out.ndim == 1 else out
-        given = [self.law] * len(into) if isinstance(self.law, Law) else list(self.law)
+        given = [self.law] * len(into) if isinstance(self.law, ControlLaw) else list(self.law)
         shapes = {"into": (into, (len(given), len(sensors))), "out": (out, (len(actuators), len(given)))}
         for key, (matrix, shape) in shapes.items():
             if matrix.shape != shape:

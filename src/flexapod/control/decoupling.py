@@ -1,4 +1,4 @@
-"""Matrices that decouple sensors and actuators: by Jacobians, modes, singular vectors, (T21.36)-(T21.39)."""
+"""Decoupling that decouple sensors and actuators: by Jacobians, modes, singular vectors, (T21.36)-(T21.39)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from flexapod.arrays import Array
 from flexapod.control.channels import Names
 from flexapod.control.controllers import Decoupled
-from flexapod.control.laws import Law
+from flexapod.control.laws import ControlLaw
 from flexapod.errors import ComputationError, InputError
 from flexapod.units import to_si
 
@@ -20,31 +20,33 @@ if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
     from flexapod.model import Robot
 
-__all__ = ["Matrices", "by_jacobian", "by_modes", "by_singular_vectors", "centre_of_stiffness", "robot_jacobian"]
+__all__ = ["Decoupling", "by_jacobian", "by_modes", "by_singular_vectors", "centre_of_stiffness", "robot_jacobian"]
 
 INDEPENDENT = 1e-9  # smallest over largest singular value of what still has an inverse
 
 
 @dataclass(frozen=True, kw_only=True)
-class Matrices:
+class Decoupling:
     """Directions by readings ``into`` (k, sensors), actuators by directions ``out`` (actuators, k), Eq. (T21.16)."""
 
     into: Array
     out: Array
 
-    def controller(self, law: Law | Sequence[Law], *, sensor: Names = "stroke", actuator: Names = "drive") -> Decoupled:
+    def controller(
+        self, law: ControlLaw | Sequence[ControlLaw], *, sensor: Names = "stroke", actuator: Names = "drive"
+    ) -> Decoupled:
         """A controller with a law, or one each, in these directions."""
         return Decoupled(law, into=self.into, out=self.out, sensor=sensor, actuator=actuator)
 
 
-def by_jacobian(jacobian: ArrayLike) -> Matrices:
+def by_jacobian(jacobian: ArrayLike) -> Decoupling:
     """Motion of a point by strokes, drive forces by its wrench, Eq. (T21.36), from strokes by its motion (m, d).
 
     With the centre of mass masses do not couple, with the centre of stiffness springs do not.
     """
     J = np.atleast_2d(np.asarray(jacobian, dtype=float))
     inverse = _inverse(J, "jacobian")
-    return Matrices(into=inverse, out=inverse.T)
+    return Decoupling(into=inverse, out=inverse.T)
 
 
 def robot_jacobian(robot: Robot, at: Literal["com", "cok"] | ArrayLike = "com", stiffness: ArrayLike = 1.0) -> Array:
@@ -87,7 +89,7 @@ def centre_of_stiffness(jacobian: ArrayLike, stiffness: ArrayLike = 1.0) -> Arra
 def by_modes(
     system: StateSpace, *, sensor: Names = "stroke", actuator: Names = "drive", count: int | None = None,
     above: float | str = 0.0,
-) -> Matrices:  # fmt: skip
+) -> Decoupling:  # fmt: skip
     """Amplitudes of the slowest modes by readings, and forces that drive each alone, Eq. (T21.38).
 
     Parameters
@@ -118,12 +120,12 @@ def by_modes(
         raise ComputationError(f"there are {len(modes)} modes that vibrate, fewer than {k}")
     into = np.stack([_real(shown[:, i]) for i in modes[:k]], axis=1)
     out = np.stack([_real(left[i]) for i in modes[:k]])
-    return Matrices(into=_inverse(into, "sensor"), out=_inverse(out, "actuator"))
+    return Decoupling(into=_inverse(into, "sensor"), out=_inverse(out, "actuator"))
 
 
 def by_singular_vectors(
     system: StateSpace, hz: float | str, *, sensor: Names = "stroke", actuator: Names = "drive"
-) -> Matrices:
+) -> Decoupling:
     """Singular vectors of a real matrix near the response at a frequency, Eq. (T21.39): G ~ U S V'."""
     at = to_si(hz, "frequency", key="hz")
     G = system.select(actuator, sensor).at(at)[:, :, 0]
@@ -133,7 +135,7 @@ def by_singular_vectors(
     turn = np.exp(0.5j * np.angle(np.diag(G @ D @ G.T)))
     real = np.linalg.pinv(D @ (G.conj().T @ np.diag(turn)).real)
     U, _, Vt = np.linalg.svd(real)
-    return Matrices(into=U.T, out=Vt.T)
+    return Decoupling(into=U.T, out=Vt.T)
 
 
 def _real(shape: np.ndarray) -> Array:

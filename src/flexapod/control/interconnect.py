@@ -64,7 +64,7 @@ def _readings(system: StateSpace, readings: tuple[str, ...]) -> Readings:
 
 
 @runtime_checkable
-class Placed(Protocol):
+class OnChannels(Protocol):
     """What finds its channels among those of a system, as `controllers.Controller`."""
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str]) -> StateSpace:
@@ -73,10 +73,10 @@ class Placed(Protocol):
 
 
 def law_of(
-    controller: Placed | StateSpace, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str]
+    controller: OnChannels | StateSpace, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str]
 ) -> StateSpace:
     """A controller between channels of a system; a state space is one itself, with channels that the system has."""
-    if isinstance(controller, Placed):
+    if isinstance(controller, OnChannels):
         return controller.on(outputs, inputs, units)
     for name in controller.inputs:
         chosen(name.removeprefix(RATE), outputs, "sensor")

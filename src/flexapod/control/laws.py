@@ -14,7 +14,7 @@ from flexapod.errors import InputError
 from flexapod.units import to_si
 
 __all__ = [
-    "Law",
+    "ControlLaw",
     "complementary",
     "gain",
     "high_pass",
@@ -31,7 +31,7 @@ Number = float | str
 
 
 @dataclass(frozen=True, kw_only=True)
-class Law:
+class ControlLaw:
     """x' = A x + B (y, y'), out = C x + D (y, y') of one reading y with its rate y', Eq. (T21.6).
 
     The rate stands beside the reading, so that laws with a pure derivative have a state space: of a linear system the
@@ -45,7 +45,7 @@ class Law:
     D: Array
 
     @classmethod
-    def of(cls, numerator: Sequence[float], denominator: Sequence[float] = (1.0,)) -> Law:
+    def of(cls, numerator: Sequence[float], denominator: Sequence[float] = (1.0,)) -> ControlLaw:
         """Numerator over denominator, powers of s with the highest first; at most one zero more than poles."""
         top, bottom = (
             np.trim_zeros(np.asarray(numerator, float), "f"),
@@ -75,15 +75,15 @@ class Law:
         """Whether the rate of the reading matters."""
         return bool(self.B[:, 1].any() or self.D[1])
 
-    def __mul__(self, other: Law | float) -> Law:
+    def __mul__(self, other: ControlLaw | float) -> ControlLaw:
         """A number of times the law, or one law behind the other: their transfers multiply, Eq. (T21.7)."""
-        if not isinstance(other, Law):
-            return Law(A=self.A, B=self.B, C=float(other) * self.C, D=float(other) * self.D)
+        if not isinstance(other, ControlLaw):
+            return ControlLaw(A=self.A, B=self.B, C=float(other) * self.C, D=float(other) * self.D)
         first, second = (self, other) if not other.uses_rate else (other, self)
         if second.uses_rate:
             raise InputError("both take rates: their product needs a rate of a rate", key="law")
         n, m = len(first.A), len(second.A)
-        return Law(
+        return ControlLaw(
             A=np.block([[first.A, np.zeros((n, m))], [np.outer(second.B[:, 0], first.C), second.A]]),
             B=np.vstack([first.B, np.outer(second.B[:, 0], first.D)]),
             C=np.concatenate([second.D[0] * first.C, second.C]),
@@ -92,10 +92,10 @@ class Law:
 
     __rmul__ = __mul__
 
-    def __add__(self, other: Law) -> Law:
+    def __add__(self, other: ControlLaw) -> ControlLaw:
         """Two laws side by side: their outputs add."""
         n, m = len(self.A), len(other.A)
-        return Law(
+        return ControlLaw(
             A=np.block([[self.A, np.zeros((n, m))], [np.zeros((m, n)), other.A]]),
             B=np.vstack([self.B, other.B]),
             C=np.concatenate([self.C, other.C]),
@@ -110,69 +110,75 @@ class Law:
         return (moved[..., 0] @ self.C) + self.D @ given
 
 
-def gain(value: float) -> Law:
+def gain(value: float) -> ControlLaw:
     """A number."""
-    return Law.of([value])
+    return ControlLaw.of([value])
 
 
-def rate(value: float, low_pass: Number | None = None) -> Law:
+def rate(value: float, low_pass: Number | None = None) -> ControlLaw:
     """A number times the rate; `low_pass` [Hz]: corner above which it is the reading's."""
-    return Law.of([value, 0.0]) if low_pass is None else Law.of([value, 0.0], [1 / _omega(low_pass, "low_pass"), 1.0])
+    return (
+        ControlLaw.of([value, 0.0])
+        if low_pass is None
+        else ControlLaw.of([value, 0.0], [1 / _omega(low_pass, "low_pass"), 1.0])
+    )
 
 
-def integrator(value: float, high_pass: Number = 0.0) -> Law:
+def integrator(value: float, high_pass: Number = 0.0) -> ControlLaw:
     """Integral above the corner `high_pass` [Hz], below it a number: value / (s + w), Eq. (T21.8)."""
-    return Law.of([value], [1.0, _omega(high_pass, "high_pass", least=0.0)])
+    return ControlLaw.of([value], [1.0, _omega(high_pass, "high_pass", least=0.0)])
 
 
-def low_pass(corner: Number, order: int = 1, damping: float = 0.5**0.5) -> Law:
+def low_pass(corner: Number, order: int = 1, damping: float = 0.5**0.5) -> ControlLaw:
     """1 at rest, above the corner [Hz] falling with a power of one or two; of order 2 with a damping ratio."""
     w = _omega(corner, "corner")
-    return Law.of([1.0], _of_order(order, [1 / w, 1.0], [1 / w**2, 2 * damping / w, 1.0]))
+    return ControlLaw.of([1.0], _of_order(order, [1 / w, 1.0], [1 / w**2, 2 * damping / w, 1.0]))
 
 
-def high_pass(corner: Number, order: int = 1, damping: float = 0.5**0.5) -> Law:
+def high_pass(corner: Number, order: int = 1, damping: float = 0.5**0.5) -> ControlLaw:
     """1 far above the corner [Hz], below it falling with a power of one or two."""
     w = _omega(corner, "corner")
     top = _of_order(order, [1 / w, 0.0], [1 / w**2, 0.0, 0.0])
-    return Law.of(top, _of_order(order, [1 / w, 1.0], [1 / w**2, 2 * damping / w, 1.0]))
+    return ControlLaw.of(top, _of_order(order, [1 / w, 1.0], [1 / w**2, 2 * damping / w, 1.0]))
 
 
-def lead(crossing: Number, ratio: float) -> Law:
+def lead(crossing: Number, ratio: float) -> ControlLaw:
     """(1 + s h / w) / (1 + s / (h w)) / h: size 1 at the crossing [Hz], phase most there, Eq. (T21.9)."""
     w = _omega(crossing, "crossing")
     if not ratio > 0:
         raise InputError("is not above 0", key="ratio", value=ratio)
-    return Law.of([1 / w, 1 / ratio], [1 / (ratio * w), 1.0])
+    return ControlLaw.of([1 / w, 1 / ratio], [1 / (ratio * w), 1.0])
 
 
-def notch(frequency: Number, damping: float = 0.5, depth: float = 0.0) -> Law:
+def notch(frequency: Number, damping: float = 0.5, depth: float = 0.0) -> ControlLaw:
     """1 but about a frequency [Hz], where it is `depth`; `damping`: how broad, Eq. (T21.10)."""
     w = _omega(frequency, "frequency")
-    return Law.of([1.0, 2 * depth * damping * w, w**2], [1.0, 2 * damping * w, w**2])
+    return ControlLaw.of([1.0, 2 * depth * damping * w, w**2], [1.0, 2 * damping * w, w**2])
 
 
-def pid(proportional: float, integral: float = 0.0, derivative: float = 0.0, low_pass: Number | None = None) -> Law:
+def pid(
+    proportional: float, integral: float = 0.0, derivative: float = 0.0, low_pass: Number | None = None
+) -> ControlLaw:
     """Reading, integral and rate, each times a number; `low_pass` [Hz] of the rate alone."""
     law = gain(proportional)
     law = law + integrator(integral) if integral else law
     return law + rate(derivative, low_pass) if derivative else law
 
 
-def positive_feedback(frequency: Number, damping: float, value: float) -> Law:
+def positive_feedback(frequency: Number, damping: float, value: float) -> ControlLaw:
     """What positive position feedback passes on of a reading: value w^2 / (s^2 + 2 zeta w s + w^2)."""
     w = _omega(frequency, "frequency")
-    return Law.of([value * w**2], [1.0, 2 * damping * w, w**2])
+    return ControlLaw.of([value * w**2], [1.0, 2 * damping * w, w**2])
 
 
-def complementary(corner: Number, order: int = 1) -> tuple[Law, Law]:
+def complementary(corner: Number, order: int = 1) -> tuple[ControlLaw, ControlLaw]:
     """Low-pass and high-pass that add up to 1 and fall with the power `order` outside of their bands, Eq. (T21.11)."""
     if order not in (1, 2, 3):
         raise InputError("is not an order of complementary filters", key="order", value=order, allowed="1, 2, 3")
     w, n = _omega(corner, "corner"), 2 * order - 1
     terms = [comb(n, k) * w**k for k in range(n + 1)]  # of (s + w)^n
     above = [*terms[:order], *[0.0] * (n + 1 - order)]
-    return Law.of(terms[order:], terms), Law.of(above, terms)
+    return ControlLaw.of(terms[order:], terms), ControlLaw.of(above, terms)
 
 
 def _of_order(order: int, one: list[float], two: list[float]) -> list[float]:

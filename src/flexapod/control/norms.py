@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from flexapod.arrays import Array
 from flexapod.control.integrators import integrators, moved_and_shown, reached
-from flexapod.control.reduction import Part, apart
+from flexapod.control.reduction import Subsystem, apart
 from flexapod.errors import ComputationError
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ def _h2_of(A: Array, b: Array, C: Array, d: Array, sample: float | None) -> tupl
     return np.sqrt(np.maximum(power, 0.0)), words
 
 
-def _lasting(part: Part) -> list[str]:
+def _lasting(part: Subsystem) -> list[str]:
     """What lasts in each output, in words; "" where nothing of it is seen."""
     words = [""] * len(part.C)
     if not len(part.A):

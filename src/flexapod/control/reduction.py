@@ -17,14 +17,14 @@ from flexapod.units import to_si
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
 
-__all__ = ["Part", "apart", "reduced"]
+__all__ = ["Subsystem", "apart", "reduced"]
 
 EQUAL = 1e-6  # relative distance of frequencies that stay together
 STATIC = 1e-9  # size of a pole over the largest below which it has no static response
 
 
 @dataclass(frozen=True, kw_only=True)
-class Part:
+class Subsystem:
     """A system whose poles are some of another's: A (n, n), B (n, m), C (p, n)."""
 
     A: Array
@@ -32,10 +32,10 @@ class Part:
     C: Array
 
 
-def apart(A: Array, B: Array, C: Array, first: Callable[[complex], bool]) -> tuple[Part, Part]:
+def apart(A: Array, B: Array, C: Array, first: Callable[[complex], bool]) -> tuple[Subsystem, Subsystem]:
     """Two systems side by side that add up to one: poles for which `first` holds, and the others, Eq. (T21.23)."""
     if not len(A):
-        return Part(A=A, B=B, C=C), Part(A=A, B=B, C=C)
+        return Subsystem(A=A, B=B, C=C), Subsystem(A=A, B=B, C=C)
     A, change = scipy.linalg.matrix_balance(A)
     B, C = np.asarray(np.linalg.solve(change, B), dtype=float), C @ change
     ordered: Any = scipy.linalg.schur(A, output="real", sort=lambda re, im: first(complex(re, im)))
@@ -43,8 +43,8 @@ def apart(A: Array, B: Array, C: Array, first: Callable[[complex], bool]) -> tup
     B, C = Z.T @ B, C @ Z
     # (T21.23)  [1 X; 0 1] takes the coupling away: T11 X - X T22 = -T12
     X = scipy.linalg.solve_sylvester(T[:k, :k], -T[k:, k:], -T[:k, k:])
-    near = Part(A=T[:k, :k], B=B[:k] - X @ B[k:], C=C[:, :k])
-    return near, Part(A=T[k:, k:], B=B[k:], C=C[:, k:] + C[:, :k] @ X)
+    near = Subsystem(A=T[:k, :k], B=B[:k] - X @ B[k:], C=C[:, :k])
+    return near, Subsystem(A=T[k:, k:], B=B[k:], C=C[:, k:] + C[:, :k] @ X)
 
 
 def reduced(system: StateSpace, modes: int | None, below: float | str | None, residual: bool) -> StateSpace:

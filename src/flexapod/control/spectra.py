@@ -30,7 +30,7 @@ GROUPS = {"floor": "floor", "wrench": "wrench", "force_noise": "drive"}
 
 
 @dataclass(frozen=True, kw_only=True)
-class Shaken:
+class OutputsAsModes:
     """What an integral over frequency asks of a linear system: outputs stand in place of modes."""
 
     system: StateSpace
@@ -70,7 +70,7 @@ def shaken(system: StateSpace, sources: Sources) -> tuple[RandomVibration, float
         )
         for one in every
     ]
-    model = Shaken(system=used)
+    model = OutputsAsModes(system=used)
     found, coarse = random_vibration(model, every, refine=2), random_vibration(model, every)
     error = np.divide(coarse.rms, found.rms, out=np.ones_like(found.rms), where=found.rms > 0) - 1.0
     return found, float(np.abs(error).max(initial=0.0))

@@ -18,6 +18,7 @@ from flexapod.document.study import modes_section, study_items
 from flexapod.errors import FlexapodError
 from flexapod.report.curves import MOST_POINTS
 from flexapod.report.figures import Drawn
+from flexapod.report.linear import linear_section
 from flexapod.results.bodies import bodies_words
 from flexapod.results.summary import POINT_WORDS, RobotSummary, summaries
 from flexapod.runtime.files import scratch, write_text
@@ -57,6 +58,7 @@ THINNED = (
     "Drag over a figure to zoom, double-click to see all again; point at a curve to read it. Curves of more than "
     f"{MOST_POINTS} points are thinned for this page, and keep their least and largest values; the data are whole."
 )
+TITLES = {"linear": "Linear model"}  # of links, where they are not the name
 STILLS = ("robot", "path")  # figures that stand for the replay on paper
 _PACKAGES = ("flexapod", "numpy", "scipy", "casadi", "xarray", "matplotlib", "plotly")
 
@@ -85,7 +87,8 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[
     modes = modes_section(study, described)
     budget = peak_budget(data) if isinstance(first, RobotSummary) else None
     moving, others = _replay(study, data, figures)
-    parts = {"replay": moving, "figures": others, "modes": modes}
+    linear = linear_section(study)
+    parts = {"replay": moving, "figures": others, "modes": modes, "linear": linear}
     numbers = {"deviation": "Deviation"} if isinstance(first, RobotSummary) else {"deflection": "Deflection"}
     links = {
         **numbers,
@@ -93,7 +96,7 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[
         "warnings": "Warnings",
         "study": "Study",
     }
-    links |= {part: part.capitalize() for part, there in parts.items() if there}
+    links |= {part: TITLES.get(part, part.capitalize()) for part, there in parts.items() if there}
     links |= {"solver": "Solver", "toml": "Study file", "repeat": "Repeat"}
     body = [
         *(*(found.sentence for found in further), *bodies_words(data)),
@@ -108,6 +111,7 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[
         *moving,
         *figures_section("figures", "Figures", others),
         *modes,
+        *linear,
         html.section("solver", "Solver", [solver_table(data)]),
         html.section("toml", "Study file", [Lines(str(data.attrs["study"]))]),
         repeat_section("Save the study file above as study.toml, then", "flexapod run study.toml --out results"),

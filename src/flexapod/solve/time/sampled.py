@@ -15,7 +15,7 @@ from flexapod.kinematics.robot import robot_limbs
 from flexapod.kinematics.rotations import quaternion
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Leg, Robot
-from flexapod.solve.linear.channels import Channel, asked
+from flexapod.solve.linear.channels import PlantChannel, asked
 from flexapod.solve.statics.drive_forces import force_ports, push_ports
 from flexapod.solve.system import Flow, System
 from flexapod.solve.time.tables import Law
@@ -258,7 +258,7 @@ def _reading(name: str, system: System, robot: Robot, start: Array) -> _Reading:
     )
 
 
-def _single(name: str, robot: Robot, key: str) -> Channel:
+def _single(name: str, robot: Robot, key: str) -> PlantChannel:
     found = asked(name, robot, key)
     if len(found) != 1 or found[0].name != name:
         raise InputError(
