@@ -1,23 +1,23 @@
-"""A single actuator whose tip follows what its rigid beam would do, Eqs. (T22.23)-(T22.24)."""
+"""A single actuator whose tip follows what its rigid beam would do, by (T20.25) and (T22.20)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.control import StateSpace
 from flexapod.errors import InputError
 from flexapod.feedforward.inversion import Inverse, answer, inverse
 from flexapod.feedforward.table import saved
 from flexapod.model import ActuatorStudy, CsvLaw, MotionLaw, RateLaw
-from flexapod.solve.linear.actuator import actuator_states
+from flexapod.solve.shapes import home
+from flexapod.study.linear import linearize
 from flexapod.words import text
 
-__all__ = ["TipStudy", "beam_plant", "tip_inversion"]
+__all__ = ["TipStudy", "tip_inversion"]
 
 Drives = Literal["given", "force"]
 ROWS = 4000  # of a table at most
@@ -56,18 +56,12 @@ class TipStudy:
         return f"TipStudy({self.sentence})"
 
 
-def beam_plant(study: ActuatorStudy, drives: Drives) -> StateSpace:
-    """From the torque on its hub [N m], or what the hub is told [rad/s^2], to the tip across the beam [m], (T20.25)."""
-    free, input = (("rotation",), "drive:rotation") if drives == "force" else ((), "command:rotation")
-    found = actuator_states(study.actuator, study.simulation, [input], ["tip:rotation"], rate=0.0, free=free)
-    return StateSpace(**{f.name: getattr(found, f.name) for f in fields(found)})
-
-
 def tip_inversion(study: ActuatorStudy, drives: Drives = "given", out: str | Path | None = None) -> TipStudy:
     """A study whose tip follows the path that a rigid beam would have; see `compensate`."""
     law, moving = _refuse(study, drives)
-    turned, length = beam_plant(study, "given"), study.actuator.free_length
-    used = turned if drives == "given" else beam_plant(study, drives)
+    turned = linearize(study, inputs="command:rotation", outputs="tip:rotation")
+    pushed = linearize(study, inputs="drive:rotation", outputs="tip:rotation", drives="force")
+    used, length = turned if drives == "given" else pushed, home(study.actuator)["extension"]
     found = inverse(used, moving, lambda t: length * kinematics.motion_law(law, t).acceleration)
     wanted = kinematics.motion_law(law, np.clip(found.time, 0.0, moving))
     bend = np.where((found.time >= 0) & (found.time <= moving), wanted.acceleration, 0.0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, get_args
+from typing import Literal, get_args, overload
 
 from flexapod.errors import InputError
 from flexapod.feedforward.beam import tip_inversion
@@ -17,6 +17,26 @@ __all__ = ["compensate"]
 Order = Literal[0, 2, "stable-inversion"]
 
 
+@overload
+def compensate(
+    study: ActuatorStudy,
+    order: Order = ...,
+    *,
+    corrections: int = ...,
+    as_built: bool = ...,
+    drives: Literal["given", "force"] = ...,
+    out: FileLike | None = ...,
+) -> ActuatorStudy: ...
+@overload
+def compensate(
+    study: RobotLike,
+    order: Order = ...,
+    *,
+    corrections: int = ...,
+    as_built: bool = ...,
+    drives: Literal["given", "force"] = ...,
+    out: FileLike | None = ...,
+) -> Study: ...
 @one_thread()
 def compensate(
     study: RobotLike | ActuatorStudy,

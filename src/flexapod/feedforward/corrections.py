@@ -8,7 +8,7 @@ from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.feedforward.loaded import LoadedPath
-from flexapod.feedforward.series import Series, series_of
+from flexapod.feedforward.series import CorrectionSeries, series_of
 from flexapod.kinematics import Law
 from flexapod.model import AxisMotion, CombinedMotion, ConstantWrench, CsvMotion, Study, WaypointMotion
 from flexapod.review.checks import check_path
@@ -21,7 +21,7 @@ JUMPING = ("trapezoid", "linear")  # profiles whose accelerations jump
 LEAST = 1e-9  # m, rad: of corrections that are smaller rounding is a part
 
 
-def static_series(path: LoadedPath, corrections: int, knots: Array) -> Series:
+def static_series(path: LoadedPath, corrections: int, knots: Array) -> CorrectionSeries:
     """What to add to the coordinates of a path between knots [s]."""
     return series_of(lambda t: _correction(path, t, corrections), knots, TAIL, LEAST)
 

@@ -1,4 +1,4 @@
-"""Commands of a robot that make up for its elastic motion, before the path begins and after, Eqs. (T22.25)-(T22.26)."""
+"""Commands of a robot that make up for its elastic motion, before the path begins and after, Eqs. (T22.23)-(T22.24)."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def elastic_commands(study: Study, moving: float) -> Ahead:
     """What to add to a path that moves for so long [s], so that the tool of the linear robot does not leave it.
 
     Elastic motion along the path, matrices as they change, is made up for by the inverse of its transfer in the
-    middle of the path, (T22.25), anew until it is.
+    middle of the path, (T22.23), anew until it is.
     """
     middle = linear_path(study, np.array([0.5 * moving]))
     first, reach = middle.modes.frequency[0, 0], TIMES * np.nanmax(middle.modes.frequency[0, :MODE])
@@ -155,7 +155,7 @@ def _pose_rows(study: Study, at: LinearPath) -> Array:
 
 
 def _inverse(study: Study, at: LinearPath, instant: float, laplace: Complex, reach: float) -> Complex:
-    """Pose to command by the pose that is wanted (f, 6, 6) about one pose of the path, up to a reach, Eq. (T22.26)."""
+    """Pose to command by the pose that is wanted (f, 6, 6) about one pose of the path, up to a reach, Eq. (T22.24)."""
     now = kinematics.coordinates(study.motion, np.array([instant]))
     none, each = np.zeros((6, 6)), np.eye(6)
     law = Law(np.repeat(now.position, 6, axis=0), none, each)

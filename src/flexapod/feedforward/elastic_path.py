@@ -1,4 +1,4 @@
-"""A motion that brings the tool of an elastic robot onto its path in motion, Eqs. (T22.25)-(T22.26)."""
+"""A motion that brings the tool of an elastic robot onto its path in motion, Eqs. (T22.23)-(T22.24)."""
 
 from __future__ import annotations
 

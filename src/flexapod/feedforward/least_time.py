@@ -17,7 +17,7 @@ from flexapod.feedforward.drive_loads import Given, limits_of
 from flexapod.feedforward.switching import Switched, switched
 from flexapod.feedforward.table import saved
 from flexapod.feedforward.vibration import vibration_along
-from flexapod.feedforward.way import Way
+from flexapod.feedforward.way import StraightWay
 from flexapod.model import Study
 from flexapod.results.arguments import FileLike, PoseLike, RobotLike, as_pose, as_study
 from flexapod.results.poses import coordinates_of
@@ -137,7 +137,7 @@ def fastest(
     limits, bound = limits_of(study, speed, acceleration, force), to_si(residual, "length", key="residual")
     if bound <= 0:
         raise InputError("is not a bound", key="residual", value=residual, allowed="above 0 m")
-    way = Way(study, limits, *_ends(study, start, end))
+    way = StraightWay(study, limits, *_ends(study, start, end))
     low, place = way.without_vibration()
     rough = way.study(low, place)
     duration, place = way.bounded(low, place, bound)

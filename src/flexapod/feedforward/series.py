@@ -12,7 +12,7 @@ from numpy.polynomial.chebyshev import chebder, chebval, chebvander
 from flexapod.arrays import Array
 from flexapod.kinematics import Law
 
-__all__ = ["Series", "series_of"]
+__all__ = ["CorrectionSeries", "series_of"]
 
 NODES = 17  # of a piece, ends included: neighbours meet there
 LAST = 3  # coefficients that say what is left out
@@ -22,7 +22,7 @@ _TO_SERIES = np.linalg.inv(chebvander(_NODES, NODES - 1))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Series:
+class CorrectionSeries:
     """Of m functions: ``edges`` (n + 1,) [s], ``coefficients`` (n, NODES, m); ``tail``: the last over the largest."""
 
     edges: Array
@@ -43,7 +43,7 @@ class Series:
         return Law(*found)
 
 
-def series_of(compute: Callable[[Array], Array], knots: Array, enough: float, least: float = 0.0) -> Series:
+def series_of(compute: Callable[[Array], Array], knots: Array, enough: float, least: float = 0.0) -> CorrectionSeries:
     """Series of a function between knots (n,) [s]; pieces are halved until what is left out is `enough` of the largest.
 
     Parameters
@@ -70,4 +70,4 @@ def series_of(compute: Callable[[Array], Array], knots: Array, enough: float, le
     done.sort(key=lambda piece: piece[0])
     tail = max(piece[3] for piece in done) / largest if largest else 0.0
     edges = np.array([done[0][0], *(piece[1] for piece in done)])
-    return Series(edges=edges, coefficients=np.array([piece[2] for piece in done]), tail=float(tail))
+    return CorrectionSeries(edges=edges, coefficients=np.array([piece[2] for piece in done]), tail=float(tail))

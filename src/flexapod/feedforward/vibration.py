@@ -20,7 +20,7 @@ from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.statics.locked import LockedPoses
 from flexapod.solve.statics.stiffness import tool_motion
 
-__all__ = ["LinearPath", "Vibration", "followed", "forces", "linear_path", "vibration_along"]
+__all__ = ["LinearPath", "PathVibration", "followed", "forces", "linear_path", "vibration_along"]
 
 POSES = 25  # along a path, between which matrices follow cubic splines
 FINE, OF = 24, 3  # steps in a period of the third mode: the first may be far below what a path shakes
@@ -53,7 +53,7 @@ class LinearPath:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Vibration:
+class PathVibration:
     """Motion of the tool (T, 3) [m] beside where it rests at each pose, at instants (T,) [s]; without friction."""
 
     time: Array
@@ -103,7 +103,7 @@ def _refuse_loops(study: Study) -> None:
         )
 
 
-def vibration_along(study: Study, moving: float, until: float) -> Vibration:
+def vibration_along(study: Study, moving: float, until: float) -> PathVibration:
     """What the inertia of a study's path, which is at rest after `moving` [s], makes the tool do until an instant.
 
     M z'' + D z' + K z = -flat^T f, (T22.12): matrices along the path by Gauss' formula of order 4, (T22.13), afterwards
@@ -115,7 +115,7 @@ def vibration_along(study: Study, moving: float, until: float) -> Vibration:
     edges, x = followed(at, lambda t: forces(at, kinematics.poses(study.robot, study.motion, t))[..., None])
     tool = np.einsum("txd,td->tx", CubicSpline(at.time, at.tool)(edges), x[:, 0, :, 0])
     later, rest = _at_rest(at, x[-1, 0, :, 0], x[-1, 1, :, 0], until - moving)
-    return Vibration(time=np.append(edges, moving + later), tool=np.concatenate([tool, rest]))
+    return PathVibration(time=np.append(edges, moving + later), tool=np.concatenate([tool, rest]))
 
 
 def followed(at: LinearPath, acting: Callable[[Array], Array], least: int = LEAST) -> tuple[Array, Array]:

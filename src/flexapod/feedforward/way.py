@@ -16,7 +16,7 @@ from flexapod.kinematics import Law
 from flexapod.model import CsvMotion, Study
 from flexapod.results.path import RigidPath
 
-__all__ = ["Way"]
+__all__ = ["StraightWay"]
 
 ROWS = 48  # of the table of the way: cubic acceleration between them
 LOOKS = 4  # instants between two rows at which limits hold
@@ -28,7 +28,7 @@ FINE = 5e-3  # of the time
 SHARE = 0.9  # of the bound for vibration that the way is made for: linear in its places
 
 
-class Way:
+class StraightWay:
     """A way from pose to pose: its law, drives along it, what it makes the robot do."""
 
     def __init__(self, study: Study, limits: DriveLimits, first: Array, last: Array) -> None:

@@ -141,7 +141,7 @@ def _loaded_path() -> Iterator[Check]:
     motion = model.CombinedMotion(amplitudes={"roll": 0.3, "surge": 0.05, "yaw": 0.1}, duration=1.0)  # type: ignore[arg-type]
     ahead = compensate(study.replace(motion=motion))
     for t in (0.0, 0.37, 1.0):
-        wanted, told = (coordinates(x, np.array([t])).position[0] for x in (motion, ahead.motion))  # type: ignore[arg-type]
+        wanted, told = (coordinates(x, np.array([t])).position[0] for x in (motion, ahead.motion))
         off = _where(study.robot, told)[0] - _pose(study.robot, wanted)[0]
         yield Check(f"t = {t:g} s", 0.0, float(np.linalg.norm(off)), 2e-11, "m", absolute=True)
 
