@@ -24,6 +24,15 @@ def forgotten(request: pytest.FixtureRequest) -> Iterator[None]:
             value.cache_clear()
 
 
+@pytest.fixture
+def uncompiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Kernels are interpreted: a few matrices of a robot that no other test has are no work for a compiler."""
+    from tests.runs import uncompiled_kernel
+
+    for place in ("robot_system", "time.actuator_march"):
+        monkeypatch.setattr(f"flexapod.solve.{place}.kernel", uncompiled_kernel)
+
+
 @pytest.hookimpl(tryfirst=True)  # cases are counted in the order in which they are collected
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:

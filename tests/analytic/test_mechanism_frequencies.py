@@ -11,7 +11,6 @@ from tests.chains import NAMED
 from tests.consistency.test_mechanism_kinematics import AMPLITUDES, OWN
 from tests.mechanisms import PISTON, ROBOTS, THREE, built, hexapod, leg, ring, tangents
 from tests.oracles import frames
-from tests.runs import uncompiled_kernel
 
 import flexapod as fx
 from flexapod.model.cylinder import Cylinder
@@ -20,6 +19,7 @@ from flexapod.model.leg import Leg
 from flexapod.model.payload import Payload
 from flexapod.model.piston import Piston
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
 FOUR = np.arange(4) * 90.0
 BARE = {"cylinder": Cylinder(mass=0.0, mouth=0.0), "piston": Piston(length=0.8, EA=1.1e8, EI=5e3, rhoA=4.5)}
 PLATE = Payload(mass=500.0, inertia=[40.0, 50.0, 60.0], com=[0.0, 0.0, 0.0])
@@ -34,12 +34,6 @@ CASES = {name: make for name, make in ROBOTS.items() if name != "1-UPS"} | {
     "table": table,
     "welded 6-UPF": lambda: hexapod("UPF"),
 }
-
-
-@pytest.fixture(autouse=True)
-def uncompiled(monkeypatch):
-    """A few matrices are no work for a compiler."""
-    monkeypatch.setattr("flexapod.solve.robot_system.kernel", uncompiled_kernel)
 
 
 def unloaded(name):

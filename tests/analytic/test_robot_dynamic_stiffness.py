@@ -11,7 +11,6 @@ import pytest
 from scipy.linalg import block_diag, eigh
 from scipy.optimize import brentq
 from tests.oracles import beams
-from tests.runs import uncompiled_kernel
 
 from flexapod import modes
 from flexapod.model import ServoDrive, preset
@@ -19,6 +18,7 @@ from flexapod.verify import dynamic_stiffness, locked_robot
 from flexapod.verify.locked_robot import legs_and_body
 from flexapod.verify.robots import unlike_legs, without_cylinders, without_gravity
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
 PISTON = beams.round_section(0.027, 200e9, 7800.0)
 HOME = (0.0,) * 6
 ROLLED = (0.01, -0.02, 0.03, np.deg2rad(20.0), 0.05, 0.1)
@@ -40,12 +40,6 @@ def pinned(leg):
         return dynamic_stiffness.below((K[:2, :2], held))
 
     return count
-
-
-@pytest.fixture(autouse=True)
-def uncompiled(monkeypatch):
-    """A few matrices of each number of shapes are no work for a compiler."""
-    monkeypatch.setattr("flexapod.solve.robot_system.kernel", uncompiled_kernel)
 
 
 @cache

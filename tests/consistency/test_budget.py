@@ -39,6 +39,7 @@ ROBOTS = {
 }
 
 
+@pytest.mark.usefixtures("uncompiled")
 @pytest.mark.parametrize("kind", ROBOTS)
 def test_systematic_rows_add_up_to_the_static_deviation_of_any_mechanism(kind):
     robot, pose = (x() if callable(x) else x for x in ROBOTS[kind])
@@ -72,6 +73,7 @@ IDEAL = {
 }
 
 
+@pytest.mark.usefixtures("uncompiled")
 @pytest.mark.parametrize("name", IDEAL)
 def test_a_part_made_ideal_takes_its_row_out_of_the_total(name):
     robot = real()
@@ -235,6 +237,7 @@ def test_a_map_has_the_budget_of_each_of_its_poses():
     assert "error_worst" not in fx.workspace_map(robot, {"heave": np.array([0.0, 0.02])})
 
 
+@pytest.mark.usefixtures("uncompiled")
 @pytest.mark.parametrize("kind", ["3-RPS", "6-PUS", "3-UPS+UP", "8-UPS"])
 def test_joints_made_ideal_take_their_row_out_of_other_mechanisms(kind):
     robot, pose = (x() if callable(x) else x for x in ROBOTS[kind])

@@ -7,15 +7,10 @@ import pytest
 from tests.chains import as_mechanism
 from tests.mechanisms import ROBOTS
 from tests.oracles import welded
-from tests.runs import uncompiled_kernel
 
 import flexapod as fx
 
-
-@pytest.fixture(autouse=True)
-def uncompiled(monkeypatch):
-    """A few matrices are no work for a compiler."""
-    monkeypatch.setattr("flexapod.solve.robot_system.kernel", uncompiled_kernel)
+pytestmark = pytest.mark.usefixtures("uncompiled")
 
 
 @pytest.mark.parametrize("name", ["3-RPS", "6-PUS"])

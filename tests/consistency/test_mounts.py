@@ -393,6 +393,7 @@ def test_maps_take_the_plates_along():
     assert float(found.dynamic_deviation[0]) > payload
 
 
+@pytest.mark.usefixtures("uncompiled")
 def test_legs_buckle_as_without_mounts():
     """Their matrices have the coordinates of the plates, which read more; that was forgotten once."""
     robot = machine()

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from tests.mechanisms import eight
-from tests.runs import uncompiled_kernel
 
 from flexapod.kinematics import Poses
 from flexapod.model import Simulation
@@ -35,9 +34,9 @@ def least_energy(robot, position, turn, lengths):
     return thrust
 
 
+@pytest.mark.usefixtures("uncompiled")
 @pytest.mark.parametrize("fidelity", ["lumped", "assumed-modes"])
-def test_a_leg_that_is_too_long(fidelity, monkeypatch):
-    monkeypatch.setattr("flexapod.solve.robot_system.kernel", uncompiled_kernel)
+def test_a_leg_that_is_too_long(fidelity):
     robot = eight().replace(gravity=[0, 0, 0])
     position, turn = (
         robot.home_position + np.array([0.03, -0.02, 0.04]),

@@ -7,7 +7,6 @@ import pytest
 from tests.beam_frames import as_frame
 from tests.chains import NAMED, PLANES, as_mechanism
 from tests.oracles import frames, virtual_power
-from tests.runs import uncompiled_kernel
 
 import flexapod as fx
 from flexapod.model import PrescribedDrive
@@ -81,9 +80,9 @@ def test_forces_balance_mujocos_trees(name):
     np.testing.assert_allclose(data["joint_force_rigid"].values[:, seen], tips[:, seen], rtol=0, atol=1e-8 * size)
 
 
+@pytest.mark.usefixtures("uncompiled")
 @pytest.mark.parametrize("name", [*NAMES, *PRESETS])
-def test_first_frequencies(name, monkeypatch):
-    monkeypatch.setattr("flexapod.solve.robot_system.kernel", uncompiled_kernel)  # a few matrices
+def test_first_frequencies(name):
     robot = loaded(name).robot
     robot = locked(robot).replace(gravity=[0, 0, 0])
     exact = frames.frequencies(*as_frame(robot), 5, digits=1e-10)

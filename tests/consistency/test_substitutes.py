@@ -62,6 +62,7 @@ def dense_frequencies(system, state, wrench):
     return np.sqrt(eigh(K, N.T @ dense.M @ N, eigvals_only=True)) / (2 * np.pi)
 
 
+@pytest.mark.usefixtures("uncompiled")
 @pytest.mark.parametrize("fidelity", ["assumed-modes", "lumped"])
 @pytest.mark.parametrize("kind", MOVES)
 def test_states_have_the_same_names_at_all_poses_and_the_modes_of_a_dense_null_space(kind, fidelity):
