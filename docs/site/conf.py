@@ -61,6 +61,7 @@ html_theme = "pydata_sphinx_theme"
 html_title = "flexapod"
 html_static_path = [str(ROOT / "docs" / "site" / "static"), str(ROOT / "build" / "katex" / "static")]
 html_css_files = ["katex.min.css", "flexapod.css"]
+html_search_scorer = str(ROOT / "docs" / "site" / "scorer.js")
 html_show_sourcelink = False
 html_copy_source = False
 html_sidebars = {"index": [], "changelog": [], "contributing": []}

@@ -78,6 +78,12 @@ class Output(NamedTuple):
     """A result of an element, a number for each instant and leg.
 
     ``of``: gives it from parameters and coordinates by name, as the energies do; arrays over time.
+
+    Examples
+    --------
+    >>> force = fx.Output("force", "N", "force of the seal along the leg", lambda p, q: p.k * q.z)
+    >>> force.name, force.units
+    ('force', 'N')
     """
 
     name: str
@@ -91,6 +97,12 @@ class Contribution(NamedTuple):
 
     ``size`` [m], or what gives it by the length of the leg [m]: a standard deviation of ``kind`` "random", half of the
     width of "hysteretic"; ``how`` it is computed; ``stands``: a random one is the same at each approach of one machine.
+
+    Examples
+    --------
+    >>> seat = fx.Contribution("seat", "hysteretic", 1e-6, "half of the seat's play")
+    >>> seat.kind, seat.size, seat.stands
+    ('hysteretic', 1e-06, False)
     """
 
     name: str

@@ -51,7 +51,13 @@ def _none() -> SX:
 
 @dataclass(frozen=True, kw_only=True)
 class Energies:
-    """Kinetic energy, potential of gravity, strain energy and Rayleigh function of a part; zero where not given."""
+    """Kinetic energy, potential of gravity, strain energy and Rayleigh function of a part; zero where not given.
+
+    Examples
+    --------
+    >>> fx.Energies(strain=0.5 * 8.0 * 0.5**2).strain  # J; of numbers, or of coordinates
+    1.0
+    """
 
     kinetic: SX = field(default_factory=_none)
     gravity: SX = field(default_factory=_none)

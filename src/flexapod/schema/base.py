@@ -47,6 +47,11 @@ class Key:
 
     `usual`: what holds where it is left out, in words, where its default does not say it. `short`: "number" or "text"
     where one may stand for the value.
+
+    Examples
+    --------
+    >>> fx.Key("of the seal", usual="none").why
+    'of the seal'
     """
 
     def __init__(self, why: str = "", *, usual: str = "", short: str = "") -> None:
@@ -61,6 +66,12 @@ class Quantity(Key):
     ``Annotated[float | None, Quantity("length", above=0, why="of the screw")]``; of several dimensions, where another
     field decides which, the widest range counts. The lower end concerns numbers that cannot be 0: what may be 0 may be
     next to it as well. `above`, `least`, `most`, `below`: limits of a number.
+
+    Examples
+    --------
+    >>> stiffness = fx.Quantity("stiffness", above=0, why="of the spring")
+    >>> stiffness.dimensions, stiffness.limits
+    (('stiffness',), {'gt': 0.0})
     """
 
     def __init__(
