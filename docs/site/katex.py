@@ -22,15 +22,14 @@ TAG = re.compile(r"\\tag\{(T\d+\.\d+[a-z]?)\}")
 
 
 def fetched(folder: Path) -> None:
-    """KaTeX as `package-lock.json` says, from npm, with its hash checked; once."""
-    lock = (HERE / "package-lock.json").read_bytes()
-    known = folder / "package-lock.json"
-    if known.exists() and known.read_bytes() == lock and (folder / "static" / "katex.min.css").exists():
+    """KaTeX of the version in `package.json`, from npm; once."""
+    wanted, known = HERE / "package.json", folder / "package.json"
+    if known.exists() and known.read_bytes() == wanted.read_bytes() and (folder / "static" / "katex.min.css").exists():
         return
     folder.mkdir(parents=True, exist_ok=True)
-    for name in ("package.json", "package-lock.json"):
-        shutil.copy(HERE / name, folder)
-    if npm(["ci", "--ignore-scripts", "--no-audit", "--no-fund", "--silent", "--prefix", str(folder)]):
+    shutil.copy(wanted, folder)
+    quiet = ["--no-package-lock", "--ignore-scripts", "--no-audit", "--no-fund", "--silent"]
+    if npm(["install", *quiet, "--prefix", str(folder)]):
         known.unlink()
         raise SystemExit("KaTeX could not be had from npm; the site needs it for its formulas")
     dist = folder / "node_modules" / "katex" / "dist"

@@ -10,6 +10,7 @@ import numpy as np
 
 from flexapod.errors import ComputationError, InputError
 from flexapod.runtime.files import replacing
+from flexapod.runtime.loading import loaded
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
@@ -20,7 +21,7 @@ __all__ = ["save", "to_control"]
 def to_control(system: StateSpace) -> Any:
     """See `StateSpace.to_control`."""
     try:
-        import control
+        control: Any = loaded("control")  # it has no types
     except ImportError:
         raise ComputationError(
             "python-control is not installed", next_step='pip install "flexapod[control]", or pip install control'
