@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from flexapod import model
 from flexapod.exchange.c_source_data import OF_PAYLOAD, Channel, Marched, marched
-from flexapod.exchange.written import Written
+from flexapod.exchange.content import Content
 from flexapod.integration import GeneralizedAlpha
 from flexapod.solve.kernel import FOR_LOOPS, Equations, text_of_one_unit
 from flexapod.solve.time import native
@@ -28,7 +28,7 @@ WIDER = 2  # memory with vectors of another width against that with those of thi
 _COUNTS = ("n", "rows", "leg_p", "joint", "command", "common", "plate", "posed", "floor", "bristles", "loop")
 
 
-def c(study: model.Study, commands: str = "inputs", step: float | None = None) -> Written:
+def c(study: model.Study, commands: str = "inputs", step: float | None = None) -> Content:
     """A folder with the C of a robot in fixed steps.
 
     Parameters
@@ -41,7 +41,7 @@ def c(study: model.Study, commands: str = "inputs", step: float | None = None) -
 
     Returns
     -------
-    Written
+    Content
         `robot.h`, `robot.c`, `main.c`.
 
     Raises
@@ -56,7 +56,7 @@ def c(study: model.Study, commands: str = "inputs", step: float | None = None) -
         "Numbers are the same to the bit for one set of flags; vectors of another width (-mavx, -mavx512f) sum in "
         "another order.",
     )
-    return Written(
+    return Content(
         files=texts(found) | {"main.c": (HERE / "main.c").read_text()}, left_out=found.left_out, remarks=remarks
     )
 

@@ -8,10 +8,10 @@ from flexapod import kinematics, model
 from flexapod.arrays import Array
 from flexapod.elements.known import refuse_tables
 from flexapod.errors import InputError
+from flexapod.exchange.content import Content
 from flexapod.exchange.decks import Deck, number
 from flexapod.exchange.decks_legs import LegAtPose, PayloadAtPose, axial_inertia, legs_at_pose
 from flexapod.exchange.decks_robot import Carriers, drive_shift, write_leg, write_payload
-from flexapod.exchange.written import Written
 from flexapod.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.statics.locked import the_equilibrium
@@ -81,11 +81,11 @@ def abaqus(
     title: str = "Robot with locked drives",
     elements: int = ELEMENTS,
     modes: int = MODES,
-) -> Written:
+) -> Content:
     """The deck, an ASCII text, and what it does not have; arguments as of `abaqus_deck`."""
     text = abaqus_deck(study, pose, load=load, elements=elements, modes=modes, title=title)
     words = text.encode("ascii", errors="replace").decode()
-    return Written(files={"": words}, left_out=tuple(left_out(study.robot)))
+    return Content(files={"": words}, left_out=tuple(left_out(study.robot)))
 
 
 def _written(study: model.Study, pose: PoseLike, elements: int, modes: int, title: str) -> str:

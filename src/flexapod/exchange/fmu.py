@@ -15,7 +15,7 @@ from flexapod import model
 from flexapod.errors import InputError
 from flexapod.exchange.c_source import FLAGS, texts
 from flexapod.exchange.c_source_data import Channel, Marched, marched
-from flexapod.exchange.written import Written
+from flexapod.exchange.content import Content
 from flexapod.symbolic.compiler import shared_object
 from flexapod.version import __version__
 
@@ -40,7 +40,7 @@ UNITS: Mapping[str, Mapping[str, int]] = {
 }
 
 
-def fmu(study: model.Study, commands: str = "inputs", step: float | None = None) -> Written:
+def fmu(study: model.Study, commands: str = "inputs", step: float | None = None) -> Content:
     """A robot in fixed steps as an FMU, with a binary for this kind of machine and its sources.
 
     Parameters
@@ -53,7 +53,7 @@ def fmu(study: model.Study, commands: str = "inputs", step: float | None = None)
 
     Returns
     -------
-    Written
+    Content
         One file.
 
     Raises
@@ -78,7 +78,7 @@ def fmu(study: model.Study, commands: str = "inputs", step: float | None = None)
         f"Steps inside are {found.march.step:g} s long: communication steps are multiples. Inputs at a communication "
         "point hold until the next; commands of drives go on by their rates and accelerations.",
     )
-    return Written(files={"": _zipped(files)}, left_out=found.left_out, remarks=remarks)
+    return Content(files={"": _zipped(files)}, left_out=found.left_out, remarks=remarks)
 
 
 def _machine() -> tuple[str, str]:

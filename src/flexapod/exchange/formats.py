@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from flexapod import model
 from flexapod.errors import InputError, closest
-from flexapod.exchange.written import Written
+from flexapod.exchange.content import Content
 from flexapod.results.arguments import LoadLike, PoseLike, RobotLike, at_pose
 from flexapod.runtime.files import replacing
 from flexapod.runtime.loading import loaded
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Format:
-    """A format: `module` below `flexapod.exchange` and `function` there, which returns what is `Written`.
+    """A format: `module` below `flexapod.exchange` and `function` there, which returns what is `Content`.
 
     The function takes the study, and of the `options` of `export` those that are given, by their names. `endings` of
     the file, none: it is a folder; `noun`, `words`: what it is; `named`: how it has to be named; `by_name`: what is
@@ -109,7 +109,7 @@ FORMATS: Mapping[str, Format] = {
 
 @dataclass(frozen=True, kw_only=True)
 class Exported:
-    """What was written: `path`, a file or a folder; `files`, all of them; `left_out`, `remarks` as of `Written`.
+    """What was written: `path`, a file or a folder; `files`, all of them; `left_out`, `remarks` as of `Content`.
 
     Stands for its path wherever a path is asked for.
     """
@@ -190,7 +190,7 @@ def written(study: model.Study, format: str, path: Path, given: Mapping[str, obj
     check_options(format, given)
     check_place(format, path)
     named = {"name": path.name} if kind.by_name else {}
-    found: Written = getattr(loaded(f"flexapod.exchange.{kind.module}"), kind.function)(study, **named, **given)
+    found: Content = getattr(loaded(f"flexapod.exchange.{kind.module}"), kind.function)(study, **named, **given)
     beside = path.parent if kind.endings else path
     places = {beside / name if name else path: content for name, content in found.files.items()}
     for place, content in places.items():

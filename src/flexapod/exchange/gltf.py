@@ -8,9 +8,9 @@ import numpy as np
 
 from flexapod import model
 from flexapod.arrays import Array
+from flexapod.exchange.content import Content
 from flexapod.exchange.drawn import DrawnRobot, drawn_robot
 from flexapod.exchange.glb import TRIANGLES, VERTICES, Entry, Glb
-from flexapod.exchange.written import Written
 from flexapod.kinematics.rotations import quaternion
 from flexapod.scene.colours import LEG_COLORS
 from flexapod.scene.geometry import orientation, plate, tube, tube_faces
@@ -28,7 +28,7 @@ UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # x y z w: z up to y up
 STILL = 1e-12  # m: what moves less stands
 
 
-def gltf(study: model.Study, *, data: Dataset | None = None, magnify: float = 1.0) -> Written:
+def gltf(study: model.Study, *, data: Dataset | None = None, magnify: float = 1.0) -> Content:
     """The motion of a result of the study, which is simulated where none is given, deflections `magnify` times larger.
 
     Metres, y up. Nodes `cylinder_i` stand in the base joints, their children `piston_i` begin at the mouth and are one
@@ -45,7 +45,7 @@ def gltf(study: model.Study, *, data: Dataset | None = None, magnify: float = 1.
     left = ["forces, energies and all other results: they are in the Dataset", "friction, oil, motors"]
     left += ["how the shapes of pistons change with the stroke: they are those at home"] * robot.changing
     left += ["how the base plate moves on its mount: its joints do"] * (study.robot.base_mount is not None)
-    return Written(files={"": file.content(root, "motion")}, left_out=tuple(left))
+    return Content(files={"": file.content(root, "motion")}, left_out=tuple(left))
 
 
 def _material(file: Glb, name: str, colour: str) -> int:

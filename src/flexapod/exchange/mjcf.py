@@ -9,9 +9,9 @@ import numpy as np
 
 from flexapod import kinematics, model
 from flexapod.elements.known import refuse_tables
+from flexapod.exchange.content import Content
 from flexapod.exchange.mjcf_springs import Drive, LegSprings, flexible_springs, rigid_springs
 from flexapod.exchange.mjcf_trees import LEAST, Gives, leg_body, numbers, payload_inertia
-from flexapod.exchange.written import Written
 from flexapod.kinematics.rotations import quaternion
 from flexapod.results.arguments import as_pose
 from flexapod.solve.statics.released import rigid_forces
@@ -22,7 +22,7 @@ NAMES = {"l": ("leg_length_command", "actuator_force"), "chi": ("drive_command",
 _WIDTH = 110
 
 
-def mjcf(study: model.Study, *, fidelity: str | None = None) -> Written:
+def mjcf(study: model.Study, *, fidelity: str | None = None) -> Content:
     """The robot as MJCF, SI units, at home.
 
     Legs stretch and bend as far as the study's fidelity says; ``fidelity = "rigid"``: not at all.
@@ -50,7 +50,7 @@ def mjcf(study: model.Study, *, fidelity: str | None = None) -> Written:
         f'<keyframe><key name="home" ctrl="{numbers(_home(robot, springs))}"/></keyframe>',
         "</mujoco>",
     ])  # fmt: skip
-    return Written(files={"": text + "\n"}, left_out=tuple(missing), remarks=(_remark(springs),))
+    return Content(files={"": text + "\n"}, left_out=tuple(missing), remarks=(_remark(springs),))
 
 
 def left_out(study: model.Study, rigid: bool) -> list[str]:

@@ -65,7 +65,7 @@ RIGID = Gives()
 
 
 @dataclass(frozen=True, kw_only=True)
-class Link:
+class TreeBody:
     """A body: its frame in that of the one that carries it, joints and inertia as text, and what it carries."""
 
     name: str
@@ -73,7 +73,7 @@ class Link:
     turn: Array
     joints: Sequence[str] = ()
     parts: Sequence[str] = ()
-    inside: Sequence[Link] = ()
+    inside: Sequence[TreeBody] = ()
 
     @property
     def text(self) -> str:
@@ -88,7 +88,7 @@ def joint(name: str, kind: str, axis: Array, spring: JointSpring | None = None, 
     return f'<joint name="{name}" type="{kind}" axis="{numbers(axis)}"{more}{held}/>'
 
 
-def leg_body(robot: Robot, limbs: kinematics.Limbs, i: int, gives: Gives = RIGID, looks: bool = False) -> Link:
+def leg_body(robot: Robot, limbs: kinematics.Limbs, i: int, gives: Gives = RIGID, looks: bool = False) -> TreeBody:
     """Leg i at home: `carriage`, `cylinder`, `piston`, of a piston that bends its outer part `bend`, and `tip`.
 
     A joint of a coordinate (`kinematics.COORDINATES`) has its name and the number of the leg: that of the carriage, of
@@ -112,7 +112,7 @@ def leg_body(robot: Robot, limbs: kinematics.Limbs, i: int, gives: Gives = RIGID
         return [joint(f"{name}_{number}", "hinge", axes[name], gives.joints.get(name)) for name in moving]
 
     spun = leg.letters.stroke == "C"
-    ends = [Link(
+    ends = [TreeBody(
         name=f"tip_{number}", place=none, turn=limbs.leg_frames[i], joints=held("gamma1", "gamma2", "gamma3"),
         parts=[inertial(0, 0, 0, 0)],
     )] * bool(limbs.pose_closure[i])  # fmt: skip
@@ -127,7 +127,7 @@ def leg_body(robot: Robot, limbs: kinematics.Limbs, i: int, gives: Gives = RIGID
     ]
     tube = leg.cylinder
     seen = [_capsule(0.0, tube.mouth, 1.5 * _radius(leg))] * (looks and tube.mouth > 0)
-    cylinder = Link(
+    cylinder = TreeBody(
         name=f"cylinder_{number}", place=none if leg.carriage else limbs.base[i],
         turn=limbs.frames[i] @ exponential(tilt), joints=[*base, *held("alpha", "beta", *["spin"] * (not spun))],
         parts=[inertial(tube.mass, tube.com, tube.inertia, tube.axial_inertia), *seen], inside=[piston],
@@ -135,13 +135,13 @@ def leg_body(robot: Robot, limbs: kinematics.Limbs, i: int, gives: Gives = RIGID
     return _carriage(leg, limbs, i, gives, cylinder)
 
 
-def _carriage(leg: Leg, limbs: kinematics.Limbs, i: int, gives: Gives, cylinder: Link) -> Link:
+def _carriage(leg: Leg, limbs: kinematics.Limbs, i: int, gives: Gives, cylinder: TreeBody) -> TreeBody:
     if leg.carriage is None:
         return cylinder
     kind, at = ("hinge" if leg.carriage.kind == "crank" else "slide"), numbers(-limbs.carriage_arm[i])
     more = f' pos="{at}" armature="{numbers(leg.carriage.inertia)}"'
     more += f' ref="{numbers(gives.begin)}"' * bool(gives.begin)
-    return Link(
+    return TreeBody(
         name=f"carriage_{i + 1}",
         place=limbs.base[i],
         turn=np.eye(3),
@@ -152,8 +152,8 @@ def _carriage(leg: Leg, limbs: kinematics.Limbs, i: int, gives: Gives, cylinder:
 
 
 def _piston(
-    leg: Leg, number: int, home: float, gives: Gives, joints: Sequence[str], ends: Sequence[Link], looks: bool
-) -> Link:
+    leg: Leg, number: int, home: float, gives: Gives, joints: Sequence[str], ends: Sequence[TreeBody], looks: bool
+) -> TreeBody:
     """The piston, in two parts where it bends: it is cut in the middle of its free part."""
     rod, still = leg.piston, np.eye(3)
     place = home * ALONG
@@ -161,14 +161,14 @@ def _piston(
     if cut is None:
         seen = [_capsule(-min(rod.length, home), 0.0, _radius(leg))] * looks
         parts = [_rod(leg, rod.length, 0.0), *seen]
-        return Link(name=f"piston_{number}", place=place, turn=still, joints=joints, parts=parts, inside=ends)
+        return TreeBody(name=f"piston_{number}", place=place, turn=still, joints=joints, parts=parts, inside=ends)
     middle, half = -0.5 * cut.free * ALONG, 0.5 * cut.free
     seen = [_capsule(-half, half, _radius(leg))] * looks
     bends = [joint(f"bend_{name}_{number}", "slide", way, cut.across) for name, way in zip("xy", ACROSS, strict=True)]
     bends.append(joint(f"bend_z_{number}", "slide", ALONG, cut.along))
     bends += [joint(f"turn_{name}_{number}", "hinge", way, cut.turn) for name, way in zip("xy", ACROSS, strict=True)]
     bends += [joint(f"twist_{number}", "hinge", ALONG, cut.twist)] * (cut.twist is not None)
-    outer = Link(
+    outer = TreeBody(
         name=f"bend_{number}",
         place=middle,
         turn=still,
@@ -177,7 +177,7 @@ def _piston(
         inside=[replace(end, place=-middle) for end in ends],
     )
     parts = [_rod(leg, rod.length - half, -half)]
-    return Link(name=f"piston_{number}", place=place, turn=still, joints=joints, parts=parts, inside=[outer])
+    return TreeBody(name=f"piston_{number}", place=place, turn=still, joints=joints, parts=parts, inside=[outer])
 
 
 def _rod(leg: Leg, length: float, end: float) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from flexapod import model
-from flexapod.exchange.written import Written
+from flexapod.exchange.content import Content
 from flexapod.results.arguments import LoadLike, PoseLike
 from flexapod.runtime.files import scratch
 from flexapod.study.linear import linearize
@@ -20,7 +20,7 @@ def state_space(
     load: LoadLike = None,
     inputs: Sequence[str] | None = None,
     outputs: Sequence[str] | None = None,
-) -> Written:
+) -> Content:
     """A, B, C, D with names and units of `flexapod.linearize`, in the format that `name` ends in.
 
     Without names all of a robot's own: wrench, commands and floor in, tool, strokes and drive forces out. Drives that
@@ -37,4 +37,4 @@ def state_space(
     with scratch() as folder:
         content = found.save(folder / Path(name).name).read_bytes()
     left = ["all that is not linear about the equilibrium", "frequencies above those of the shapes"]
-    return Written(files={"": content}, left_out=tuple(left))
+    return Content(files={"": content}, left_out=tuple(left))

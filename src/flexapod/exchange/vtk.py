@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from flexapod import model
 from flexapod.arrays import Array
 from flexapod.errors import InputError
-from flexapod.exchange.written import Written
+from flexapod.exchange.content import Content
 from flexapod.scene.geometry import RobotMotion, plate
 from flexapod.scene.skeleton import Scene, Skeleton
 from flexapod.study.simulation import simulate
@@ -27,7 +27,7 @@ TYPES = {"f": "Float64", "i": "Int64", "u": "UInt8"}
 HEAD = '<?xml version="1.0"?>\n<VTKFile type="{}" version="1.0" byte_order="LittleEndian" header_type="UInt64">\n'
 
 
-def vtk(study: model.Study, *, name: str, data: Dataset | None = None) -> Written:
+def vtk(study: model.Study, *, name: str, data: Dataset | None = None) -> Content:
     """The motion of a result of the study, which is simulated where none is given, as file `name`.
 
     It lists those of all instants in a folder beside it. Points stand where the rigid robot is; `displacement` brings
@@ -49,7 +49,7 @@ def vtk(study: model.Study, *, name: str, data: Dataset | None = None) -> Writte
         own = {"TimeValue": np.array([float(t)])} | {name: np.reshape(x[k], (1, -1)) for name, x in field.items()}
         files[place] = _grid(cells, found.rigid, found.flexible, own, {name: x[k] for name, x in legs.items()})
     others = [str(name) for name in data.data_vars if name not in field and name not in legs]
-    return Written(
+    return Content(
         files=files,
         left_out=(f"results that are neither of a leg nor of the whole robot: {', '.join(others)}",) * bool(others),
         remarks=("In ParaView: Warp By Vector with `displacement`, Tube with `radius`.",),

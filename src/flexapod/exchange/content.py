@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)
-class Written:
+class Content:
     """A study in some format.
 
     `files`: contents by name, that of the file itself is "", others are beside it, or in the folder where the format is
