@@ -35,6 +35,7 @@ SECTIONS = {
         "hydraulic_motion_base",
     ),
     "Other mechanisms": ("delta", "hexaglide", "flexure_hexapod", "redundant_8_ups", "actuator_in_space"),
+    "Control and commands": ("force_feedback", "shaped_move"),
     "Under the hood": ("fidelity_ladder", "own_element"),
 }
 

@@ -30,6 +30,19 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
         "How far the tool is from where it should be, and why.",
         ("budget", "accuracy", "play"),
     ),
+    "Linear systems": (
+        "A robot about rest, its response to frequencies, responses that were measured; loops about it: "
+        "[`fx.control`](control.md).",
+        ("linearize", "compliance", "transmissibility", "read_frf"),
+    ),
+    "Commands ahead of time": (
+        "What is known of a robot beforehand, put into its motion: [chapter](../../ahead.md).",
+        ("compensate", "shape", "time_optimal"),
+    ),
+    "Other programs": (
+        "The robot as a file for others: [formats](../../exports.md).",
+        ("export",),
+    ),
     "Rigid robot": (
         "Kinematics and dynamics without any compliance.",
         ("inverse_kinematics", "forward_kinematics", "inverse_dynamics", "mobility"),
@@ -53,6 +66,7 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
 }
 PACKAGES = {
     "plot": True,
+    "control": True,
     "study": False,
     "model": False,
     "kinematics": False,

@@ -37,7 +37,7 @@ class Response:
 
 
 def read_frf(path: str | Path) -> Dataset:
-    """Frequency responses of a file, as those of a linear system.
+    r"""Frequency responses of a file, as those of a linear system.
 
     Parameters
     ----------
@@ -57,6 +57,15 @@ def read_frf(path: str | Path) -> Dataset:
     ------
     InputError
         A file that cannot be read, or without responses, or with frequencies that differ.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> names = "frequency,tool:z/wrench:fz real,tool:z/wrench:fz imag"
+    >>> _ = Path("measured.csv").write_text(names + "\n10,4.0e-9,-1e-11\n20,4.1e-9,-2e-11\n")
+    >>> data = fx.read_frf("measured.csv")
+    >>> print(data.frequency_response.sel(output="tool:z", input="wrench:fz", part="real").values)
+    [4.0e-09 4.1e-09]
     """
     path = Path(path)
     reader = READERS.get(path.suffix.lower())

@@ -176,6 +176,12 @@ def export(
     ------
     InputError
         An unknown format or ending, an option of another format, a part of the robot that must not be left out.
+
+    Examples
+    --------
+    >>> made = fx.export(fx.preset("paper-robot"), "mat", "rest.mat", inputs=["wrench"], outputs=["tool"])
+    >>> print(made)
+    rest.mat
     """
     given = {
         "pose": pose, "load": load, "title": title, "elements": elements, "modes": modes, "fidelity": fidelity,

@@ -114,6 +114,15 @@ def time_optimal(
         No limits, poses out of reach or alike.
     ComputationError
         No time is enough.
+
+    Examples
+    --------
+    >>> double = fx.control.StateSpace(
+    ...     A=[[0, 1], [0, 0]], B=[[0], [1]], C=[[1, 0]], D=[[0]],
+    ...     inputs=("force",), outputs=("place",), states=("place", "speed"), units={"force": "N", "place": "m"},
+    ... )
+    >>> fx.time_optimal(double, end=1.0)  # a mass of 1 kg, 1 m away, a force of 1 N: full ahead, full back
+    Switched(1, end 2: the input switches 1 times and is over after 2 s: ...)
     """
     if isinstance(subject, StateSpace):
         return switched(subject, np.asarray(end, dtype=float), limit, robust=robust)

@@ -130,6 +130,13 @@ def shape(
         An unknown kind, modes that there are not, a path that leaves the workspace.
     ComputationError
         No equilibrium at an instant.
+
+    Examples
+    --------
+    >>> study = fx.preset("machine-hexapod")
+    >>> shaped = fx.shape(study.motion, "zvd", modes=["50 Hz"])  # of the whole study: modes=1, of the first mode
+    >>> print(f"{1e3 * (shaped.end_time - study.motion.end_time):.1f} ms longer")  # a period
+    20.0 ms longer
     """
     subject = load(motion) if isinstance(motion, str | Path) else motion
     if isinstance(subject, ActuatorStudy):

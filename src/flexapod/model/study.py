@@ -28,7 +28,6 @@ _OUT_OF_PLANE = {
     "initial": ("elevation_displacement", "elevation_rate"),
 }
 
-
 _ANEW = "-"  # for the text of a study that is to be written
 
 
@@ -160,11 +159,8 @@ class Study(_Documented):
     @model_validator(mode="after")
     def _sections(self) -> Self:
         basis = self.simulation.lateral_basis
-        if (
-            any(leg.piston.sections for leg in self.robot.legs)
-            and self.simulation.lateral_shapes
-            and basis != "tip-load"
-        ):
+        several = any(leg.piston.sections for leg in self.robot.legs)
+        if several and self.simulation.lateral_shapes and basis != "tip-load":
             raise InputError(
                 "does not know pistons of several sections",
                 key="simulation.fidelity" if basis in OWN_BASIS.values() else "simulation.basis",

@@ -129,6 +129,14 @@ def linearize(
         Unknown channels, a pose out of reach, nothing that can move, pure force drives that are not released.
     ComputationError
         No equilibrium at this pose, or one so far from home that the motions chosen there say nothing of it.
+
+    Examples
+    --------
+    >>> plant = fx.linearize(fx.preset("nano-hexapod"), inputs="wrench", outputs=["tool", "force-sensor:base"])
+    >>> plant
+    LinearModel(nano-hexapod: 180 states, inputs 6 (wrench), outputs 12 (tool, force-sensor:base); ...)
+    >>> print(plant.damp().frequency.values[:3].round(1))  # Hz
+    [232.1 232.1 268.7]
     """
     if isinstance(study := read(study), model.ActuatorStudy):
         return cast("LinearModel", _of_actuator(study, pose, inputs, outputs, drives))
@@ -286,6 +294,18 @@ def compliance(
     xarray.Dataset
         `compliance` (output, input, frequency, part) [m/N, rad/N, m/(N m), rad/(N m)] and `compliance_norm`
         (frequency), its Frobenius norm with the SI units of all entries taken as one.
+
+    Raises
+    ------
+    InputError, ComputationError
+        As `linearize`.
+
+    Examples
+    --------
+    >>> data = fx.compliance(fx.preset("machine-hexapod"), [0, 20, 60])  # Hz
+    >>> up = data.compliance.sel(output="tool:z", input="wrench:fz", part="real")
+    >>> print((1e9 * up).round(2).values)  # um/kN
+    [3.96 4.03 4.7 ]
     """
     found = linearize(study, pose, inputs="wrench", outputs="tool", drives=drives, friction=friction, load=load)
     return _matrix("compliance", found, found.at(hz), hz, "motion of the tool by a wrench at the tool")
@@ -323,6 +343,17 @@ def transmissibility(
     xarray.Dataset
         `transmissibility` (output, input, frequency, part) and `transmissibility_norm` (frequency), its Frobenius norm
         with the SI units of all entries taken as one.
+
+    Raises
+    ------
+    InputError, ComputationError
+        As `linearize`.
+
+    Examples
+    --------
+    >>> data = fx.transmissibility(fx.preset("machine-hexapod"), [0, 20, 1000])  # Hz
+    >>> print(data.transmissibility.sel(output="tool:z", input="floor:z", part="real").round(2).values)
+    [1.   1.02 0.02]
     """
     found, plant = _plant(study, pose, load, drives, friction)
     inputs, outputs = asked("floor", plant.robot, "inputs"), asked("tool", plant.robot, "outputs")

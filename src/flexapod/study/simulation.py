@@ -160,10 +160,8 @@ def simulate(
     ------
     InputError
         The path leaves a stroke, pulls a piston out or is singular; settings do not fit.
-    ComputationError
-        There is no equilibrium to start from, or the first steps fail.
-    Interrupted
-        By Ctrl-C, with what was computed.
+    ComputationError, Interrupted
+        There is no equilibrium to start from, or the first steps fail; Ctrl-C, with what was computed.
 
     Examples
     --------
