@@ -66,5 +66,5 @@ np.testing.assert_allclose(left, np.cos(np.pi / 2 / 1.2), rtol=0.02)
 figure, axes = plt.subplots()
 for name, (t, z, _) in moves.items():
     axes.plot(t, z, label=name)
-axes.set(xlim=(0, 350), ylim=(-2500, 2500), xlabel="time [ms]", ylabel="height of the tool [um]")
-axes.legend()
+axes.set(xlim=(0, 350), ylim=(-2500, 3000), xlabel="time [ms]", ylabel="height of the tool [um]")
+axes.legend(loc="upper right")
