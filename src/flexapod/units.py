@@ -8,6 +8,7 @@ import sys
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
+from numbers import Real
 from typing import TYPE_CHECKING
 
 from flexapod.errors import InputError
@@ -149,10 +150,10 @@ def to_si(value: object, dimension: str, *, key: str | None = None) -> float:
     """
     if isinstance(value, str):
         number = _from_text(value, dimension, key)
-    elif isinstance(value, bool) or not isinstance(value, int | float):
+    elif isinstance(value, bool) or not isinstance(value, Real):
         raise _refuse("is not a number", value, dimension, key)
     else:
-        number = math.inf if abs(value) > sys.float_info.max else float(value)
+        number = math.inf if isinstance(value, int) and abs(value) > sys.float_info.max else float(value)
     if not math.isfinite(number):
         raise _refuse("is not finite", value, dimension, key)
     return number

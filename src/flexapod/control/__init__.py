@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from flexapod.control.closing import DelayedLoop
     from flexapod.control.controllers import DVF, IFF, PID, Controller, Decentralised, Decoupled, Fused, Together
     from flexapod.control.decoupling import (
-        Matrices,
+        Decoupling,
         by_jacobian,
         by_modes,
         by_singular_vectors,
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from flexapod.control.function import Function
     from flexapod.control.impedances import impedance
     from flexapod.control.laws import (
-        Law,
+        ControlLaw,
         complementary,
         gain,
         high_pass,
@@ -47,7 +47,7 @@ _HOMES = {
     "closing": ("DelayedLoop",),
     "controllers": ("DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together"),
     "decoupling": (
-        "Matrices",
+        "Decoupling",
         "by_jacobian",
         "by_modes",
         "by_singular_vectors",
@@ -57,7 +57,7 @@ _HOMES = {
     "function": ("Function",),
     "impedances": ("impedance",),
     "laws": (
-        "Law",
+        "ControlLaw",
         "complementary",
         "gain",
         "high_pass",
@@ -82,14 +82,14 @@ __all__ = [
     "IFF",
     "PID",
     "AdaptiveDamping",
+    "ControlLaw",
     "Controller",
     "Decentralised",
     "Decoupled",
+    "Decoupling",
     "DelayedLoop",
     "Function",
     "Fused",
-    "Law",
-    "Matrices",
     "Scheduled",
     "StateSpace",
     "Together",

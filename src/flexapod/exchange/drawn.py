@@ -52,9 +52,9 @@ class DrawnRobot:
 
 def drawn_robot(study: model.Study, data: Dataset, scale: float = 1.0) -> DrawnRobot:
     """The robot of a result of `study`, deflections `scale` times larger."""
-    if "com_position_rigid" not in data:
+    if "com_position_rigid" not in getattr(data, "data_vars", ()):
         raise InputError("is not a motion", key="data", allowed="a result of flexapod.simulate")
-    if not 0 < scale < np.inf:
+    if not isinstance(scale, int | float) or not 0 < scale < np.inf:
         raise InputError("is not a factor", key="magnify", value=scale, allowed="above 0")
     motion = RobotMotion(study, data)
     scenes = [motion.at(t, scale).flexible for t in motion.time]

@@ -35,7 +35,7 @@ def vtk(study: model.Study, *, name: str, data: Dataset | None = None) -> Writte
     names.
     """
     data = simulate(study) if data is None else data
-    if "com_position_rigid" not in data:
+    if "com_position_rigid" not in getattr(data, "data_vars", ()):
         raise InputError("is not a motion", key="data", allowed="a result of flexapod.simulate")
     motion = RobotMotion(study, data)
     cells, field, legs = _Cells(motion.skeleton), _series(data, _WHOLE), _series(data, _LEGS)
