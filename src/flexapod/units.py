@@ -152,8 +152,10 @@ def to_si(value: object, dimension: str, *, key: str | None = None) -> float:
         number = _from_text(value, dimension, key)
     elif isinstance(value, bool) or not isinstance(value, Real):
         raise _refuse("is not a number", value, dimension, key)
+    elif isinstance(value, int):
+        number = math.inf if abs(value) > sys.float_info.max else float(value)
     else:
-        number = math.inf if isinstance(value, int) and abs(value) > sys.float_info.max else float(value)
+        number = float(value)
     if not math.isfinite(number):
         raise _refuse("is not finite", value, dimension, key)
     return number

@@ -152,7 +152,7 @@ class StateSpace:
 
     def at(self, hz: ArrayLike) -> Complex:
         """Complex response (outputs, inputs, frequencies) at frequencies [Hz], Eqs. (T21.1)-(T21.3)."""
-        s = 2j * np.pi * frequencies(hz)
+        s = np.asarray(2j * np.pi * frequencies(hz), dtype=np.complex128)
         return response(self.A, self.B, self.C, self.D, s if self.sample is None else np.exp(s * self.sample))
 
     def frequency_response(self, hz: ArrayLike) -> Dataset:
