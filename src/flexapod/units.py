@@ -153,7 +153,7 @@ def to_si(value: object, dimension: str, *, key: str | None = None) -> float:
     elif isinstance(value, bool) or not isinstance(value, Real):
         raise _refuse("is not a number", value, dimension, key)
     elif isinstance(value, int):
-        number = math.inf if abs(value) > sys.float_info.max else float(value)
+        number = math.inf if abs(int(value)) > sys.float_info.max else float(value)
     else:
         number = float(value)
     if not math.isfinite(number):
