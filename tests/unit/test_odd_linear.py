@@ -178,6 +178,13 @@ def test_formats_and_results_that_are_none(robot, tmp_path):
     refused(lambda: uff(None), "data")
 
 
+def test_a_motion_of_another_robot_is_not_written(robot, tmp_path):
+    other = fx.simulate(fx.preset("machine-hexapod"), fidelity="rigid", duration=0.002, output_step=0.001)
+    for study in (robot, fx.preset("tripod"), fx.preset("small-hexapod")):
+        refused(lambda study=study: fx.export(study, "gltf", tmp_path / "x.glb", data=other), "data")
+        refused(lambda study=study: fx.export(study, "vtk", tmp_path / "x.pvd", data=other), "data")
+
+
 def test_results_that_are_none_are_not_drawn():
     for draw in (fx.plot.bode, fx.plot.pole_map, fx.plot.transmissibility, fx.plot.cumulative):
         for none in (None, 3, {}):
