@@ -6,7 +6,7 @@ import difflib
 from collections.abc import Iterable
 from pathlib import Path
 
-__all__ = ["ComputationError", "FlexapodError", "InputError", "Malformed", "closest", "nearest"]
+__all__ = ["ComputationError", "FlexapodError", "InputError", "Malformed", "closest", "names_of", "nearest"]
 
 
 class FlexapodError(Exception):
@@ -152,6 +152,15 @@ def nearest(word: str, allowed: Iterable[str]) -> str | None:
     """The allowed word that a mistyped one most resembles, or None."""
     found = difflib.get_close_matches(word, list(allowed), n=1, cutoff=0.6)
     return found[0] if found else None
+
+
+def names_of(given: object, key: str) -> list[str]:
+    """One name or several, as a list; `key` is what a refusal calls them."""
+    if isinstance(given, str):
+        return [given]
+    if not isinstance(given, Iterable):
+        raise InputError("is no name", key=key, value=given, allowed="a name, or a list of names")
+    return [str(name) for name in given]
 
 
 def _rebuild_computation(kind: type[ComputationError], what: str, next_step: str | None) -> ComputationError:

@@ -8,6 +8,7 @@ import sys
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
+from numbers import Real
 from typing import TYPE_CHECKING
 
 from flexapod.errors import InputError
@@ -149,10 +150,12 @@ def to_si(value: object, dimension: str, *, key: str | None = None) -> float:
     """
     if isinstance(value, str):
         number = _from_text(value, dimension, key)
-    elif isinstance(value, bool) or not isinstance(value, int | float):
+    elif isinstance(value, bool) or not isinstance(value, Real):
         raise _refuse("is not a number", value, dimension, key)
+    elif isinstance(value, int):
+        number = math.inf if abs(int(value)) > sys.float_info.max else float(value)
     else:
-        number = math.inf if abs(value) > sys.float_info.max else float(value)
+        number = float(value)
     if not math.isfinite(number):
         raise _refuse("is not finite", value, dimension, key)
     return number

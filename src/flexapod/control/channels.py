@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from flexapod.errors import InputError, nearest
+from flexapod.errors import InputError, names_of, nearest
 
 __all__ = ["NOISE", "RATE", "Names", "chosen", "groups"]
 
@@ -34,7 +34,7 @@ def chosen(given: Names, among: Sequence[str], key: str) -> list[int]:
     if given is None:
         return list(range(len(among)))
     found: list[int] = []
-    for name in (given,) if isinstance(given, str) else given:
+    for name in names_of(given, key):
         places = [i for i, known in enumerate(among) if known == name or known.startswith(f"{name}:")]
         if not places:
             raise _unknown(name, among, key)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from flexapod.control.arguments import frequencies
 from flexapod.control.channels import NOISE, RATE, chosen
 from flexapod.control.interconnect import CONTROL, closed, law_of, units_with
 from flexapod.control.sampling import held, period_of
@@ -50,7 +51,7 @@ class DelayedLoop:
 
     def at(self, hz: ArrayLike) -> Complex:
         """Complex response (outputs, inputs, frequencies) at frequencies [Hz], Eq. (T21.22)."""
-        late = np.exp(-2j * np.pi * np.atleast_1d(np.asarray(hz, float)) * self.delay)[:, None, None]
+        late = np.exp(-2j * np.pi * frequencies(hz) * self.delay)[:, None, None]
         G, read, K = self.opened(hz)
         m, at = len(self.system.inputs), self._actuators()
         noisy = np.array([not name.startswith(RATE) for name in self.controller.inputs])
@@ -63,7 +64,7 @@ class DelayedLoop:
 
     def opened(self, hz: ArrayLike) -> tuple[Complex, Complex, Complex]:
         """Responses (f, any, any) without the loop: of the system, of what is read of it, of the controller."""
-        s = 2j * np.pi * np.atleast_1d(np.asarray(hz, float))
+        s = 2j * np.pi * frequencies(hz)
         G, K = (np.moveaxis(part.at(hz), 2, 0) for part in (self.system, self.controller))
         names = self.controller.inputs
         rows = [chosen(name.removeprefix(RATE), self.system.outputs, "sensor")[0] for name in names]

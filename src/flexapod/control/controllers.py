@@ -16,6 +16,7 @@ from flexapod.control.interconnect import law_of
 from flexapod.control.laws import ControlLaw, Number
 from flexapod.control.state_space import StateSpace
 from flexapod.errors import InputError
+from flexapod.units import to_si
 
 __all__ = ["DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together", "pairs"]
 
@@ -89,6 +90,8 @@ class Decentralised(Controller):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
+        if not isinstance(self.law, ControlLaw):
+            raise InputError("is no law", key="law", value=self.law, allowed="of flexapod.control, as gain(2.0)")
         sensors, actuators = pairs(self.sensor, self.actuator, outputs, inputs)
         each = np.eye(len(sensors))
         return assembled([self.law * -1.0] * len(sensors), each, each, sensors, actuators, units)
@@ -121,10 +124,10 @@ class IFF(Controller):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
-        law = laws.integrator(-self.gain, self.high_pass)
+        law = laws.integrator(-to_si(self.gain, "number", key="gain"), self.high_pass)
         sensors, actuators = pairs(self.sensor, self.actuator, outputs, inputs)
         each = np.eye(len(sensors))
-        if not self.parallel_stiffness:
+        if not to_si(self.parallel_stiffness, "stiffness", key="parallel_stiffness"):
             return assembled([law] * len(sensors), each, each, sensors, actuators, units)
         strokes, _ = pairs(self.stroke, self.actuator, outputs, inputs)
         into = np.hstack([each, self.parallel_stiffness * each])
@@ -232,6 +235,8 @@ class Together(Controller):
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
         each = [law_of(part, outputs, inputs, units) for part in self.parts]
+        if not each:
+            raise InputError("are none", key="parts", allowed="a controller at least")
         readings = tuple(dict.fromkeys(name for part in each for name in part.inputs))
         actuators = tuple(dict.fromkeys(name for part in each for name in part.outputs))
         reads = [np.array([[float(a == b) for b in readings] for a in part.inputs]) for part in each]

@@ -11,6 +11,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from flexapod.arrays import Array
+from flexapod.control.arguments import frequencies
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
@@ -81,7 +82,7 @@ def response_dataset(
     system: Channels, hz: ArrayLike, values: Complex, words: tuple[str, str, str] = RESPONSE
 ) -> xr.Dataset:
     """Complex values (output, input, frequency, part) under the name of `words`: name, long name, unit."""
-    frequency = np.atleast_1d(np.asarray(hz, dtype=float))
+    frequency = frequencies(hz)
     name, long_name, unit = words
     attrs = {"long_name": long_name, "units": unit}
     return xr.Dataset(

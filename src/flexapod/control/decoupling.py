@@ -1,4 +1,4 @@
-"""Decoupling that decouple sensors and actuators: by Jacobians, modes, singular vectors, (T21.36)-(T21.39)."""
+"""Matrices that decouple sensors and actuators: by Jacobians, modes, singular vectors, (T21.36)-(T21.39)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexapod.units import to_si
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
-    from flexapod.model import Robot
+    from flexapod.model import Robot, Study
 
 __all__ = ["Decoupling", "by_jacobian", "by_modes", "by_singular_vectors", "centre_of_stiffness", "robot_jacobian"]
 
@@ -49,19 +49,25 @@ def by_jacobian(jacobian: ArrayLike) -> Decoupling:
     return Decoupling(into=inverse, out=inverse.T)
 
 
-def robot_jacobian(robot: Robot, at: Literal["com", "cok"] | ArrayLike = "com", stiffness: ArrayLike = 1.0) -> Array:
+def robot_jacobian(
+    robot: Robot | Study, at: Literal["com", "cok"] | ArrayLike = "com", stiffness: ArrayLike = 1.0
+) -> Array:
     """Rates of the drives by the twist of a point of the platform at home, (m, 6); see `kinematics.drive_jacobian`.
 
     Parameters
     ----------
-    robot : Robot
+    robot : Robot or Study
     at : {"com", "cok"} or array_like, shape (3,)
         Centre of mass of the payload, centre of stiffness, or a point in platform axes [m].
     stiffness : float or array_like, shape (m,)
         Of the drives [N/m], for "cok".
     """
     from flexapod import kinematics
+    from flexapod.model import Robot
 
+    robot = getattr(robot, "robot", robot)
+    if not isinstance(robot, Robot):
+        raise InputError("is no robot", key="robot", value=type(robot).__name__, allowed="a Robot, or the Study of one")
     home = kinematics.home_pose(robot)
     point = robot.com if isinstance(at, str) else np.asarray(at, dtype=float)
     found = kinematics.drive_jacobian(robot, home, point)[0]

@@ -10,6 +10,7 @@ from flexapod.arrays import Array
 from flexapod.control.poles import damping_of
 from flexapod.control.sampling import held
 from flexapod.errors import InputError
+from flexapod.units import to_si
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
@@ -19,6 +20,7 @@ __all__ = ["histories", "instants"]
 DECAYS = 5.0  # time constants of the slowest motion
 MOST = 100.0  # of its periods, where it hardly decays
 PERIOD = 40  # instants in a period of the fastest oscillation that lasts
+LONGEST = 1e7  # steps that a computer's memory takes
 COUNT = 2000  # instants at most, where none are given
 
 
@@ -31,14 +33,18 @@ def instants(system: StateSpace, duration: float | None, step: float | None) -> 
     if duration is None:
         decay = np.maximum(np.abs(s.real[moving]), 1e-300)
         duration = float(np.minimum(MOST / frequency[moving], DECAYS / decay).max(initial=0.0)) or 1.0
+    duration = to_si(duration, "time", key="duration")
     if not duration > 0:
         raise InputError("is not a time", key="duration", value=duration, allowed="above 0 s")
     if step is None:
         swings = moving & (s.imag > 0)
         fine = duration / COUNT
         step = max(fine, 1 / (PERIOD * frequency[swings].max())) if swings.any() else fine
-    if not step > 0:
-        raise InputError("is not a time", key="step", value=step, allowed="above 0 s")
+    step = to_si(step, "time", key="step")
+    if not 0 < step <= duration:
+        raise InputError("is not a time", key="step", value=step, allowed=f"above 0 s, at most {duration:g} s")
+    if duration > LONGEST * step:
+        raise InputError("has too many steps", key="duration", value=duration, allowed=f"{LONGEST:.0e} steps at most")
     return np.asarray(step * np.arange(int(np.floor(duration / step * (1 + 1e-12))) + 1), dtype=float)
 
 

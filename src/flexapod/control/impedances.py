@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod.control.arguments import frequencies
 from flexapod.errors import InputError
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ def impedance(system: StateSpace, hz: ArrayLike, *, force: str, place: str) -> D
     part = system.select(force, place)
     if len(part.inputs) != 1 or len(part.outputs) != 1:
         raise InputError("are more than one channel", key="force, place", value=f"{force}, {place}")
-    frequency = np.atleast_1d(np.asarray(hz, dtype=float))
+    frequency = frequencies(hz)
     if not (frequency > 0).all():
         raise InputError("is not above 0", key="hz", allowed="frequencies above 0 Hz")
     omega = 2 * np.pi * frequency

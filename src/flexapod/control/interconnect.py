@@ -76,6 +76,11 @@ def law_of(
     controller: OnChannels | StateSpace, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str]
 ) -> StateSpace:
     """A controller between channels of a system; a state space is one itself, with channels that the system has."""
+    if isinstance(controller, type) or not (isinstance(controller, OnChannels) or hasattr(controller, "A")):
+        raise InputError(
+            "is no controller", key="controller", value=controller,
+            allowed="one of flexapod.control, as IFF(100.0), or a StateSpace",
+        )  # fmt: skip
     if isinstance(controller, OnChannels):
         return controller.on(outputs, inputs, units)
     for name in controller.inputs:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexapod.arrays import Array
+from flexapod.control.arguments import frequencies, numbers
 from flexapod.errors import InputError
 from flexapod.units import to_si
 
@@ -48,8 +49,8 @@ class ControlLaw:
     def of(cls, numerator: Sequence[float], denominator: Sequence[float] = (1.0,)) -> ControlLaw:
         """Numerator over denominator, powers of s with the highest first; at most one zero more than poles."""
         top, bottom = (
-            np.trim_zeros(np.asarray(numerator, float), "f"),
-            np.trim_zeros(np.asarray(denominator, float), "f"),
+            np.trim_zeros(numbers(numerator, "numerator", "finite numbers"), "f"),
+            np.trim_zeros(numbers(denominator, "denominator", "finite numbers"), "f"),
         )
         n = len(bottom) - 1
         if n < 0 or len(top) > n + 2:
@@ -104,7 +105,7 @@ class ControlLaw:
 
     def at(self, hz: ArrayLike) -> NDArray[np.complex128]:
         """Complex response (f,) at frequencies [Hz], the rate that of the reading."""
-        s = 2j * np.pi * np.atleast_1d(np.asarray(hz, float))
+        s = 2j * np.pi * frequencies(hz)
         given = np.stack([np.ones_like(s), s])
         moved = np.linalg.solve(s[:, None, None] * np.eye(len(self.A)) - self.A, (self.B @ given).T[..., None])
         return (moved[..., 0] @ self.C) + self.D @ given

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linear_sum_assignment, minimize_scalar
 
+from flexapod.control.arguments import numbers
 from flexapod.control.interconnect import closed, law_of, opened
 from flexapod.control.poles import damping_of, poles_of, zeros_of
 from flexapod.control.sampling import held
@@ -48,7 +49,9 @@ def root_locus(system: StateSpace, controller: Controller | StateSpace, gains: A
     """
     from flexapod.control.datasets import locus_dataset
 
-    factors = np.atleast_1d(np.asarray(gains, dtype=float))
+    factors = numbers(gains, "gains", "factors on the controller, one at least")
+    if not factors.size:
+        raise InputError("are none", key="gains", allowed="factors on the controller, one at least")
     law = _law(system, controller)
     poles = np.stack([_poles(system, law, factor) for factor in factors])
     for i in range(1, len(poles)):

@@ -90,6 +90,8 @@ def _together(found: list[Response], path: Path) -> Dataset:
     from flexapod.control.datasets import frf_dataset
 
     f = found[0].frequency
+    if not np.isfinite(f).all():
+        raise InputError("has frequencies that are not finite", file=path)
     for one in found[1:]:
         if len(one.frequency) != len(f) or np.abs(one.frequency - f).max() > SAME * np.abs(f).max():
             raise InputError(
@@ -100,6 +102,8 @@ def _together(found: list[Response], path: Path) -> Dataset:
     values = np.full((len(outputs), len(inputs), len(f)), np.nan + 0j)
     units = {}
     for one in found:
+        if not np.isnan(values[outputs.index(one.output), inputs.index(one.input)]).all():
+            raise InputError(f"has {one.output} by {one.input} twice", file=path, allowed="each response once")
         values[outputs.index(one.output), inputs.index(one.input)] = one.values
         units |= {one.output: one.units[0], one.input: one.units[1]}
     return frf_dataset(f, values, tuple(outputs), tuple(inputs), units)
@@ -215,14 +219,17 @@ def _mat(content: bytes) -> list[Response]:
 
     from scipy.io import loadmat
 
-    data = loadmat(BytesIO(content))
+    try:
+        data = loadmat(BytesIO(content))
+    except Exception as error:  # scipy lets errors of any kind out of files that are damaged
+        raise InputError(f"cannot be read: {error}") from None
     names = {key: next((k for k in data if k.lower() in words), None) for key, words in WORDS.items()}
     if names["frequency"] is None or names["frf"] is None:
         raise InputError("lacks a variable", allowed="frequency and frf, with outputs, inputs, or without")
     f = np.asarray(data[names["frequency"]], dtype=float).ravel()
     H = np.asarray(data[names["frf"]], dtype=complex)
     H = H.reshape(1, 1, -1) if H.size == len(f) else H[:, None] if H.ndim == 2 else H
-    if H.shape[2] != len(f):
+    if H.ndim != 3 or H.shape[2] != len(f):
         raise InputError(f"has the shape {H.shape}", key=names["frf"], allowed=f"(outputs, inputs, {len(f)})")
 
     def texts(key: str, count: int, plain: str) -> list[str]:

@@ -73,8 +73,8 @@ def reduced(system: StateSpace, modes: int | None, below: float | str | None, re
 
 def _edge(frequency: Array, modes: int) -> float:
     """Frequency [Hz] between the modes that stay and the others; those of one frequency stay together."""
-    if modes < 0:
-        raise InputError("is below 0", key="modes", value=modes)
+    if not isinstance(modes, int | np.integer) or modes < 0:
+        raise InputError("is no number of modes", key="modes", value=modes, allowed="0, 1, 2, ...")
     while 0 < modes < len(frequency) and frequency[modes] <= (1 + EQUAL) * frequency[modes - 1]:
         modes += 1
     if modes >= len(frequency):

@@ -35,7 +35,13 @@ def ring_down(samples: ArrayLike, period: float | str, order: int = 10) -> NDArr
     InputError
         Too few samples.
     """
-    x, T = np.asarray(samples, dtype=float), period_of(period)
+    T = period_of(period)
+    try:
+        x = np.atleast_1d(np.asarray(samples, dtype=float))
+    except (TypeError, ValueError):
+        x = np.full(1, np.nan)
+    if not x.size or not np.isfinite(x).all():
+        raise InputError("are no finite numbers", key="samples", allowed="(T,) or (T, m), equally spaced")
     x = np.diff(x.reshape(len(x), -1), axis=0)
     length = min(len(x) // 2, LONGEST)
     if length * x.shape[1] <= order:

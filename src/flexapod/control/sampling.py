@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["held", "period_of", "without_rates"]
 
+LATEST = 1000  # samples of a delay, each with its states
 NEARLY = 1e-9  # of a period: a delay so near to whole samples has them
 
 
@@ -27,7 +28,8 @@ def period_of(sample: float | str) -> float:
     try:
         period = to_si(sample, "time", key="sample")
     except InputError:
-        period = 1.0 / to_si(sample, "frequency", key="sample")
+        rate = to_si(sample, "frequency", key="sample")
+        period = 1.0 / rate if rate else 0.0
     if not period > 0:
         raise InputError("is not a time", key="sample", value=sample, allowed='above 0 s, for example "5 kHz"')
     return period
@@ -43,6 +45,8 @@ def held(system: StateSpace, period: float, delay: float = 0.0, delayed: Sequenc
     if delay == 0 or not late:
         step, push = _integrals(system.A, system.B, period)
         return without_rates(replace(system.select(), A=step, B=push, sample=period))
+    if not 0 <= delay <= LATEST * period:
+        raise InputError("is no delay", key="delay", value=delay, allowed=f"0 to {LATEST} samples of {period:g} s")
     whole = int(np.floor(delay / period + NEARLY))
     part = max(delay - whole * period, 0.0)
     step, push = _integrals(system.A, system.B, period)

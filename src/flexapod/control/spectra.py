@@ -26,6 +26,7 @@ Complex = NDArray[np.complex128]
 #: A disturbance of a study, or one-sided spectra by channel or group: tables of a study, or (frequency [Hz], density).
 Sources = Disturbance | Mapping[str, Floor | Spectrum | tuple[ArrayLike, ArrayLike]]
 #: Groups of inputs by the field of a disturbance.
+EXAMPLE = "spectra by channel: {'wrench:fz': (frequencies [Hz], densities)}"
 GROUPS = {"floor": "floor", "wrench": "wrench", "force_noise": "drive"}
 
 
@@ -81,8 +82,9 @@ def _sources(system: StateSpace, given: Sources) -> list[Source]:
     if isinstance(given, Disturbance):
         tables = {field: getattr(given, field) for field in GROUPS}
         return [_source(system, SOURCES[f], GROUPS[f], table) for f, table in tables.items() if table is not None]
-    if not given:
-        raise InputError("is empty: nothing shakes", key="sources", allowed="spectra by channel, as {'wrench:Fz': ...}")
+    if not given or not isinstance(given, Mapping):
+        words = "are none" if given else "is empty: nothing shakes"
+        raise InputError(words, key="sources", value=given or None, allowed=EXAMPLE)
     return [_source(system, name, name, table) for name, table in given.items()]
 
 
@@ -90,10 +92,15 @@ def _source(system: StateSpace, name: str, group: str, table: Floor | Spectrum |
     places = chosen(group, system.inputs, "sources")
     rates = FLOOR_RATES[table.of] if isinstance(table, Floor) else 0
     if isinstance(table, tuple):
-        frequency, density = (np.asarray(part, dtype=float) for part in table)
+        try:
+            frequency, density = (np.asarray(part, dtype=float) for part in table)
+        except (TypeError, ValueError):
+            raise InputError("is no spectrum", key=f"sources[{name}]", value=table, allowed=EXAMPLE) from None
         density = density[:, None] if density.ndim == 1 else density
         check_density(frequency, density)
     else:
+        if not isinstance(table, Floor | Spectrum):
+            raise InputError("is no spectrum", key=f"sources[{name}]", value=table, allowed=EXAMPLE)
         frequency, density = table.frequency, table.density
     columns = density.shape[1]
     if isinstance(table, Floor):

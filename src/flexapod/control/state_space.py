@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexapod.arrays import Array
+from flexapod.control.arguments import frequencies
 from flexapod.control.channels import Names, chosen, groups
 from flexapod.control.frequency import response
 from flexapod.control.histories import histories, instants
@@ -60,11 +61,16 @@ class StateSpace:
         """Read-only matrices whose shapes fit the names."""
         n, m, p = len(self.states), len(self.inputs), len(self.outputs)
         for name, shape in (("A", (n, n)), ("B", (n, m)), ("C", (p, n)), ("D", (p, m))):
-            value = np.array(getattr(self, name), dtype=float)
+            try:
+                value = np.array(getattr(self, name), dtype=float)
+            except (TypeError, ValueError):
+                raise InputError("is no matrix of numbers", key=name, value=getattr(self, name)) from None
             if value.shape != shape:
                 raise InputError(
                     f"has the shape {value.shape}", key=name, allowed=f"{shape}: {n} states, {m} inputs, {p} outputs"
                 )
+            if not np.isfinite(value).all():
+                raise InputError("has numbers that are not finite", key=name)
             value.setflags(write=False)
             object.__setattr__(self, name, value)
         if self.sample is not None and not self.sample > 0:
@@ -146,7 +152,7 @@ class StateSpace:
 
     def at(self, hz: ArrayLike) -> Complex:
         """Complex response (outputs, inputs, frequencies) at frequencies [Hz], Eqs. (T21.1)-(T21.3)."""
-        s = 2j * np.pi * np.atleast_1d(np.asarray(hz, dtype=float))
+        s = np.asarray(2j * np.pi * frequencies(hz), dtype=np.complex128)
         return response(self.A, self.B, self.C, self.D, s if self.sample is None else np.exp(s * self.sample))
 
     def frequency_response(self, hz: ArrayLike) -> Dataset:

@@ -10,6 +10,7 @@ import numpy as np
 from flexapod import kinematics, model
 from flexapod.arrays import Array
 from flexapod.errors import InputError
+from flexapod.results.attributes import robot_of
 from flexapod.scene.geometry import RobotMotion, as_computed
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton
 from flexapod.solve.sections import leg_values
@@ -50,11 +51,22 @@ class DrawnRobot:
     changing: bool
 
 
+def check_motion(study: model.Study, data: Dataset) -> None:
+    """Refuse what is no motion of the robot of a study."""
+    if "com_position_rigid" not in getattr(data, "data_vars", ()):
+        raise InputError("is not a motion", key="data", allowed="a result of flexapod.simulate")
+    own, robot = robot_of(data), study.robot
+    if own.type != robot.type or not all(
+        a.shape == b.shape and np.allclose(a, b)
+        for a, b in ((own.base_joints, robot.base_joints), (own.platform_joints, robot.platform_joints))
+    ):
+        raise InputError("is of another robot", key="data", value=own.type, allowed=f"a result of this {robot.type}")
+
+
 def drawn_robot(study: model.Study, data: Dataset, scale: float = 1.0) -> DrawnRobot:
     """The robot of a result of `study`, deflections `scale` times larger."""
-    if "com_position_rigid" not in data:
-        raise InputError("is not a motion", key="data", allowed="a result of flexapod.simulate")
-    if not 0 < scale < np.inf:
+    check_motion(study, data)
+    if not isinstance(scale, int | float) or not 0 < scale < np.inf:
         raise InputError("is not a factor", key="magnify", value=scale, allowed="above 0")
     motion = RobotMotion(study, data)
     scenes = [motion.at(t, scale).flexible for t in motion.time]

@@ -207,7 +207,7 @@ def written(study: model.Study, format: str, path: Path, given: Mapping[str, obj
 
 def format_of(name: str) -> Format:
     """The format of a name; InputError of none."""
-    if name not in FORMATS:
+    if not isinstance(name, str) or name not in FORMATS:
         allowed = "; ".join(f"{known}, {kind.words}" for known, kind in FORMATS.items())
         raise InputError(
             "is not a format", key="format", value=name, allowed=allowed, next_step=closest(str(name), FORMATS)

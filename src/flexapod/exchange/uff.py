@@ -31,7 +31,7 @@ def uff(data: Dataset) -> str:
 
     InputError: no such response among the variables.
     """
-    found = next((x for x in data.data_vars.values() if set(x.dims) == set(DIMS)), None)
+    found = next((x for x in getattr(data, "data_vars", {}).values() if set(x.dims) == set(DIMS)), None)
     if found is None:
         allowed = "a result of frequency_response, compliance or transmissibility"
         raise InputError("has no response over frequency", key="data", allowed=allowed)

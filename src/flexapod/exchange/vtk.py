@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod import model
 from flexapod.arrays import Array
-from flexapod.errors import InputError
 from flexapod.exchange.content import Content
+from flexapod.exchange.drawn import check_motion
 from flexapod.scene.geometry import RobotMotion, plate
 from flexapod.scene.skeleton import Scene, Skeleton
 from flexapod.study.simulation import simulate
@@ -35,8 +35,7 @@ def vtk(study: model.Study, *, name: str, data: Dataset | None = None) -> Conten
     names.
     """
     data = simulate(study) if data is None else data
-    if "com_position_rigid" not in data:
-        raise InputError("is not a motion", key="data", allowed="a result of flexapod.simulate")
+    check_motion(study, data)
     motion = RobotMotion(study, data)
     cells, field, legs = _Cells(motion.skeleton), _series(data, _WHOLE), _series(data, _LEGS)
     stem = Path(name).stem

@@ -145,7 +145,7 @@ def shape(
         )
     if isinstance(subject, Study):
         return shaping(subject, kind, modes=modes, pose=pose, out=out).study
-    given = [] if isinstance(modes, int) else [_frequency(mode) for mode in modes]
+    given = [] if isinstance(modes, int) else [_frequency(mode) for mode in _named(modes)]
     if not given or any(mode is None for mode in given):
         raise InputError(
             "are numbers of modes, and a motion alone has none",
@@ -189,12 +189,21 @@ def shaping(
 
 def _frequency(mode: object) -> tuple[float, float] | None:
     """Frequency [Hz] and damping ratio, where that is what a mode is given by; None of a number of a mode."""
-    if isinstance(mode, tuple):
-        f, ratio = mode
-        return float(f), float(ratio)
+    if isinstance(mode, tuple) and len(mode) == 2:
+        return to_si(mode[0], "frequency", key="modes"), to_si(mode[1], "number", key="modes")
     if isinstance(mode, str):
         return to_si(mode, "frequency", key="modes"), 0.0
-    return None if isinstance(mode, int | np.integer) else (float(mode), 0.0)  # type: ignore[arg-type]
+    return None if isinstance(mode, int | np.integer) else (to_si(mode, "frequency", key="modes"), 0.0)
+
+
+def _named(modes: Modes) -> list[object]:
+    """Modes one by one."""
+    if isinstance(modes, int):
+        return list(range(1, modes + 1))
+    if isinstance(modes, str) or not isinstance(modes, Sequence | np.ndarray):
+        allowed = 'how many, or a list as [1, 3], [12.5], ["12.5 Hz"]'
+        raise InputError("names no mode", key="modes", value=modes, allowed=allowed)
+    return list(modes)
 
 
 def _modes(study: Study, modes: Modes, pose: PoseLike | str, moving: float) -> tuple[Array, Array, Array]:
@@ -206,7 +215,7 @@ def _modes(study: Study, modes: Modes, pose: PoseLike | str, moving: float) -> t
     at = along
     if not (isinstance(pose, str) and pose == "path"):
         at = modes_of(locked_poses(robot, study.simulation, as_pose(robot, pose), study.load), shapes=True)  # type: ignore[arg-type]
-    given = list(range(1, modes + 1)) if isinstance(modes, int) else list(modes)
+    given = _named(modes)
     found = []
     for mode in given:
         if (own := _frequency(mode)) is not None:

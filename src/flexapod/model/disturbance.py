@@ -138,10 +138,10 @@ def check_density(frequency: Array, density: Array) -> None:
             allowed="frequencies [Hz] above 0 that increase from row to row",
             next_step="Sort the lines by frequency and remove doubles",
         )
-    if (wrong := np.argwhere(density < 0)).size:
+    if (wrong := np.argwhere(~((density >= 0) & np.isfinite(density)))).size:
         at, column = wrong[0]
         raise InputError(
-            "is negative",
+            "is negative" if density[at, column] < 0 else "is no finite number",
             key=f"density[{at + 1}][{column + 1}]",
             value=float(density[at, column]),
             allowed="a power spectral density, 0 or more",

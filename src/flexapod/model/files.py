@@ -181,7 +181,11 @@ def preset_text(name: str) -> str:
     """The commented TOML text of a preset."""
     if name not in PRESETS:
         raise InputError(
-            "is not known", key="preset", value=name, allowed=", ".join(PRESETS), next_step=closest(name, PRESETS)
+            "is not known",
+            key="preset",
+            value=name if isinstance(name, str) else type(name).__name__,
+            allowed=", ".join(PRESETS),
+            next_step=closest(str(name), PRESETS),
         )
     return files("flexapod.model").joinpath("presets", f"{name}.toml").read_text(encoding="utf-8")
 

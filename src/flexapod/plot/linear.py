@@ -78,9 +78,9 @@ def transmissibility(data: Several) -> Figure:
     data : xarray.Dataset or mapping of these
         From `flexapod.transmissibility` or `flexapod.compliance`; several under the words that the legend shows.
     """
-    results = _named(data)
+    results = _named(data) if isinstance(data, Mapping) else {}
     name = next((n for n in ("transmissibility", "compliance") if all(n in one for one in results.values())), None)
-    if name is None:
+    if name is None or not results:
         raise InputError(
             "cannot be drawn", key="transmissibility", allowed="results of flexapod.transmissibility, or of compliance"
         )

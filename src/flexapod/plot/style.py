@@ -88,7 +88,7 @@ def needs(*names: str) -> Callable[[Callable[P, Figure]], Callable[P, Figure]]:
         def checked(*args: P.args, **kwargs: P.kwargs) -> Figure:
             given: Any = args[0] if args else next(iter(kwargs.values()), None)
             several = isinstance(given, Mapping) and not hasattr(given, "data_vars")
-            for data in given.values() if several else (given,):
+            for data in (given.values() or (None,)) if several else (given,):
                 missing = [name for name in names if name not in getattr(data, "data_vars", ())]
                 if missing:
                     raise InputError(

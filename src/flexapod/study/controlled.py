@@ -12,6 +12,7 @@ from flexapod.arrays import Array
 from flexapod.errors import InputError, nearest
 from flexapod.results.asked import Made
 from flexapod.results.record import Record
+from flexapod.units import to_si
 
 if TYPE_CHECKING:
     from flexapod.control import AdaptiveDamping, Controller, Function, StateSpace
@@ -109,8 +110,9 @@ def _made(
     from flexapod.solve.time.sampled import Sampled
 
     period = _period(controller, sample)
-    if not isinstance(delay_samples, int) or delay_samples < 0:
-        raise InputError("is no number of samples", key="delay_samples", value=delay_samples, allowed="0, 1, 2, ...")
+    for key, value, most in (("delay_samples", delay_samples, 1000), ("seed", seed, 2**31 - 1)):
+        if not isinstance(value, int) or not 0 <= value <= most:
+            raise InputError("is not in range", key=key, value=value, allowed=f"a whole number from 0 to {most}")
     law = _law(controller, period, robot)
     inputs, outputs = tuple(law.inputs), tuple(law.outputs)
     for key, names in (("controller.inputs", inputs), ("controller.outputs", outputs)):
@@ -175,7 +177,7 @@ def _sigmas(noise: object, period: float) -> PerChannel:
 
     def sigma(given: object) -> object:
         if isinstance(given, Mapping) and set(given) == {"psd"}:
-            return float(np.sqrt(given["psd"] / (2 * period)))
+            return float(np.sqrt(to_si(given["psd"], "number", key="noise.psd") / (2 * period)))
         return given
 
     if isinstance(noise, Mapping) and set(noise) != {"psd"}:
@@ -198,9 +200,9 @@ def _by_channel(given: PerChannel, names: Sequence[str], key: str, without: floa
                 next_step=None if like is None else f"Did you mean {like!r}?",
             )
         if value is not None:
-            found[which] = value
+            found[which] = value if value == without else to_si(value, "number", key=key)
     if not (found >= 0).all():
-        raise InputError("is below 0, or no number", key=key, value=given)
+        raise InputError("is below 0", key=key, value=given)
     return found
 
 

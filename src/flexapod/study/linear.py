@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod import model
 from flexapod.arrays import Array
+from flexapod.control.arguments import frequencies
 from flexapod.control.state_space import StateSpace
 from flexapod.errors import InputError
 from flexapod.kinematics import Poses
@@ -28,6 +29,7 @@ from flexapod.solve.linear.states import Descriptor, descriptor_of, states_of, u
 from flexapod.solve.statics.branch import fallen
 from flexapod.solve.statics.locked import the_equilibrium
 from flexapod.study.many_modes import poses_of
+from flexapod.units import to_si
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -139,7 +141,7 @@ def linearize(
     [232.1 232.1 268.7]
     """
     if isinstance(study := read(study), model.ActuatorStudy):
-        return cast("LinearModel", _of_actuator(study, pose, inputs, outputs, drives))
+        return cast("LinearModel", _of_actuator(study, pose, inputs, outputs, drives, friction=friction, load=load))
     if is_many(pose):
         return cast("LinearModel", _grid(study, pose, inputs, outputs, drives, friction, load))
     found, plant = _plant(study, pose, load, drives, friction)
@@ -152,12 +154,16 @@ def _plant(
     study: RobotLike, pose: PoseLike, load: LoadLike, drives: Drives, friction: Friction | None
 ) -> tuple[model.Study, Plant]:
     """The plant at one pose."""
-    if drives not in ("given", "force"):
-        raise InputError("is not a way to take drives", key="drives", value=drives, allowed='"given", "force"')
+    _check_drives(drives)
     found = model.override(at_pose(study, load), friction=friction)
     plant = _at(found, as_pose(found.robot, pose), drives)
     the_equilibrium(plant.locked)
     return found, plant
+
+
+def _check_drives(drives: object) -> None:
+    if drives not in ("given", "force"):
+        raise InputError("is not a way to take drives", key="drives", value=drives, allowed='"given", "force"')
 
 
 def _at(study: model.Study, path: Poses, drives: Drives) -> Plant:
@@ -178,8 +184,13 @@ def _of_actuator(
     inputs: str | Sequence[str],
     outputs: str | Sequence[str],
     drives: Drives,
+    **none: object,
 ) -> StateSpace:
     """A single actuator at rest, or in steady rotation."""
+    _check_drives(drives)
+    for key, value in none.items():
+        if value is not None:
+            raise InputError("is for robots", key=key, value=value, allowed="none of a single actuator")
     given = dict(pose) if isinstance(pose, Mapping) else {}
     if (pose is not None and not isinstance(pose, Mapping)) or set(given) - {"rate", "free_length"}:
         raise InputError(
@@ -188,10 +199,11 @@ def _of_actuator(
         )  # fmt: skip
     actuator = study.actuator
     if "free_length" in given:
-        actuator = actuator.replace(free_length=float(given["free_length"]))
+        actuator = actuator.replace(free_length=to_si(given["free_length"], "length", key="pose.free_length"))
     names = ("rotation", "extension", "elevation")
     free = [name for name in names if drives == "force" or getattr(study.motion, name) is None]
-    states = actuator_states(actuator, study.simulation, inputs, outputs, rate=float(given.get("rate", 0.0)), free=free)
+    rate = to_si(given.get("rate", 0.0), "angular rate", key="pose.rate")
+    states = actuator_states(actuator, study.simulation, inputs, outputs, rate=rate, free=free)
     return StateSpace(**{f.name: getattr(states, f.name) for f in fields(states)})
 
 
@@ -207,6 +219,7 @@ def _grid(
     """Matrices on motions at many poses."""
     import xarray as xr
 
+    _check_drives(drives)
     found = model.override(at_pose(study, load), friction=friction)
     path = as_many(found.robot, pose)
     given, seen = asked(inputs, found.robot, "inputs"), asked(outputs, found.robot, "outputs")
@@ -365,7 +378,7 @@ def transmissibility(
     away = arm - R @ (plant.robot.tool - plant.robot.com)
     carry = np.eye(6)
     carry[:3, 3:] = np.cross(np.eye(3), away).T  # a turn about the tool displaces the point
-    s = 2j * np.pi * np.atleast_1d(np.asarray(hz, dtype=float))
+    s = 2j * np.pi * frequencies(hz)
     values = np.eye(6)[:, :, None] + s**2 * np.einsum("ij,jkf->ikf", carry, whole.at(hz))
     return _matrix("transmissibility", whole, values, hz, f"motion of the platform by that of the floor, at {at}")
 
@@ -375,7 +388,7 @@ def _matrix(name: str, found: StateSpace, values: NDArray[np.complex128], hz: Ar
 
     from flexapod.control.datasets import PARTS, channel_labels, in_parts
 
-    frequency = np.atleast_1d(np.asarray(hz, dtype=float))
+    frequency = frequencies(hz)
     norm = np.sqrt((np.abs(values) ** 2).sum(axis=(0, 1)))
     said = "Frobenius norm, SI units of all entries taken as one"
     units = "output_units / input_units" if name == "compliance" else "1"

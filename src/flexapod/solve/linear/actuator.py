@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from flexapod.arrays import Array
-from flexapod.errors import ComputationError, InputError, nearest
+from flexapod.errors import ComputationError, InputError, names_of, nearest
 from flexapod.mechanics.layout import COMMAND_SIZE, LOAD_SIZE, Shapes
 from flexapod.model import Actuator, Simulation
 from flexapod.solve.kernel import Function
@@ -178,7 +178,7 @@ def _known(driven: Sequence[str], free: Sequence[str], axes: Sequence[str]) -> d
 
 def _chosen(names: Sequence[str], known: list[str], key: str) -> list[str]:
     found: dict[str, None] = {}
-    for name in (names,) if isinstance(names, str) else names:
+    for name in names_of(names, key):
         some = [x for x in known if x == name or x.startswith(f"{name}:")]
         if not some:
             like = nearest(name, [*known, *{x.partition(":")[0] for x in known}])
@@ -187,6 +187,8 @@ def _chosen(names: Sequence[str], known: list[str], key: str) -> list[str]:
                 next_step=None if like is None else f"Did you mean {like!r}?",
             )  # fmt: skip
         found |= dict.fromkeys(some)
+    if not found:
+        raise InputError("are none", key=key, allowed=", ".join(known))
     return list(found)
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod.arrays import Array
-from flexapod.errors import InputError, nearest
+from flexapod.errors import InputError, names_of, nearest
 from flexapod.model import Robot
 from flexapod.solve.linear.motions import COMPONENTS
 from flexapod.units import to_si
@@ -29,6 +29,7 @@ AT_POINTS = ("force", "accelerometer", "geophone")
 ON_PLATFORM = (*AT_POINTS, "wrench", "tool", "com", "tool-base", "com-base")
 #: Geophone of which nothing is said: a corner of 4.5 Hz, 0.7 of critical damping, and an output that is the velocity.
 USUAL = (4.5, 0.7, 1.0)
+_NUMBER = re.compile(r"[-+]?[\d.]+(e[-+]?\d+)?", re.IGNORECASE)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,9 +71,10 @@ def asked(names: str | Sequence[str], robot: Robot, key: str) -> list[PlantChann
         A name that nothing has, with the nearest one.
     """
     known, found = (INPUTS if key == "inputs" else OUTPUTS), {}
-    for name in (names,) if isinstance(names, str) else names:
-        for channel in _of(str(name), known, robot, key):
-            found.setdefault(channel.name, channel)
+    for name in names_of(names, key):
+        for channel in _of(name, known, robot, key):
+            if found.setdefault(channel.name, channel).geophone != channel.geophone:
+                raise InputError("is another geophone at a point that has one", key=key, value=name)
     if not found:
         raise InputError("are none", key=key, allowed=_words(known))
     return list(found.values())
@@ -96,8 +98,9 @@ def _of(name: str, known: dict[str, object], robot: Robot, key: str) -> list[Pla
             allowed=_words({g: x for g, x in known.items() if g not in ON_PLATFORM}),
         )  # fmt: skip
     rest = name[len(group) + 1 :]
+    plain = re.sub(r"\s*\[.*\]", "", name) if group == "geophone" else name
     every = _at_point(group, rest, robot, key) if group in AT_POINTS else _members(group, known[group], robot)
-    chosen = [x for x in every if name in (group, x.name) or x.name.startswith(f"{name}:")] or (
+    chosen = [x for x in every if plain in (group, x.name) or x.name.startswith(f"{plain}:")] or (
         every if group in AT_POINTS and rest and not any(rest.endswith(f":{axis}") for axis in AXES) else []
     )
     if not chosen:
@@ -152,7 +155,7 @@ def _point(text: str, robot: Robot, name: str, key: str) -> Array:
     numbers = [part.strip() for part in text.strip("()").split(",")]
     try:
         if len(numbers) == 3:
-            return np.array([_length(part) for part in numbers]) - robot.com
+            return np.array([to_si(float(x) if _NUMBER.fullmatch(x) else x, "length") for x in numbers]) - robot.com
     except (InputError, ValueError):
         pass
     like = nearest(text, points)
@@ -162,13 +165,6 @@ def _point(text: str, robot: Robot, name: str, key: str) -> Array:
         "as (0.1 m, 0, 50 mm)",
         next_step=None if like is None or not text else f"Did you mean {like!r}?",
     )  # fmt: skip
-
-
-def _length(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        return to_si(text, "length")
 
 
 def _sensor(text: str, key: str) -> tuple[str, Geophone]:
@@ -182,7 +178,7 @@ def _sensor(text: str, key: str) -> tuple[str, Geophone]:
                 numbers[k] = float(re.sub(r"\s*(Hz|V.*)$", "", part))
             except (ValueError, IndexError):
                 numbers[0] = -1.0
-    if min(numbers[0], numbers[1]) <= 0:
+    if not (np.isfinite(numbers).all() and min(numbers[0], numbers[1]) > 0):
         raise InputError(
             "is no geophone", key=key, value=text if found is None else found[0],
             allowed="corner [Hz], damping ratio and sensitivity [V s/m], as geophone:tool[4.5 Hz, 0.7, 28.8]",

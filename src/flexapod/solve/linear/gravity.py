@@ -22,7 +22,7 @@ def gravity_forces(system: System, x: RestStates, command: Array, wrench: Array)
 
     def forces(gravity: Array) -> Array:
         legs, payload, _ = residual(_in_gravity(system, gravity), x, command, np.zeros_like(command), wrench)
-        return np.concatenate([legs.reshape(len(x), -1), payload], axis=1)
+        return np.concatenate([legs.reshape(len(x), system.legs * system.n), payload], axis=1)
 
     none = forces(np.zeros(3))
     return np.stack([forces(axis) - none for axis in np.eye(3)], axis=2)

@@ -77,13 +77,13 @@ def flat_forces(system: System, of_legs: Array, of_payload: Array, flat: Array, 
     ``of_legs`` (P, legs, n, n); ``of_payload`` (P, 6, 6) with shared coordinates behind; ``X``: as of `RestMatrices`.
     """
     P, k = len(flat), system.legs * system.n
-    legs = flat[:, :k].reshape(P, system.legs, system.n, -1)
+    legs = flat[:, :k].reshape(P, system.legs, system.n, flat.shape[-1])
     found = np.zeros_like(flat)
     on_legs = of_legs @ legs
     if X is not None:
         on_legs = on_legs + X @ flat[:, None, k:]
         found[:, k:] += (X.swapaxes(-1, -2) @ legs).sum(axis=1)
-    found[:, :k] += on_legs.reshape(P, k, -1)
+    found[:, :k] += on_legs.reshape(P, k, flat.shape[-1])
     if of_payload.shape[-1]:
         on_hub = of_payload @ hub_motion(system, flat)
         found[:, k:] += on_hub[:, :6]
