@@ -47,6 +47,7 @@ nb_execution_mode = "cache"
 nb_execution_cache_path = str(ROOT / "build" / "site-notebooks")
 nb_execution_raise_on_error = True
 nb_execution_timeout = 120
+nb_merge_streams = True
 
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"

@@ -42,3 +42,5 @@ def test_notebook(notebook, tmp_path, monkeypatch, capsys):
 def test_all_have_titles():
     assert set(titles("--example")) == {path.stem for path in EXAMPLES}
     assert len(set(titles("--example").values())) == len(EXAMPLES) >= 20
+    assert set(titles("--notebook")) == {path.stem for path in NOTEBOOKS.glob("*.py")}
+    assert titles("--notebook")["first_robot"] == "A first robot"

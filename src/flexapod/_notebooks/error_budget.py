@@ -16,6 +16,7 @@
 # Whose micrometres are they? `machine-hexapod` is made of catalogue parts, warm, made to tolerances, with friction.
 
 # %%
+# %matplotlib inline
 import numpy as np
 
 import flexapod as fx
@@ -26,6 +27,7 @@ print(budget.attrs["summary"])
 
 # %%
 figure = fx.plot.budget(budget)
+figure
 
 # %% [markdown]
 # ## By part

@@ -18,6 +18,7 @@
 # of electric cylinders.
 
 # %%
+# %matplotlib inline
 import numpy as np
 
 import flexapod as fx
@@ -48,6 +49,7 @@ print(f"The tool misses its path by up to {1e6 * float(np.abs(data.tool_deviatio
 
 # %%
 figure = fx.plot.deviation_by_cause(data)
+figure
 
 # %% [markdown]
 # ## A change

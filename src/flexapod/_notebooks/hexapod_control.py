@@ -17,6 +17,7 @@
 # a loop about it is chosen with the linear model, and then run in samples.
 
 # %%
+# %matplotlib inline
 import numpy as np
 
 import flexapod as fx
@@ -42,6 +43,7 @@ print(plant.damp()[["frequency", "damping_ratio"]].isel(mode=slice(6)).to_datafr
 # %%
 locus = root_locus(plant, IFF(100.0, high_pass="5 Hz"), np.geomspace(1e-2, 1e2, 200))
 figure = fx.plot.root_locus(locus, below=600)
+figure
 
 # %% [markdown]
 # Damping is bought by softness: forces that stay are given way to, but for the high-pass.
@@ -65,6 +67,7 @@ for name, loop in loops.items():
 # %%
 responses = {name: loop.frequency_response(hz) for name, loop in loops.items()}
 figure = fx.plot.bode(responses, "wrench:fz", "tool:z")
+figure
 
 # %% [markdown]
 # ## How late may it be?

@@ -17,6 +17,7 @@
 # hydraulic one.
 
 # %%
+# %matplotlib inline
 import numpy as np
 
 import flexapod as fx
@@ -52,3 +53,4 @@ for name, study in robots.items():
 
 # %%
 figure = fx.plot.com_path(fx.simulate(robots["tripod"], tolerance=1e-3))
+figure

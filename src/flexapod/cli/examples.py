@@ -38,6 +38,6 @@ def place(option: str, name: str, given: Path | None) -> Path:
 
 def _title(written: str) -> str:
     """The first line of words: of an example its heading, of a notebook that of its first cell."""
-    lines = (line for line in written.splitlines() if not line.startswith(("# %%", "# ---", "#   ")))
+    lines = (line for line in written.splitlines() if not line.startswith(("# %%", "# ---", "# jupyter:", "#   ")))
     words = (line.removeprefix('r"""').strip('"# ') for line in lines)
     return next(line for line in words if line)
