@@ -119,10 +119,20 @@ def test_frequencies_that_are_none(robot, system, hz):
         (lambda x: control.ring_down([], 1e-3), "samples"),
         (lambda x: control.ring_down([NAN] * 100, 1e-3), "samples"),
         (lambda x: control.robot_jacobian(x), "robot"),
+        (lambda x: control.robot_jacobian(fx.preset("tripod"), [0.0, 0.0, NAN]), "at"),
+        (lambda x: control.robot_jacobian(fx.preset("tripod"), [0.0, 0.0]), "at"),
+        (lambda x: control.robot_jacobian(fx.preset("tripod"), "cok", [1.0, 2.0]), "stiffness"),
+        (lambda x: control.by_jacobian("x"), "jacobian"),
+        (lambda x: control.by_jacobian([[NAN]]), "jacobian"),
     ],
 )
 def test_what_is_asked_of_a_system(system, call, key):
     refused(lambda: call(system), key)
+
+
+def test_directions_without_any_stroke_are_not_told_apart():
+    with pytest.raises(fx.ComputationError, match="not told apart"):
+        control.by_jacobian(np.zeros((6, 6)))
 
 
 def test_a_system_has_finite_matrices():

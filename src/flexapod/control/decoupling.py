@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.arrays import Array
+from flexapod.control.arguments import numbers
 from flexapod.control.channels import Names
 from flexapod.control.controllers import Decoupled
 from flexapod.control.laws import ControlLaw
@@ -44,7 +45,12 @@ def by_jacobian(jacobian: ArrayLike) -> Decoupling:
 
     With the centre of mass masses do not couple, with the centre of stiffness springs do not.
     """
-    J = np.atleast_2d(np.asarray(jacobian, dtype=float))
+    try:
+        J = np.atleast_2d(np.asarray(jacobian, dtype=float))
+    except (TypeError, ValueError):
+        J = np.full((1, 1), np.nan)
+    if J.ndim != 2 or not np.isfinite(J).all():
+        raise InputError("is no matrix of finite numbers", key="jacobian", value=jacobian, allowed="(m, d)")
     inverse = _inverse(J, "jacobian")
     return Decoupling(into=inverse, out=inverse.T)
 
@@ -69,12 +75,16 @@ def robot_jacobian(
     if not isinstance(robot, Robot):
         raise InputError("is no robot", key="robot", value=type(robot).__name__, allowed="a Robot, or the Study of one")
     home = kinematics.home_pose(robot)
-    point = robot.com if isinstance(at, str) else np.asarray(at, dtype=float)
+    point = robot.com if isinstance(at, str) else numbers(at, "at", '"com", "cok", or three numbers [m]')
+    if len(point) != 3:
+        raise InputError("is no point", key="at", value=at, allowed='"com", "cok", or three numbers [m]')
     found = kinematics.drive_jacobian(robot, home, point)[0]
     if not (isinstance(at, str) and at == "cok"):
         if isinstance(at, str) and at != "com":
             raise InputError("is no point", key="at", value=at, allowed='"com", "cok", or three numbers')
         return found
+    if len(numbers(stiffness, "stiffness", "one number, or one for each drive [N/m]")) not in (1, len(found)):
+        raise InputError("is not one for each drive", key="stiffness", value=stiffness, allowed=f"1 or {len(found)}")
     away = home.rotation[0].T @ centre_of_stiffness(found, stiffness)  # in platform axes
     return kinematics.drive_jacobian(robot, home, point + away)[0]
 
@@ -154,6 +164,6 @@ def _real(shape: np.ndarray) -> Array:
 def _inverse(matrix: Array, key: str) -> Array:
     """Its (pseudo-)inverse; refuses what has none."""
     values = np.linalg.svd(matrix / (np.linalg.norm(matrix, axis=0) + 1e-300), compute_uv=False)
-    if values.min(initial=np.inf) < INDEPENDENT * values.max(initial=0.0):
+    if values.min(initial=np.inf) <= INDEPENDENT * values.max(initial=0.0):
         raise ComputationError(f"directions are not told apart by {key}", next_step="Ask for fewer directions")
     return np.asarray(np.linalg.pinv(matrix), dtype=float)

@@ -168,6 +168,7 @@ def _law(controller: AnyController, period: float, robot: model.Robot) -> StateS
             key="controller",
             value=type(controller).__name__,
             allowed="one of flexapod.control, a StateSpace, or a flexapod.control.Function",
+            next_step="Of a Scheduled: its .following(...) a path" if hasattr(controller, "following") else None,
         )
     return controller
 
