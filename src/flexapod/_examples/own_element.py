@@ -17,7 +17,7 @@ import flexapod as fx
 class Maxwell(fx.Element):
     """A Maxwell element: `stiffness` [N/m] of the spring, `relaxation` [s] of the pair."""
 
-    at: ClassVar[str] = "maxwell"
+    at: ClassVar[str] = "pair"
     coordinates: ClassVar = (("z", 1),)  # m, how far the damper has given way
     parameters: ClassVar = (("k", 1), ("c", 1), ("m", 1), ("home", 1))
 
@@ -41,9 +41,11 @@ class Maxwell(fx.Element):
 
 
 text = fx.preset("paper-robot").source_text
-study = fx.loads(text.replace("[motion]", '[leg.maxwell]\nstiffness = "100 N/mm"\nrelaxation = "50 ms"\n\n[motion]', 1))
+study = fx.loads(
+    text.replace("[motion]", '[leg.pair]\nstiffness = "100 N/mm"\nrelaxation = "50 ms"\n\n[motion]', 1)
+)
 data = fx.simulate(study, fidelity="rigid", step=5e-4)
-force, time = data.maxwell_force.sel(leg=1).values, data.time.values
+force, time = data.pair_force.sel(leg=1).values, data.time.values
 
 # By hand: the stroke's rate through a filter of first order, dF/dt = k v - F / tau.
 k, tau, h = 1e5, 0.05, time[1] - time[0]

@@ -23,7 +23,7 @@ __all__ = ["call", "calls", "started"]
 T = TypeVar("T")
 R = TypeVar("R")
 ENDINGS = [signal.Signals[name] for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
-GENTLE = 2.0  # seconds that a copy has to put its files away before it is killed
+GENTLE = 10.0  # seconds that a copy has to put its files away before it is killed
 
 
 def call(

@@ -16,16 +16,17 @@ if TYPE_CHECKING:
     from flexapod.results.summary import summary
     from flexapod.study.actuator import simulate_actuator
     from flexapod.study.kinematics import forward_kinematics, inverse_dynamics, inverse_kinematics, mobility
-    from flexapod.study.linear import compliance, linearize, transmissibility
+    from flexapod.study.linear import linearize
     from flexapod.study.simulation import run, simulate
     from flexapod.study.solid import simulate_solid
     from flexapod.study.static import modes, stiffness
     from flexapod.study.store import open_results, save
+    from flexapod.study.tool_responses import compliance, transmissibility
 
 _LATER = {  # what not all ask for loads on first use
     "Interrupted": "results.record",
     "budget": "error_budget",
-    "compliance": "study.linear",
+    "compliance": "study.tool_responses",
     "forward_kinematics": "study.kinematics",
     "inverse_dynamics": "study.kinematics",
     "inverse_kinematics": "study.kinematics",
@@ -40,7 +41,7 @@ _LATER = {  # what not all ask for loads on first use
     "simulate_solid": "study.solid",
     "stiffness": "study.static",
     "summary": "results.summary",
-    "transmissibility": "study.linear",
+    "transmissibility": "study.tool_responses",
     "vibration": "pose_errors.disturbances",
 }
 

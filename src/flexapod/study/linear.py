@@ -1,4 +1,4 @@
-"""A study about rest as a linear system with named channels; compliance and transmissibility; many poses."""
+"""A study about rest as a linear system with named channels; many poses."""
 
 from __future__ import annotations
 
@@ -8,15 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from flexapod import model
 from flexapod.arrays import Array
-from flexapod.control.arguments import frequencies
 from flexapod.control.state_space import StateSpace
 from flexapod.errors import InputError
 from flexapod.kinematics import Poses
-from flexapod.kinematics.rotations import matrix
 from flexapod.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose, read
 from flexapod.results.poses import as_many, batches, coordinates_of, is_many
 from flexapod.review.reach import CUT_OFF, FALLS_THROUGH, REACHED, equilibrium_codes, flags, rigid_codes
@@ -34,7 +31,7 @@ from flexapod.units import to_si
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["LinearModel", "compliance", "linearize", "transmissibility"]
+__all__ = ["MATRICES", "LinearModel", "linearize", "model_of", "plant_of"]
 
 Friction = Literal["sliding", "stuck"]
 
@@ -144,13 +141,13 @@ def linearize(
         return cast("LinearModel", _of_actuator(study, pose, inputs, outputs, drives, friction=friction, load=load))
     if is_many(pose):
         return cast("LinearModel", _grid(study, pose, inputs, outputs, drives, friction, load))
-    found, plant = _plant(study, pose, load, drives, friction)
+    found, plant = plant_of(study, pose, load, drives, friction)
     robot = plant.robot
     states = states_of(plant, asked(inputs, robot, "inputs"), asked(outputs, robot, "outputs"), about=_about(found))
-    return _model(found, plant, **{f.name: getattr(states, f.name) for f in fields(states)})
+    return model_of(found, plant, **{f.name: getattr(states, f.name) for f in fields(states)})
 
 
-def _plant(
+def plant_of(
     study: RobotLike, pose: PoseLike, load: LoadLike, drives: Drives, friction: Friction | None
 ) -> tuple[model.Study, Plant]:
     """The plant at one pose."""
@@ -273,7 +270,8 @@ def _name(study: model.Study) -> str:
     return study.robot.type if study.path is None else Path(study.path).stem
 
 
-def _model(study: model.Study, plant: Plant, **matrices: object) -> LinearModel:
+def model_of(study: model.Study, plant: Plant, **matrices: object) -> LinearModel:
+    """The linear model of a plant with these matrices and names."""
     pose = coordinates_of(study.robot, plant.locked.path)[0]
     return LinearModel(
         **matrices,  # type: ignore[arg-type]
@@ -281,122 +279,3 @@ def _model(study: model.Study, plant: Plant, **matrices: object) -> LinearModel:
         friction=plant.locked.simulation.friction, position=plant.x.pose[0, :3], quaternion=plant.x.pose[0, 3:],
         about=_about(study), plant=plant,
     )  # fmt: skip
-
-
-@one_thread()
-def compliance(
-    study: RobotLike,
-    hz: ArrayLike,
-    pose: PoseLike = None,
-    *,
-    drives: Drives = "given",
-    friction: Friction | None = None,
-    load: LoadLike = None,
-) -> Dataset:
-    """Motion of the tool by a wrench at the tool over frequency, along and about world axes.
-
-    Parameters
-    ----------
-    study, pose, drives, friction, load
-        As for `linearize`.
-    hz : array_like, shape (f,)
-        Frequencies; 0 is allowed.
-
-    Returns
-    -------
-    xarray.Dataset
-        `compliance` (output, input, frequency, part) [m/N, rad/N, m/(N m), rad/(N m)] and `compliance_norm`
-        (frequency), its Frobenius norm with the SI units of all entries taken as one.
-
-    Raises
-    ------
-    InputError, ComputationError
-        As `linearize`.
-
-    Examples
-    --------
-    >>> data = fx.compliance(fx.preset("machine-hexapod"), [0, 20, 60])  # Hz
-    >>> up = data.compliance.sel(output="tool:z", input="wrench:fz", part="real")
-    >>> print((1e9 * up).round(2).values)  # um/kN
-    [3.96 4.03 4.7 ]
-    """
-    found = linearize(study, pose, inputs="wrench", outputs="tool", drives=drives, friction=friction, load=load)
-    return _matrix("compliance", found, found.at(hz), hz, "motion of the tool by a wrench at the tool")
-
-
-@one_thread()
-def transmissibility(
-    study: RobotLike,
-    hz: ArrayLike,
-    pose: PoseLike = None,
-    *,
-    at: str = "tool",
-    tilt: bool = False,
-    drives: Drives = "given",
-    friction: Friction | None = None,
-    load: LoadLike = None,
-) -> Dataset:
-    """Motion of the platform by the motion of the floor over frequency, both at one point, Eq. (T20.24).
-
-    A floor that is displaced along, and turned about, world axes through the point of the platform; at 0 Hz it is 1.
-
-    Parameters
-    ----------
-    study, pose, drives, friction, load
-        As for `linearize`.
-    hz : array_like, shape (f,)
-        Frequencies; 0 is allowed without `tilt`.
-    at : str
-        A point, as of `linearize`.
-    tilt : bool
-        Whether gravity pulls aside as the floor tilts; then slow turns show the sag of a robot on a slope.
-
-    Returns
-    -------
-    xarray.Dataset
-        `transmissibility` (output, input, frequency, part) and `transmissibility_norm` (frequency), its Frobenius norm
-        with the SI units of all entries taken as one.
-
-    Raises
-    ------
-    InputError, ComputationError
-        As `linearize`.
-
-    Examples
-    --------
-    >>> data = fx.transmissibility(fx.preset("machine-hexapod"), [0, 20, 1000])  # Hz
-    >>> print(data.transmissibility.sel(output="tool:z", input="floor:z", part="real").round(2).values)
-    [1.   1.02 0.02]
-    """
-    found, plant = _plant(study, pose, load, drives, friction)
-    inputs, outputs = asked("floor", plant.robot, "inputs"), asked("tool", plant.robot, "outputs")
-    (point, *_) = asked(f"accelerometer:{at}", plant.robot, "outputs")
-    R = matrix(plant.x.pose[:, 3:])[0]
-    arm = R @ (point.at if point.at is not None else np.zeros(3))
-    states = states_of(plant, inputs, outputs, tilt=tilt, about=plant.x.pose[0, :3] + arm)
-    whole = _model(found, plant, **{f.name: getattr(states, f.name) for f in fields(states)})
-    away = arm - R @ (plant.robot.tool - plant.robot.com)
-    carry = np.eye(6)
-    carry[:3, 3:] = np.cross(np.eye(3), away).T  # a turn about the tool displaces the point
-    s = 2j * np.pi * frequencies(hz)
-    values = np.eye(6)[:, :, None] + s**2 * np.einsum("ij,jkf->ikf", carry, whole.at(hz))
-    return _matrix("transmissibility", whole, values, hz, f"motion of the platform by that of the floor, at {at}")
-
-
-def _matrix(name: str, found: StateSpace, values: NDArray[np.complex128], hz: ArrayLike, words: str) -> Dataset:
-    import xarray as xr
-
-    from flexapod.control.datasets import PARTS, channel_labels, in_parts
-
-    frequency = frequencies(hz)
-    norm = np.sqrt((np.abs(values) ** 2).sum(axis=(0, 1)))
-    said = "Frobenius norm, SI units of all entries taken as one"
-    units = "output_units / input_units" if name == "compliance" else "1"
-    return xr.Dataset(
-        {
-            name: (("output", "input", "frequency", "part"), in_parts(values), {"units": units, "long_name": words}),
-            f"{name}_norm": ("frequency", norm, {"units": "1", "long_name": said}),
-        },
-        channel_labels(found, "output", "input")
-        | {"frequency": ("frequency", frequency, {"units": "Hz"}), "part": ("part", PARTS)},
-    )

@@ -6,7 +6,8 @@ import numpy as np
 
 from flexapod import model
 from flexapod.arrays import Array
-from flexapod.study.linear import LinearModel, compliance, linearize, transmissibility
+from flexapod.study.linear import LinearModel, linearize
+from flexapod.study.tool_responses import compliance, transmissibility
 from flexapod.verify.case import Check, case, checks
 
 __all__ = ["DAMPER", "SPRING", "gravimeter", "hinged_beam", "stewart"]
