@@ -41,9 +41,7 @@ class Maxwell(fx.Element):
 
 
 text = fx.preset("paper-robot").source_text
-study = fx.loads(
-    text.replace("[motion]", '[leg.pair]\nstiffness = "100 N/mm"\nrelaxation = "50 ms"\n\n[motion]', 1)
-)
+study = fx.loads(text.replace("[motion]", '[leg.pair]\nstiffness = "100 N/mm"\nrelaxation = "50 ms"\n\n[motion]', 1))
 data = fx.simulate(study, fidelity="rigid", step=5e-4)
 force, time = data.pair_force.sel(leg=1).values, data.time.values
 
