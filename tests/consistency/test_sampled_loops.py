@@ -292,7 +292,7 @@ def test_samples_off_the_outputs_and_beside_jumps(study):
     [
         ({"sample": T / 3}, "multiple of the fixed step"),
         ({"quantise": {"strike": 1.0}}, "no channel of this controller"),
-        ({"delay_samples": -1}, "no number of samples"),
+        ({"delay_samples": -1}, "a whole number"),
         ({"controller": None, "step": None, "sample": T}, "there is none"),
         ({"controller": Function(function=len, inputs=("strok:1",), outputs=("drive:1",))}, "'stroke'"),
         ({"controller": Function(function=len, inputs=("stroke:1",), outputs=("motor:1",))}, "not a channel"),
