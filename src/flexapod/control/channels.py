@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from flexapod.errors import InputError, names_of, nearest
+from flexapod.errors import InputError, closest, names_of
 
 __all__ = ["NOISE", "RATE", "Names", "chosen", "groups"]
 
@@ -48,12 +48,10 @@ def groups(names: Sequence[str]) -> list[str]:
 
 
 def _unknown(name: str, among: Sequence[str], key: str) -> InputError:
-    words = [*groups(among), *among]
-    like = nearest(str(name), words)
     return InputError(
         "is not a channel",
         key=key,
         value=name,
         allowed=", ".join(groups(among)) + f", or a single one as {among[0]}" if among else "none",
-        next_step=None if like is None else f"Did you mean {like!r}?",
+        next_step=closest(name, [*groups(among), *among]),
     )

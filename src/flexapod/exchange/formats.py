@@ -19,92 +19,54 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Format:
-    """A format: `module` below `flexapod.exchange` and `function` there, which returns what is `Content`.
+    """A format: its `writer`, as "module.function" below `flexapod.exchange`, which returns what is `Content`.
 
-    The function takes the study, and of the `options` of `export` those that are given, by their names. `endings` of
-    the file, none: it is a folder; `noun`, `words`: what it is; `named`: how it has to be named; `by_name`: what is
-    written depends on that, which the function takes as `name`.
+    The writer takes the study, and of the `options` of `export` those that are given, by their names. `endings` of the
+    file, none: it is a folder; `noun`, `words`: what it is; `named`: how it has to be named; `by_name`: what is written
+    depends on that, which the writer takes as `name`.
     """
 
-    module: str
-    function: str
+    writer: str
     endings: tuple[str, ...]
     noun: str
     words: str
     named: str
+    options: tuple[str, ...]
     by_name: bool = False
-    options: tuple[str, ...] = ()
 
 
 FORMATS: Mapping[str, Format] = {
     "abaqus": Format(
-        module="export",
-        function="abaqus",
-        endings=(".inp",),
-        noun="a deck",
-        words="a deck that CalculiX reads as well",
-        named="FILE.inp: both programs ask for it",
-        options=("pose", "load", "title", "elements", "modes"),
+        "export.abaqus", (".inp",), "a deck", "a deck that CalculiX reads as well",
+        "FILE.inp: both programs ask for it", ("pose", "load", "title", "elements", "modes"),
     ),
     "fmu": Format(
-        module="fmu",
-        function="fmu",
-        endings=(".fmu",),
-        noun="a functional mock-up unit",
-        words="a unit for co-simulation, FMI 3.0, with its sources",
-        named="FILE.fmu",
-        options=("commands", "step"),
+        "fmu.fmu", (".fmu",), "a functional mock-up unit", "a unit for co-simulation, FMI 3.0, with its sources",
+        "FILE.fmu", ("commands", "step"),
     ),
     "c": Format(
-        module="c_source",
-        function="c",
-        endings=(),
-        noun="a folder of C",
-        words="a folder with the robot's steps in C",
-        named="a folder",
-        options=("commands", "step"),
+        "c_source.c", (), "a folder of C", "a folder with the robot's steps in C", "a folder", ("commands", "step")
     ),
     "mjcf": Format(
-        module="mjcf",
-        function="mjcf",
-        endings=(".xml", ".mjcf"),
-        noun="a model for MuJoCo",
-        words="a model for MuJoCo with closed loops",
-        named="FILE.xml or FILE.mjcf",
-        options=("fidelity",),
+        "mjcf.mjcf", (".xml", ".mjcf"), "a model for MuJoCo", "a model for MuJoCo with closed loops",
+        "FILE.xml or FILE.mjcf", ("fidelity",),
     ),
     "gltf": Format(
-        module="gltf",
-        function="gltf",
-        endings=(".glb",),
-        noun="a GLB file",
-        words="the motion for viewers of glTF, with pistons that bend",
-        named="FILE.glb",
-        options=("data", "magnify"),
+        "gltf.gltf", (".glb",), "a GLB file", "the motion for viewers of glTF, with pistons that bend",
+        "FILE.glb", ("data", "magnify"),
     ),
     "vtk": Format(
-        module="vtk",
-        function="vtk",
-        endings=(".pvd",),
-        noun="a time series for ParaView",
-        words="the motion as a time series for ParaView",
-        named="FILE.pvd",
-        options=("data",),
-        by_name=True,
+        "vtk.vtk", (".pvd",), "a time series for ParaView", "the motion as a time series for ParaView",
+        "FILE.pvd", ("data",), by_name=True,
     ),
     "mat": Format(
-        module="state_space",
-        function="state_space",
-        endings=(".mat", ".npz", ".nc"),
-        noun="a file of matrices",
-        words="matrices A, B, C, D about rest, of MATLAB, NumPy or NetCDF",
-        named="FILE.mat, FILE.npz or FILE.nc",
-        options=("pose", "load", "inputs", "outputs"),
-        by_name=True,
+        "state_space.state_space", (".mat", ".npz", ".nc"), "a file of matrices",
+        "matrices A, B, C, D about rest, of MATLAB, NumPy or NetCDF", "FILE.mat, FILE.npz or FILE.nc",
+        ("pose", "load", "inputs", "outputs"), by_name=True,
     ),
-}
+}  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -196,7 +158,8 @@ def written(study: model.Study, format: str, path: Path, given: Mapping[str, obj
     check_options(format, given)
     check_place(format, path)
     named = {"name": path.name} if kind.by_name else {}
-    found: Content = getattr(loaded(f"flexapod.exchange.{kind.module}"), kind.function)(study, **named, **given)
+    module, _, function = kind.writer.partition(".")
+    found: Content = getattr(loaded(f"flexapod.exchange.{module}"), function)(study, **named, **given)
     beside = path.parent if kind.endings else path
     places = {beside / name if name else path: content for name, content in found.files.items()}
     for place, content in places.items():

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexapod import model
 from flexapod.arrays import Array
-from flexapod.errors import InputError, nearest
+from flexapod.errors import InputError, closest
 from flexapod.results.asked import Made
 from flexapod.results.record import Record
 from flexapod.units import to_si
@@ -192,13 +192,12 @@ def _by_channel(given: PerChannel, names: Sequence[str], key: str, without: floa
     for name, value in given.items() if isinstance(given, Mapping) else [("", given)]:
         which = [i for i, known in enumerate(names) if not name or known == name or known.startswith(f"{name}:")]
         if not which:
-            like = nearest(name, names)
             raise InputError(
                 "is no channel of this controller",
                 key=key,
                 value=name,
                 allowed=", ".join(names),
-                next_step=None if like is None else f"Did you mean {like!r}?",
+                next_step=closest(name, names),
             )
         if value is not None:
             found[which] = value if value == without else to_si(value, "number", key=key)

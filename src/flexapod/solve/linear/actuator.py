@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from flexapod.arrays import Array
-from flexapod.errors import ComputationError, InputError, names_of, nearest
+from flexapod.errors import ComputationError, InputError, closest, names_of
 from flexapod.mechanics.layout import COMMAND_SIZE, LOAD_SIZE, Shapes
 from flexapod.model import Actuator, Simulation
 from flexapod.solve.kernel import Function
@@ -181,10 +181,9 @@ def _chosen(names: Sequence[str], known: list[str], key: str) -> list[str]:
     for name in names_of(names, key):
         some = [x for x in known if x == name or x.startswith(f"{name}:")]
         if not some:
-            like = nearest(name, [*known, *{x.partition(":")[0] for x in known}])
             raise InputError(
                 "is not a channel of a single actuator", key=key, value=name, allowed=", ".join(known),
-                next_step=None if like is None else f"Did you mean {like!r}?",
+                next_step=closest(name, [*known, *{x.partition(":")[0] for x in known}]),
             )  # fmt: skip
         found |= dict.fromkeys(some)
     if not found:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod.arrays import Array
-from flexapod.errors import InputError, names_of, nearest
+from flexapod.errors import InputError, closest, names_of
 from flexapod.model import Robot
 from flexapod.solve.linear.motions import COMPONENTS
 from flexapod.units import to_si
@@ -87,10 +87,9 @@ def _words(known: dict[str, object]) -> str:
 def _of(name: str, known: dict[str, object], robot: Robot, key: str) -> list[PlantChannel]:
     group = next((g for g in sorted(known, key=len, reverse=True) if name == g or name.startswith(f"{g}:")), None)
     if group is None:
-        like = nearest(name, [*known, *(f"{g}:POINT" for g in AT_POINTS if g in known)])
         raise InputError(
             "is not a channel", key=key, value=name, allowed=_words(known),
-            next_step=None if like is None else f"Did you mean {like!r}?",
+            next_step=closest(name, [*known, *(f"{g}:POINT" for g in AT_POINTS if g in known)]),
         )  # fmt: skip
     if robot.platform_fixed and group in ON_PLATFORM:
         raise InputError(
@@ -104,10 +103,9 @@ def _of(name: str, known: dict[str, object], robot: Robot, key: str) -> list[Pla
         every if group in AT_POINTS and rest and not any(rest.endswith(f":{axis}") for axis in AXES) else []
     )
     if not chosen:
-        like = nearest(name, [x.name for x in every])
         raise InputError(
             "is not a channel", key=key, value=name, allowed=f"{every[0].name} to {every[-1].name}",
-            next_step=None if like is None else f"Did you mean {like!r}?",
+            next_step=closest(name, [x.name for x in every]),
         )  # fmt: skip
     return chosen
 
@@ -158,12 +156,11 @@ def _point(text: str, robot: Robot, name: str, key: str) -> Array:
             return np.array([to_si(float(x) if _NUMBER.fullmatch(x) else x, "length") for x in numbers]) - robot.com
     except (InputError, ValueError):
         pass
-    like = nearest(text, points)
     raise InputError(
         "has no such point", key=key, value=name,
         allowed=f"{', '.join([*list(points)[:4], 'joint-1'])} to joint-{len(robot.legs)}, or a place in platform axes "
         "as (0.1 m, 0, 50 mm)",
-        next_step=None if like is None or not text else f"Did you mean {like!r}?",
+        next_step=closest(text, points),
     )  # fmt: skip
 
 
