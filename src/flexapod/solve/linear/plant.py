@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Literal, cast
 
 import numpy as np
@@ -17,6 +17,7 @@ from flexapod.model import Drive, Encoder, ForceDrive, Load, PrescribedDrive, Ro
 from flexapod.solve.batch import RestMatrices, RestStates, matrices_at_rest
 from flexapod.solve.friction import with_friction
 from flexapod.solve.linear.beside import pushes
+from flexapod.solve.linear.gravity import gravity_forces
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.robot_system import robot_system, smooth
@@ -27,7 +28,7 @@ from flexapod.solve.statics.reduction import Motions, independent
 from flexapod.solve.statics.substitutes import with_substitutes
 from flexapod.solve.system import Index, System
 
-__all__ = ["Drives", "Plant", "plant_at"]
+__all__ = ["Drives", "Plant", "at_rest", "plant_at"]
 
 Drives = Literal["given", "force"]
 #: Of a drive's spring and loop: what is not there where its force is given.
@@ -71,6 +72,11 @@ class Plant:
             found[..., self.system.ports == port] = told[..., k, None]
         return found
 
+    @cached_property
+    def by_gravity(self) -> Array:
+        """Forces (P, size, 3) on all coordinates per unit acceleration of the base, Eq. (T18.4)."""
+        return gravity_forces(self.system, self.x, self.command, self.locked.acts.wrench)
+
 
 def plant_at(
     robot: Robot, simulation: Simulation, path: kinematics.Poses, load: Load | None = None, drives: Drives = "given"
@@ -87,27 +93,40 @@ def plant_at(
     if drives == "force":
         robot = robot.replace(legs=tuple(leg.replace(drive=_holding(leg.drive)) for leg in robot.legs))
     locked = locked_poses(robot, simulation, path, load)
-    robot = locked.robot
     shapes = locked.system.kernel.shapes
-    as_at_rest = drives == "given" and not (shapes.has("w") or shapes.has("j"))
-    system = locked.system if as_at_rest else _moving(robot, simulation, locked.per_loss, drives)
-    x = locked.equilibria.states[locked.at]
-    if not as_at_rest:
-        x = replace(x, drive=np.zeros((len(x), system.legs, system.ports.size)))  # forces of statics: none is asked for
-    m = with_friction(system, x, matrices_at_rest(system, x, locked.acts.wrench), stuck=simulation.friction == "stuck")
-    if (more := pushes(system, x.q)) is not None:
-        m = replace(m, D=m.D + more[0], K=m.K + more[1])
-    motions = independent(system, m)
-    if len(x) and motions.most.max() > FARTHEST:
+    plant = at_rest(locked)
+    if drives == "force" or shapes.has("w") or shapes.has("j"):
+        plant = _in_motion(locked, drives)
+    if (more := pushes(plant.system, plant.x.q)) is not None:
+        m = replace(plant.m, D=plant.m.D + more[0], K=plant.m.K + more[1])
+        plant = replace(plant, m=m, motions=independent(plant.system, m))
+    if len(plant.x) and plant.motions.most.max() > FARTHEST:
         raise ComputationError(
             "too far from home: the shape or step that stands there for what a joint or drive holds moves by "
-            f"{motions.most.max():.3g} here where another coordinate moves by 1 (at most {FARTHEST:g})",
+            f"{plant.motions.most.max():.3g} here where another coordinate moves by 1 (at most {FARTHEST:g})",
             next_step="Give the robot a home nearer to the pose.",
         )
-    port = push_ports(system, robot)
+    return plant
+
+
+def at_rest(locked: LockedPoses) -> Plant:
+    """The plant about equilibria with the equations of statics: drives as they are given."""
     return Plant(
-        locked=locked, drives=drives, system=system, x=x, m=m, motions=motions, port=port, as_at_rest=as_at_rest
-    )
+        locked=locked, drives="given", system=locked.system, x=locked.equilibria.states[locked.at], m=locked.m,
+        motions=locked.motions, port=push_ports(locked.system, locked.robot), as_at_rest=True,
+    )  # fmt: skip
+
+
+def _in_motion(locked: LockedPoses, drives: Drives) -> Plant:
+    """The plant with the equations of motion: loops as they are, or drives released."""
+    robot, simulation = locked.robot, locked.simulation
+    system, x = _moving(robot, simulation, locked.per_loss, drives), locked.equilibria.states[locked.at]
+    x = replace(x, drive=np.zeros((len(x), system.legs, system.ports.size)))  # forces of statics: none is asked for
+    m = with_friction(system, x, matrices_at_rest(system, x, locked.acts.wrench), stuck=simulation.friction == "stuck")
+    return Plant(
+        locked=locked, drives=drives, system=system, x=x, m=m, motions=independent(system, m),
+        port=push_ports(system, robot), as_at_rest=False,
+    )  # fmt: skip
 
 
 def _holding(drive: Drive) -> Drive:

@@ -10,14 +10,13 @@ from numpy.typing import NDArray
 
 from flexapod.arrays import Array
 from flexapod.errors import InputError
-from flexapod.solve.batch import RestStates
-from flexapod.solve.linear.gravity import gravity_forces
+from flexapod.solve.linear.channels import asked
+from flexapod.solve.linear.plant import at_rest
+from flexapod.solve.linear.second_order import input_forces
 from flexapod.solve.modal.damped import poles
 from flexapod.solve.modal.modal_loops import ModalLoops, growth, unstable_words
 from flexapod.solve.modal.modes import loops_of, modal_damping, no_mass, unit_modes
-from flexapod.solve.statics.drive_forces import push_ports
 from flexapod.solve.statics.locked import LockedPoses, the_equilibrium
-from flexapod.solve.statics.stiffness import tool_motion
 
 __all__ = ["LinearRobot", "linear_robot"]
 
@@ -28,7 +27,9 @@ Complex = NDArray[np.complex128]
 
 @dataclass(frozen=True, kw_only=True)
 class LinearRobot:
-    """A robot in r undamped modes of unit stiffness, Eq. (T18.1).
+    """A robot in r undamped modes of unit stiffness, Eq. (T18.1); what inputs push is that of the state space.
+
+    Spectra are shared out among modes, and their integral takes up to seven times as long by a state space.
 
     ``omega`` (r,) [rad/s], inf of what has no mass; ``damping`` (r, r) [s]; ``tool`` (6, r): displacement and rotation
     of the tool, world axes; ``inputs``: modal forces (r, any) of unit inputs by name: ``floor`` [per m/s^2], ``wrench``
@@ -76,36 +77,26 @@ def linear_robot(locked: LockedPoses) -> LinearRobot:
     ComputationError
         No equilibrium at this pose, or masses that no body can have.
     """
-    system, at = locked.system, the_equilibrium(locked)
-    found = unit_modes(locked, shapes=True)
+    at, found = the_equilibrium(locked), unit_modes(locked, shapes=True)
     if not found.positive[0]:
-        raise no_mass(system, at.state.q)
-    flat = found.flat[0]
-    hub = flat[system.legs * system.n :]
-    tool = tool_motion(locked.robot, RestStates.of(at.state).pose)[0] @ hub
-    inputs = {
-        "floor": flat.T @ floor_forces(locked),
-        "wrench": tool.T,
-        "drive": flat.T @ _drive_forces(locked),
-    }
+        raise no_mass(locked.system, at.state.q)
     damping, loops = modal_damping(locked, found.flat)[0], [*loops_of(locked), None]
-    model = LinearRobot(omega=found.omega[0], damping=damping, tool=tool, inputs=inputs, loops=loops[0])
+    inputs = _inputs(locked, found.flat[0])
+    model = LinearRobot(omega=found.omega[0], damping=damping, tool=inputs["wrench"].T, inputs=inputs, loops=loops[0])
     if model.loops is not None and (words := unstable_words(growth(model.poles(np.inf)))):
         raise InputError(words[0], key="leg.drive.loop", allowed="loops whose deviations decay")
     return model
 
 
-def floor_forces(locked: LockedPoses) -> Array:
-    """Forces (N, 3) on all coordinates per unit acceleration of the base along x, y, z, Eq. (T18.4)."""
-    x, command = locked.equilibria.states[locked.at], locked.command[locked.at]
-    return gravity_forces(locked.system, x, command, locked.acts.wrench)[0]
-
-
-def _drive_forces(locked: LockedPoses) -> Array:
-    """Forces (N, legs) on all coordinates per unit force of each drive, Eq. (T18.5); of passive legs zero."""
-    system = locked.system
-    found = np.zeros((system.size, system.legs))
-    for i, at in enumerate(push_ports(system, locked.robot)):
-        if at >= 0:
-            found[i * system.n + at, i] = 1.0
-    return found
+def _inputs(locked: LockedPoses, flat: Array) -> dict[str, Array]:
+    """Modal forces of unit inputs of shapes (N, r): accelerations of the floor, wrench, forces of all drives."""
+    plant, robot = at_rest(locked), locked.robot
+    groups = {name: asked(name, robot, "inputs") for name in ("floor", "wrench", "drive")}
+    groups["floor"] = groups["floor"][:3]
+    every = [channel for group in groups.values() for channel in group]
+    forces = flat.T @ input_forces(plant, every, np.zeros(3))[0]
+    parts = np.split(forces, np.cumsum([len(group) for group in groups.values()])[:-1], axis=1)
+    found = dict(zip(groups, parts, strict=True))
+    drive = np.zeros((len(forces), robot.count))  # of passive legs zero
+    drive[:, [channel.leg for channel in groups["drive"]]] = found["drive"]
+    return found | {"drive": drive}

@@ -13,14 +13,13 @@ from flexapod.kinematics.rotations import matrix
 from flexapod.solve.batch import residual
 from flexapod.solve.linear.channels import PlantChannel
 from flexapod.solve.linear.floor import tilt_stiffness, turning_forces
-from flexapod.solve.linear.gravity import gravity_forces
 from flexapod.solve.linear.motions import coordinate_names, held_motions, on_motions
 from flexapod.solve.linear.plant import Plant
 from flexapod.solve.modal.modes import mass_on_motions, no_mass
 from flexapod.solve.statics.stiffness import tool_motion
 from flexapod.solve.system import Index
 
-__all__ = ["SecondOrder", "point_motion", "second_order"]
+__all__ = ["SecondOrder", "input_forces", "point_motion", "second_order"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,7 +73,6 @@ def second_order(
     system, motions = plant.system, plant.motions
     P, d, about = len(plant.x), motions.columns.size, np.zeros(3) if about is None else about
     commands = [c for c in inputs if c.group == "command"]
-    gravity = gravity_forces(system, plant.x, plant.command, plant.locked.acts.wrench)
     turns = [c for c in inputs if c.group == "floor" and c.axis >= 3] if tilt and plant.robot.gravity.any() else []
     extra = len(commands) + len(turns)
     if not d and not extra:
@@ -89,8 +87,9 @@ def second_order(
     Q[:, :, d : d + len(commands)] += (by := _springs(plant, commands))[0]
     R[:, :, d : d + len(commands)] += by[1]
     for k, channel in enumerate(turns):
-        Q[:, :, d + len(commands) + k] += tilt_stiffness(gravity, plant.robot.gravity)[:, :, channel.axis - 3]
-    forces = _forces(plant, inputs, gravity, about)
+        Q[:, :, d + len(commands) + k] += tilt_stiffness(plant.by_gravity, plant.robot.gravity)[:, :, channel.axis - 3]
+    _refuse_held(plant, inputs)
+    forces = input_forces(plant, inputs, about)
     own, sums, lags = _named(plant)
     # a lag's impulse enters by its rate alone, the force; a sum's equation is integrated once, Eq. (T20.7)
     Q[:, :, lags], R[:, :, lags], A[:, :, lags] = R[:, :, lags], A[:, :, lags], 0.0
@@ -176,7 +175,7 @@ def point_motion(plant: Plant, at: Array) -> Array:
     return found
 
 
-def _forces(plant: Plant, inputs: Sequence[PlantChannel], gravity: Array, about: Array) -> Array:
+def input_forces(plant: Plant, inputs: Sequence[PlantChannel], about: Array) -> Array:
     """Forces (P, size, m) on all coordinates per unit input, Eqs. (T18.3)-(T18.5), (T20.8)-(T20.9)."""
     system = plant.system
     P, hub = len(plant.x), slice(system.legs * system.n, system.size)
@@ -191,13 +190,16 @@ def _forces(plant: Plant, inputs: Sequence[PlantChannel], gravity: Array, about:
             case "drive":
                 found[:, channel.leg * system.n + plant.pushed(channel.leg), k] = 1.0
             case "floor" if channel.axis < 3:
-                found[:, :, k] = gravity[:, :, channel.axis]
+                found[:, :, k] = plant.by_gravity[:, :, channel.axis]
             case "floor" if turning is not None:
                 found[:, :, k] = turning[:, :, channel.axis - 3]
+    return found
+
+
+def _refuse_held(plant: Plant, inputs: Sequence[PlantChannel]) -> None:
     drives = [c for c in inputs if c.group == "drive"]
-    if drives and all(system.held[c.leg, plant.port[c.leg]] for c in drives):
+    if drives and all(plant.system.held[c.leg, plant.port[c.leg]] for c in drives):
         raise InputError(
             "moves nothing: the drives hold their positions, whatever pushes them", key="inputs", value="drive",
             allowed='drives that give way; or drives = "force", which releases them',
         )  # fmt: skip
-    return found
