@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flexapod.runtime.loading import loaded
+from flexapod.runtime.loading import later
 
 if TYPE_CHECKING:
     from flexapod.control.adaptive import AdaptiveDamping, Tracker
@@ -43,39 +43,26 @@ if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
 
 _HOMES = {
-    "adaptive": ("AdaptiveDamping", "Tracker"),
-    "closing": ("DelayedLoop",),
-    "controllers": ("DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together"),
-    "decoupling": (
-        "Decoupling",
-        "by_jacobian",
-        "by_modes",
-        "by_singular_vectors",
-        "centre_of_stiffness",
-        "robot_jacobian",
+    "flexapod.control.adaptive": ("AdaptiveDamping", "Tracker"),
+    "flexapod.control.closing": ("DelayedLoop",),
+    "flexapod.control.controllers": (
+        "DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together",
     ),
-    "function": ("Function",),
-    "impedances": ("impedance",),
-    "laws": (
-        "ControlLaw",
-        "complementary",
-        "gain",
-        "high_pass",
-        "integrator",
-        "lead",
-        "low_pass",
-        "notch",
-        "pid",
-        "positive_feedback",
-        "rate",
+    "flexapod.control.decoupling": (
+        "Decoupling", "by_jacobian", "by_modes", "by_singular_vectors", "centre_of_stiffness", "robot_jacobian",
     ),
-    "limits": ("margins",),
-    "loops": ("best_gain", "root_locus"),
-    "ring_down": ("ring_down",),
-    "scheduled": ("Scheduled",),
-    "state_space": ("StateSpace",),
-}
-_NAMES = {name: module for module, names in _HOMES.items() for name in names}
+    "flexapod.control.function": ("Function",),
+    "flexapod.control.impedances": ("impedance",),
+    "flexapod.control.laws": (
+        "ControlLaw", "complementary", "gain", "high_pass", "integrator", "lead", "low_pass", "notch", "pid",
+        "positive_feedback", "rate",
+    ),
+    "flexapod.control.limits": ("margins",),
+    "flexapod.control.loops": ("best_gain", "root_locus"),
+    "flexapod.control.ring_down": ("ring_down",),
+    "flexapod.control.scheduled": ("Scheduled",),
+    "flexapod.control.state_space": ("StateSpace",),
+}  # fmt: skip
 
 __all__ = [
     "DVF",
@@ -117,12 +104,8 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> object:
-    if name not in _NAMES:
-        raise AttributeError(f"module 'flexapod.control' has no attribute {name!r}")
-    value = globals()[name] = getattr(loaded(f"flexapod.control.{_NAMES[name]}"), name)
-    return value
+__getattr__ = later("flexapod.control", _HOMES)
 
 
 def __dir__() -> list[str]:
-    return sorted({name for name in globals() if name.startswith("__")} | {*_NAMES})
+    return sorted({name for name in globals() if name.startswith("__")} | {*__all__})

@@ -14,7 +14,7 @@ from flexapod.plot.payload import com_path, deviation_by_cause, energies, motion
 from flexapod.plot.style import save
 from flexapod.plot.sweep import sweep
 from flexapod.plot.vibration import vibration
-from flexapod.runtime.loading import loaded
+from flexapod.runtime.loading import later
 
 if TYPE_CHECKING:
     from flexapod.plot.linear import bode, cumulative, transmissibility
@@ -63,9 +63,4 @@ _LATER = {
     "flexapod.paper.variant_figures": ("half_angles", "start_jump"),
 }
 
-
-def __getattr__(name: str) -> object:
-    for module, names in _LATER.items():
-        if name in names:
-            return getattr(loaded(module), name)
-    raise AttributeError(f"module 'flexapod.plot' has no attribute {name!r}")
+__getattr__ = later("flexapod.plot", _LATER)

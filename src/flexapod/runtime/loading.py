@@ -5,13 +5,13 @@ from __future__ import annotations
 import atexit
 import gc
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib import import_module
 from types import ModuleType
 from typing import Any
 
-__all__ = ["lazy", "loaded", "without"]
+__all__ = ["later", "lazy", "loaded", "without"]
 
 atexit.register(gc.freeze)  # the search as the interpreter ends would look at every module again
 
@@ -28,6 +28,20 @@ def loaded(name: str) -> ModuleType:
             gc.unfreeze()  # into the oldest generation
         if collecting:
             gc.enable()
+
+
+def later(package: str, homes: Mapping[str, Sequence[str]]) -> Callable[[str], object]:
+    """What a package has for `__getattr__`: its names, by the modules that they live in, load on first use."""
+    module_of = {name: module for module, names in homes.items() for name in names}
+
+    def found(name: str) -> object:
+        if name not in module_of:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        value = getattr(loaded(module_of[name]), name)
+        setattr(sys.modules[package], name, value)
+        return value
+
+    return found
 
 
 class lazy(ModuleType):

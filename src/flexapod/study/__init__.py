@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import TYPE_CHECKING
 
 from flexapod.pose_errors import accuracy, play
 from flexapod.review.checks import check_path
+from flexapod.runtime.loading import later
 from flexapod.study.parts import parts
 
 if TYPE_CHECKING:
@@ -24,25 +24,18 @@ if TYPE_CHECKING:
     from flexapod.study.tool_responses import compliance, transmissibility
 
 _LATER = {  # what not all ask for loads on first use
-    "Interrupted": "results.record",
-    "budget": "error_budget",
-    "compliance": "study.tool_responses",
-    "forward_kinematics": "study.kinematics",
-    "inverse_dynamics": "study.kinematics",
-    "inverse_kinematics": "study.kinematics",
-    "linearize": "study.linear",
-    "mobility": "study.kinematics",
-    "modes": "study.static",
-    "open_results": "study.store",
-    "run": "study.simulation",
-    "save": "study.store",
-    "simulate": "study.simulation",
-    "simulate_actuator": "study.actuator",
-    "simulate_solid": "study.solid",
-    "stiffness": "study.static",
-    "summary": "results.summary",
-    "transmissibility": "study.tool_responses",
-    "vibration": "pose_errors.disturbances",
+    "flexapod.results.record": ("Interrupted",),
+    "flexapod.error_budget": ("budget",),
+    "flexapod.study.tool_responses": ("compliance", "transmissibility"),
+    "flexapod.study.kinematics": ("forward_kinematics", "inverse_dynamics", "inverse_kinematics", "mobility"),
+    "flexapod.study.linear": ("linearize",),
+    "flexapod.study.static": ("modes", "stiffness"),
+    "flexapod.study.store": ("open_results", "save"),
+    "flexapod.study.simulation": ("run", "simulate"),
+    "flexapod.study.actuator": ("simulate_actuator",),
+    "flexapod.study.solid": ("simulate_solid",),
+    "flexapod.results.summary": ("summary",),
+    "flexapod.pose_errors.disturbances": ("vibration",),
 }
 
 __all__ = [
@@ -72,12 +65,8 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> object:
-    if name not in _LATER:
-        raise AttributeError(f"module 'flexapod.study' has no attribute {name!r}")
-    value = globals()[name] = getattr(import_module(f"flexapod.{_LATER[name]}"), name)
-    return value
+__getattr__ = later("flexapod.study", _LATER)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_LATER})
+    return sorted({*globals(), *__all__})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, cast
 
@@ -22,7 +22,7 @@ from flexapod.solve.linear.actuator import actuator_states
 from flexapod.solve.linear.channels import asked
 from flexapod.solve.linear.grid import grid_of
 from flexapod.solve.linear.plant import Drives, Plant, plant_at
-from flexapod.solve.linear.states import Descriptor, descriptor_of, states_of, units_of
+from flexapod.solve.linear.states import Descriptor, States, descriptor_of, states_of, units_of
 from flexapod.solve.statics.branch import fallen
 from flexapod.solve.statics.locked import the_equilibrium
 from flexapod.study.many_modes import poses_of
@@ -144,7 +144,7 @@ def linearize(
     found, plant = plant_of(study, pose, load, drives, friction)
     robot = plant.robot
     states = states_of(plant, asked(inputs, robot, "inputs"), asked(outputs, robot, "outputs"), about=_about(found))
-    return model_of(found, plant, **{f.name: getattr(states, f.name) for f in fields(states)})
+    return model_of(found, plant, states)
 
 
 def plant_of(
@@ -201,7 +201,7 @@ def _of_actuator(
     free = [name for name in names if drives == "force" or getattr(study.motion, name) is None]
     rate = to_si(given.get("rate", 0.0), "angular rate", key="pose.rate")
     states = actuator_states(actuator, study.simulation, inputs, outputs, rate=rate, free=free)
-    return StateSpace(**{f.name: getattr(states, f.name) for f in fields(states)})
+    return StateSpace(**vars(states))
 
 
 def _grid(
@@ -270,12 +270,11 @@ def _name(study: model.Study) -> str:
     return study.robot.type if study.path is None else Path(study.path).stem
 
 
-def model_of(study: model.Study, plant: Plant, **matrices: object) -> LinearModel:
-    """The linear model of a plant with these matrices and names."""
+def model_of(study: model.Study, plant: Plant, states: States) -> LinearModel:
+    """The linear model of a plant with its states."""
     pose = coordinates_of(study.robot, plant.locked.path)[0]
     return LinearModel(
-        **matrices,  # type: ignore[arg-type]
-        study=_name(study), pose=dict(zip(model.AXES, pose.tolist(), strict=True)), drives=plant.drives,
+        **vars(states), study=_name(study), pose=dict(zip(model.AXES, pose.tolist(), strict=True)), drives=plant.drives,
         friction=plant.locked.simulation.friction, position=plant.x.pose[0, :3], quaternion=plant.x.pose[0, 3:],
         about=_about(study), plant=plant,
     )  # fmt: skip

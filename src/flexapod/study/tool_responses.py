@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -115,7 +114,7 @@ def transmissibility(
     R = matrix(plant.x.pose[:, 3:])[0]
     arm = R @ (point.at if point.at is not None else np.zeros(3))
     states = states_of(plant, inputs, outputs, tilt=tilt, about=plant.x.pose[0, :3] + arm)
-    whole = model_of(found, plant, **{f.name: getattr(states, f.name) for f in fields(states)})
+    whole = model_of(found, plant, states)
     away = arm - R @ (plant.robot.tool - plant.robot.com)
     carry = np.eye(6)
     carry[:3, 3:] = np.cross(np.eye(3), away).T  # a turn about the tool displaces the point
@@ -125,19 +124,10 @@ def transmissibility(
 
 
 def _matrix(name: str, found: StateSpace, values: NDArray[np.complex128], hz: ArrayLike, words: str) -> Dataset:
-    import xarray as xr
+    from flexapod.control.datasets import response_dataset
 
-    from flexapod.control.datasets import PARTS, channel_labels, in_parts
-
-    frequency = frequencies(hz)
+    unit = "output_units / input_units" if name == "compliance" else "1"
+    said = {"units": "1", "long_name": "Frobenius norm, SI units of all entries taken as one"}
     norm = np.sqrt((np.abs(values) ** 2).sum(axis=(0, 1)))
-    said = "Frobenius norm, SI units of all entries taken as one"
-    units = "output_units / input_units" if name == "compliance" else "1"
-    return xr.Dataset(
-        {
-            name: (("output", "input", "frequency", "part"), in_parts(values), {"units": units, "long_name": words}),
-            f"{name}_norm": ("frequency", norm, {"units": "1", "long_name": said}),
-        },
-        channel_labels(found, "output", "input")
-        | {"frequency": ("frequency", frequency, {"units": "Hz"}), "part": ("part", PARTS)},
-    )
+    data = response_dataset(found, hz, values, (name, words, unit))
+    return data.assign({f"{name}_norm": ("frequency", norm, said)})

@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from flexapod.runtime.loading import later
 from flexapod.surveys.sweeps.result import open_sweep, save_table, scalar_names, unstacked
 from flexapod.surveys.sweeps.zarr_folder import save_zarr
 
@@ -10,11 +11,5 @@ if TYPE_CHECKING:
 
 __all__ = ["SweepStopped", "open_sweep", "save_table", "save_zarr", "scalar_names", "sweep", "unstacked"]
 
-
-def __getattr__(name: str) -> object:
-    """What computes is loaded when it is asked for: who opens a result needs no solver."""
-    if name not in ("SweepStopped", "sweep"):
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from flexapod.surveys.sweeps import run
-
-    return getattr(run, name)
+#: What computes is loaded when it is asked for: who opens a result needs no solver.
+__getattr__ = later("flexapod.surveys.sweeps", {"flexapod.surveys.sweeps.run": ("SweepStopped", "sweep")})
