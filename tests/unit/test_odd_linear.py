@@ -217,3 +217,26 @@ def test_measured_responses_that_cannot_be_taken(tmp_path, name, content):
     with pytest.raises(fx.InputError) as error:
         fx.read_frf(path)
     assert error.value.file == str(path)
+
+
+@pytest.mark.parametrize(
+    ("call", "key"),
+    [
+        (lambda s: fx.linearize(s, inputs="wrnch", outputs="tool"), "inputs"),
+        (lambda s: fx.compliance(s, "a"), "hz"),
+        (lambda s: fx.transmissibility(s, [1.0], at="nowhere"), "at"),
+        (lambda s: fx.shape(s, ["zv"]), "kind"),
+        (lambda s: fx.shape(s, out="shaped.txt"), "out"),
+        (lambda s: fx.compensate(s, out="ahead.txt"), "out"),
+        (lambda s: fx.time_optimal(s, force="2 kN", out="fast.txt"), "out"),
+        (lambda s: fx.export(s, "gltf", "motion.glb", magnify=-1.0), "magnify"),
+        (lambda s: fx.export(s, "abaqus", "deck.inp", elements=0), "elements"),
+    ],
+)
+def test_what_is_refused_is_so_before_anything_is_computed(robot, call, key, monkeypatch):
+    def computed(*given, **named):
+        raise AssertionError("computed first")
+
+    for name in ("solve.modal.at_poses.lock", "study.simulation.simulated", "review.checks.check_path"):
+        monkeypatch.setattr(f"flexapod.{name}", computed)
+    refused(lambda: call(robot), key)

@@ -33,10 +33,11 @@ def to_control(system: StateSpace) -> Any:
 def save(system: StateSpace, path: str | Path) -> Path:
     """See `StateSpace.save`."""
     path = Path(path)
-    if path.suffix not in WRITERS:
+    write = WRITERS.get(path.suffix.lower())
+    if write is None:
         raise InputError("is not a format of linear systems", key="path", value=path.name, allowed=", ".join(WRITERS))
     with replacing(path) as temporary:
-        WRITERS[path.suffix](system, temporary)
+        write(system, temporary)
     return path
 
 

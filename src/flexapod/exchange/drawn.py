@@ -15,6 +15,7 @@ from flexapod.scene.geometry import RobotMotion, as_computed
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton
 from flexapod.solve.sections import leg_values
 from flexapod.solve.shapes import leg_shapes
+from flexapod.study.simulation import simulate
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -51,8 +52,10 @@ class DrawnRobot:
     changing: bool
 
 
-def check_motion(study: model.Study, data: Dataset) -> None:
-    """Refuse what is no motion of the robot of a study."""
+def motion_of(study: model.Study, data: Dataset | None) -> Dataset:
+    """A result of the study, which is simulated where none is given; refuses what is no motion of its robot."""
+    if data is None:
+        return simulate(study)
     if "com_position_rigid" not in getattr(data, "data_vars", ()):
         raise InputError("is not a motion", key="data", allowed="a result of flexapod.simulate")
     own, robot = robot_of(data), study.robot
@@ -61,13 +64,14 @@ def check_motion(study: model.Study, data: Dataset) -> None:
         for a, b in ((own.base_joints, robot.base_joints), (own.platform_joints, robot.platform_joints))
     ):
         raise InputError("is of another robot", key="data", value=own.type, allowed=f"a result of this {robot.type}")
+    return data
 
 
-def drawn_robot(study: model.Study, data: Dataset, scale: float = 1.0) -> DrawnRobot:
-    """The robot of a result of `study`, deflections `scale` times larger."""
-    check_motion(study, data)
+def drawn_robot(study: model.Study, data: Dataset | None, scale: float) -> DrawnRobot:
+    """The robot of `motion_of` a study, deflections `scale` times larger."""
     if not isinstance(scale, int | float) or not 0 < scale < np.inf:
         raise InputError("is not a factor", key="magnify", value=scale, allowed="above 0")
+    data = motion_of(study, data)
     motion = RobotMotion(study, data)
     scenes = [motion.at(t, scale).flexible for t in motion.time]
     base, tip = (np.array([getattr(x, name) for x in scenes]) for name in ("base", "platform"))

@@ -92,11 +92,11 @@ def _written(study: model.Study, pose: PoseLike, elements: int, modes: int, titl
     robot = study.robot
     refuse_tables(robot.legs, "decks")
     _refuse_mounts(robot)
+    _check_count("elements", elements, 2, _MOST)
+    _check_count("modes", modes, 1, _MOST)
     path = as_pose(robot, pose)
     locked = locked_poses(robot, model.Simulation(), path, study.load)
     the_equilibrium(locked)
-    _check_count("elements", elements, 2, _MOST)
-    _check_count("modes", modes, 1, _MOST)
     legs = legs_at_pose(robot, path, at_drives(locked.system, robot, locked.acts.force)[0])
     R = path.rotation[0]
     payload = PayloadAtPose(

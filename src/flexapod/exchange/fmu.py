@@ -63,11 +63,10 @@ def fmu(study: model.Study, commands: str = "inputs", step: float | None = None)
     ComputationError
         The compiler failed.
     """
-    found = marched(study, commands, step)
+    (folder, ending), found = _machine(), marched(study, commands, step)
     sources = texts(found)
     token = hashlib.sha256("\0".join([__version__, *sources.values()]).encode()).hexdigest()[:32]
     sources["fmi3.c"] = _numbers(found, token) + WRAPPER.read_text()
-    folder, ending = _machine()
     files: dict[str, str | bytes] = {
         "modelDescription.xml": _description(found, token),
         f"binaries/{folder}/{NAME}{ending}": shared_object(sources, SOURCES, (*FLAGS, HIDDEN)),

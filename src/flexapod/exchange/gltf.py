@@ -15,7 +15,6 @@ from flexapod.kinematics.rotations import quaternion
 from flexapod.scene.colours import LEG_COLORS
 from flexapod.scene.geometry import orientation, plate, tube, tube_faces
 from flexapod.scene.skeleton import STATIONS
-from flexapod.study.simulation import simulate
 from flexapod.version import __version__
 
 if TYPE_CHECKING:
@@ -34,7 +33,7 @@ def gltf(study: model.Study, *, data: Dataset | None = None, magnify: float = 1.
     Metres, y up. Nodes `cylinder_i` stand in the base joints, their children `piston_i` begin at the mouth and are one
     unit long, scaled to the length of the free part; weights of their morph targets are the amplitudes of their shapes.
     """
-    robot = drawn_robot(study, simulate(study) if data is None else data, magnify)
+    robot = drawn_robot(study, data, magnify)
     file = Glb(f"flexapod {__version__}")
     time = file.store(robot.time, name="time")
     nodes = [_base(file, robot), _payload(file, robot, time)]

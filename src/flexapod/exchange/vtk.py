@@ -14,10 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 from flexapod import model
 from flexapod.arrays import Array
 from flexapod.exchange.content import Content
-from flexapod.exchange.drawn import check_motion
+from flexapod.exchange.drawn import motion_of
 from flexapod.scene.geometry import RobotMotion, plate
 from flexapod.scene.skeleton import Scene, Skeleton
-from flexapod.study.simulation import simulate
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -34,8 +33,7 @@ def vtk(study: model.Study, *, name: str, data: Dataset | None = None) -> Conten
     them to the flexible one. Results of legs are data of cells, those of the whole robot of the field, under their
     names.
     """
-    data = simulate(study) if data is None else data
-    check_motion(study, data)
+    data = motion_of(study, data)
     motion = RobotMotion(study, data)
     cells, field, legs = _Cells(motion.skeleton), _series(data, _WHOLE), _series(data, _LEGS)
     stem = Path(name).stem

@@ -15,7 +15,7 @@ from flexapod.control import StateSpace
 from flexapod.errors import InputError
 from flexapod.feedforward.drive_loads import Given, limits_of
 from flexapod.feedforward.switching import Switched, switched
-from flexapod.feedforward.table import saved
+from flexapod.feedforward.table import check_place, saved
 from flexapod.feedforward.vibration import vibration_along
 from flexapod.feedforward.way import StraightWay
 from flexapod.model import Study
@@ -124,6 +124,7 @@ def time_optimal(
     >>> fx.time_optimal(double, end=1.0)  # a mass of 1 kg, 1 m away, a force of 1 N: full ahead, full back
     Switched(1, end 2: the input switches 1 times and is over after 2 s: ...)
     """
+    check_place(out)
     if isinstance(subject, StateSpace):
         return switched(subject, np.asarray(end, dtype=float), limit, robust=robust)
     limits = {"speed": speed, "acceleration": acceleration, "force": force}

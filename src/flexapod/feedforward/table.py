@@ -18,7 +18,7 @@ from flexapod.results.arguments import FileLike
 from flexapod.runtime.files import write_text
 from flexapod.schema.csv_tables import POSE, header
 
-__all__ = ["Tabled", "named", "saved", "tabled"]
+__all__ = ["Tabled", "check_place", "named", "saved", "tabled"]
 
 FEWEST, MOST = 100, 3200  # rows between first and last knot
 ENOUGH = 1e-5  # of the largest acceleration of each kind, by which that of the table may be off in the mean
@@ -139,6 +139,12 @@ def _graded(knots: Array, count: int, nearest: float) -> Array:
 S = TypeVar("S", bound=Study | ActuatorStudy)
 
 
+def check_place(out: FileLike | None) -> None:
+    """Refuse a name that is none of a study file."""
+    if out is not None and Path(out).suffix != ".toml":
+        raise InputError("is no name of a study file", key="out", value=str(out), allowed="NAME.toml")
+
+
 def saved(study: S, path: FileLike) -> S:
     """The study as a file with the table of its commands beside it; the study that the file holds.
 
@@ -149,9 +155,8 @@ def saved(study: S, path: FileLike) -> S:
     path : path
         ``NAME.toml``; the table is ``NAME.csv``. In the folder of the study whose other tables it names.
     """
+    check_place(path)
     place = Path(path)
-    if place.suffix != ".toml":
-        raise InputError("is no name of a study file", key="out", value=str(path), allowed="NAME.toml")
     beside = place.with_suffix(".csv")
     written, first, columns = _named(study, beside.name)
     rows = [",".join(map(repr, row)) for row in columns.tolist()]

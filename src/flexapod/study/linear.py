@@ -31,7 +31,7 @@ from flexapod.units import to_si
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["MATRICES", "LinearModel", "linearize", "model_of", "plant_of"]
+__all__ = ["MATRICES", "LinearModel", "linearize", "model_of", "plant_of", "study_of"]
 
 Friction = Literal["sliding", "stuck"]
 
@@ -141,21 +141,23 @@ def linearize(
         return cast("LinearModel", _of_actuator(study, pose, inputs, outputs, drives, friction=friction, load=load))
     if is_many(pose):
         return cast("LinearModel", _grid(study, pose, inputs, outputs, drives, friction, load))
-    found, plant = plant_of(study, pose, load, drives, friction)
-    robot = plant.robot
-    states = states_of(plant, asked(inputs, robot, "inputs"), asked(outputs, robot, "outputs"), about=_about(found))
-    return model_of(found, plant, states)
+    found = study_of(study, load, drives, friction)
+    given, seen = asked(inputs, found.robot, "inputs"), asked(outputs, found.robot, "outputs")
+    plant = plant_of(found, pose, drives)
+    return model_of(found, plant, states_of(plant, given, seen, about=_about(found)))
 
 
-def plant_of(
-    study: RobotLike, pose: PoseLike, load: LoadLike, drives: Drives, friction: Friction | None
-) -> tuple[model.Study, Plant]:
-    """The plant at one pose."""
+def study_of(study: RobotLike, load: LoadLike, drives: Drives, friction: Friction | None) -> model.Study:
+    """The study with what a call gives in place of its own."""
     _check_drives(drives)
-    found = model.override(at_pose(study, load), friction=friction)
-    plant = _at(found, as_pose(found.robot, pose), drives)
+    return model.override(at_pose(study, load), friction=friction)
+
+
+def plant_of(study: model.Study, pose: PoseLike, drives: Drives) -> Plant:
+    """The plant at one pose; raises as `linearize`."""
+    plant = _at(study, as_pose(study.robot, pose), drives)
     the_equilibrium(plant.locked)
-    return found, plant
+    return plant
 
 
 def _check_drives(drives: object) -> None:
@@ -216,8 +218,7 @@ def _grid(
     """Matrices on motions at many poses."""
     import xarray as xr
 
-    _check_drives(drives)
-    found = model.override(at_pose(study, load), friction=friction)
+    found = study_of(study, load, drives, friction)
     path = as_many(found.robot, pose)
     given, seen = asked(inputs, found.robot, "inputs"), asked(outputs, found.robot, "outputs")
     parts: dict[str, Array] = {}

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from flexapod.arrays import Array
 from flexapod.control.arguments import frequencies
 from flexapod.control.state_space import StateSpace
 from flexapod.kinematics.rotations import matrix
@@ -15,7 +16,7 @@ from flexapod.runtime.threads import one_thread
 from flexapod.solve.linear.channels import asked
 from flexapod.solve.linear.plant import Drives
 from flexapod.solve.linear.states import states_of
-from flexapod.study.linear import Friction, linearize, model_of, plant_of
+from flexapod.study.linear import Friction, linearize, model_of, plant_of, study_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -60,6 +61,7 @@ def compliance(
     >>> print((1e9 * up).round(2).values)  # um/kN
     [3.96 4.03 4.7 ]
     """
+    hz = frequencies(hz)
     found = linearize(study, pose, inputs="wrench", outputs="tool", drives=drives, friction=friction, load=load)
     return _matrix("compliance", found, found.at(hz), hz, "motion of the tool by a wrench at the tool")
 
@@ -108,9 +110,10 @@ def transmissibility(
     >>> print(data.transmissibility.sel(output="tool:z", input="floor:z", part="real").round(2).values)
     [1.   1.02 0.02]
     """
-    found, plant = plant_of(study, pose, load, drives, friction)
-    inputs, outputs = asked("floor", plant.robot, "inputs"), asked("tool", plant.robot, "outputs")
-    (point, *_) = asked(f"accelerometer:{at}", plant.robot, "outputs")
+    hz, found = frequencies(hz), study_of(study, load, drives, friction)
+    inputs, outputs = asked("floor", found.robot, "inputs"), asked("tool", found.robot, "outputs")
+    (point, *_) = asked(f"accelerometer:{at}", found.robot, "at")
+    plant = plant_of(found, pose, drives)
     R = matrix(plant.x.pose[:, 3:])[0]
     arm = R @ (point.at if point.at is not None else np.zeros(3))
     states = states_of(plant, inputs, outputs, tilt=tilt, about=plant.x.pose[0, :3] + arm)
@@ -118,12 +121,12 @@ def transmissibility(
     away = arm - R @ (plant.robot.tool - plant.robot.com)
     carry = np.eye(6)
     carry[:3, 3:] = np.cross(np.eye(3), away).T  # a turn about the tool displaces the point
-    s = 2j * np.pi * frequencies(hz)
+    s = 2j * np.pi * hz
     values = np.eye(6)[:, :, None] + s**2 * np.einsum("ij,jkf->ikf", carry, whole.at(hz))
     return _matrix("transmissibility", whole, values, hz, f"motion of the platform by that of the floor, at {at}")
 
 
-def _matrix(name: str, found: StateSpace, values: NDArray[np.complex128], hz: ArrayLike, words: str) -> Dataset:
+def _matrix(name: str, found: StateSpace, values: NDArray[np.complex128], hz: Array, words: str) -> Dataset:
     from flexapod.control.datasets import response_dataset
 
     unit = "output_units / input_units" if name == "compliance" else "1"

@@ -63,7 +63,8 @@ def asked(names: str | Sequence[str], robot: Robot, key: str) -> list[PlantChann
     ----------
     names : str or sequence of str
     robot : Robot
-    key : {"inputs", "outputs"}
+    key : str
+        What a refusal calls them: "inputs" are inputs, all others outputs.
 
     Raises
     ------
