@@ -60,9 +60,9 @@ static void built_in(double t, double *table, double *load) {
 /* What inputs make of it, a time after they were given */
 static void with_inputs(const double *inputs, double since, double *table, double *load) {
   for (int leg = 0; leg < LEG_COUNT; leg++) {
-    double *row = table + (leg*PORT_COUNT + DRIVE_PORT[leg])*COLUMNS;
     if (DRIVE_PORT[leg] < 0) continue;
-    if (COMMANDED) {
+    if (COMMANDED) {                                /* (T26.8) */
+      double *row = table + (leg*PORT_COUNT + DRIVE_PORT[leg])*COLUMNS;
       double value = (inputs[leg] - ZERO_OF_DRIVE[leg])*PER_TURN[leg], rate = inputs[leg + LEG_COUNT]*PER_TURN[leg];
       double change = inputs[leg + 2*LEG_COUNT]*PER_TURN[leg];
       row[0] = value + since*(rate + 0.5*since*change); row[1] = rate + since*change; row[2] = change;

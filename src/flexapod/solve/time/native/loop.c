@@ -1,4 +1,4 @@
-/* A sampled controller around the march: what it reads, the one linear law that it computes, what it moves, Eqs. (T26.1)-(T26.7).
+/* A sampled controller around the march: what it reads, the one linear law that it computes, what it moves, Eqs. (T26.1)-(T26.6).
    Between two samples its outputs are held. */
 enum { AT_COORDINATE, AT_FORCE, AT_CLOSURE, AT_JOINT, AT_PLACE, AT_TURN, AT_ACCELERATION };  /* what is read */
 enum { ASKED = 5 };                     /* status: who was asked for outputs failed */
