@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod.arrays import Array
 from flexapod.control.arguments import frequencies
+from flexapod.control.poles import swings_of
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
@@ -201,15 +202,12 @@ def system_dataset(system: StateSpace) -> xr.Dataset:
 
 def locus_dataset(factors: Array, poles: Complex, zeros: Complex, sample: float | None) -> xr.Dataset:
     """`pole`, `frequency`, `damping_ratio` over `gain` and `branch`, `open_zero`, where branches end."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        s = poles if sample is None else np.log(poles) / sample
-        size = np.abs(s)
-        ratio = np.where(size > 0, -s.real / size, 0.0)
+    _, frequency, ratio = swings_of(poles, sample)
     names = {"units": "s-1" if sample is None else "1"}
     return xr.Dataset(
         {
             "pole": (("gain", "branch", "part"), in_parts(poles), names | {"long_name": "pole of the loop"}),
-            "frequency": (("gain", "branch"), size / (2 * np.pi), {"units": "Hz", "long_name": "size over 2 pi"}),
+            "frequency": (("gain", "branch"), frequency, {"units": "Hz", "long_name": "size over 2 pi"}),
             "damping_ratio": (("gain", "branch"), ratio, {"units": "1", "long_name": "damping ratio"}),
             "open_zero": (("zero", "part"), in_parts(zeros), names | {"long_name": "zero of the loop gain"}),
         },

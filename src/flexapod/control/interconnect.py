@@ -15,7 +15,7 @@ from flexapod.errors import InputError
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
 
-__all__ = ["CONTROL", "closed", "law_of", "opened", "units_with"]
+__all__ = ["CONTROL", "OnChannels", "closed", "law_of", "opened", "units_with"]
 
 CONTROL = "control:"  # before the name of an actuator: what the controller asks of it
 SINGULAR = 1e-12  # distance of a direct gain around a loop from 1 at which nothing says where it ends

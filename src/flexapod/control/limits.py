@@ -12,9 +12,9 @@ from scipy.optimize import linear_sum_assignment
 
 from flexapod.arrays import Array
 from flexapod.control.closing import DelayedLoop
-from flexapod.control.interconnect import closed, law_of
+from flexapod.control.interconnect import closed
 from flexapod.control.poles import damping_of
-from flexapod.control.sampling import held
+from flexapod.control.sampling import law_beside
 from flexapod.errors import ComputationError, InputError
 from flexapod.units import to_si
 
@@ -61,8 +61,7 @@ def margins(system: StateSpace, controller: Controller | StateSpace, *, delay: f
     """
     from flexapod.control.datasets import margins_dataset
 
-    law = law_of(controller, system.outputs, system.inputs, system.units)
-    law = held(law, system.sample) if system.sample is not None and law.sample is None else law
+    law = law_beside(system, controller)
     late = to_si(delay, "time", key="delay")
     if system.sample is not None and late:
         raise InputError("is for continuous systems", key="delay", value=delay, next_step=".sampled(period, delay)")

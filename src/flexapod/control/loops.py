@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linear_sum_assignment, minimize_scalar
 
 from flexapod.control.arguments import numbers
-from flexapod.control.interconnect import closed, law_of, opened
+from flexapod.control.interconnect import closed, opened
 from flexapod.control.poles import damping_of, poles_of, zeros_of
-from flexapod.control.sampling import held
+from flexapod.control.sampling import law_beside
 from flexapod.errors import InputError
 from flexapod.units import to_si
 
@@ -52,7 +52,7 @@ def root_locus(system: StateSpace, controller: Controller | StateSpace, gains: A
     factors = numbers(gains, "gains", "factors on the controller, one at least")
     if not factors.size:
         raise InputError("are none", key="gains", allowed="factors on the controller, one at least")
-    law = _law(system, controller)
+    law = law_beside(system, controller)
     poles = np.stack([_poles(system, law, factor) for factor in factors])
     for i in range(1, len(poles)):
         away = np.abs(poles[i - 1][:, None] - poles[i])
@@ -82,7 +82,7 @@ def best_gain(
     """
     from flexapod.control.datasets import best_dataset
 
-    law = _law(system, controller)
+    law = law_beside(system, controller)
     edge = np.inf if below is None else to_si(below, "frequency", key="below")
     if not 0 < least < most:
         raise InputError("are no factors", key="least, most", value=f"{least}, {most}", allowed="0 < least < most")
@@ -96,11 +96,6 @@ def best_gain(
     )  # fmt: skip
     gain = float(np.exp(found.x)) if -found.fun >= ratios[at] else float(factors[at])
     return best_dataset(gain, *_least_ratio(system, law, gain, edge), factors, ratios)
-
-
-def _law(system: StateSpace, controller: Controller | StateSpace) -> StateSpace:
-    law = law_of(controller, system.outputs, system.inputs, system.units)
-    return held(law, system.sample) if system.sample is not None and law.sample is None else law
 
 
 def _scaled(law: StateSpace, factor: float) -> StateSpace:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from flexapod.arrays import Array
 
-__all__ = ["damping_of", "poles_of", "zeros_of"]
+__all__ = ["damping_of", "poles_of", "swings_of", "zeros_of"]
 
 Complex = NDArray[np.complex128]
 
@@ -24,19 +24,24 @@ def poles_of(A: Array) -> Complex:
 
 
 def damping_of(poles: Complex, sample: float | None) -> tuple[Complex, Array, Array]:
-    """Poles of positive or no imaginary part, their frequencies [Hz] and damping ratios, by frequency, Eq. (T21.4).
+    """Those of `swings_of` of positive or no imaginary part, by frequency."""
+    s, frequency, ratio = swings_of(poles, sample)
+    upper = np.flatnonzero(s.imag >= 0)
+    order = upper[np.lexsort((s.real[upper], frequency[upper]))]
+    return s[order], frequency[order], ratio[order]
+
+
+def swings_of(poles: Complex, sample: float | None) -> tuple[Complex, Array, Array]:
+    """Poles [1/s], their frequencies [Hz] and damping ratios, arrays of one shape, Eq. (T21.4).
 
     Of a sampled system the poles log(z) / T of the continuous one behind it.
     """
     if sample is not None:
         with np.errstate(divide="ignore"):
             poles = np.asarray(np.log(poles) / sample, dtype=complex)
-    s = poles[poles.imag >= 0]
-    size = np.abs(s)
-    order = np.lexsort((s.real, size))
-    s, size = s[order], size[order]
-    ratio = np.divide(-s.real, size, out=np.zeros(len(s)), where=(size > 0) & np.isfinite(size))
-    return s, size / (2 * np.pi), np.where(np.isinf(size), 1.0, ratio)
+    size = np.abs(poles)
+    ratio = np.divide(-poles.real, size, out=np.zeros(poles.shape), where=(size > 0) & np.isfinite(size))
+    return poles, size / (2 * np.pi), np.where(np.isinf(size), 1.0, ratio)
 
 
 def zeros_of(A: Array, B: Array, C: Array, D: Array, poles: Complex) -> Complex:

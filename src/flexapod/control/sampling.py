@@ -11,13 +11,14 @@ from scipy.linalg import expm
 
 from flexapod.arrays import Array
 from flexapod.control.channels import RATE
+from flexapod.control.interconnect import OnChannels, law_of
 from flexapod.errors import InputError
 from flexapod.units import to_si
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
 
-__all__ = ["held", "period_of", "without_rates"]
+__all__ = ["held", "law_beside", "period_of", "without_rates"]
 
 LATEST = 1000  # samples of a delay, each with its states
 NEARLY = 1e-9  # of a period: a delay so near to whole samples has them
@@ -33,6 +34,12 @@ def period_of(sample: float | str) -> float:
     if not period > 0:
         raise InputError("is not a time", key="sample", value=sample, allowed='above 0 s, for example "5 kHz"')
     return period
+
+
+def law_beside(system: StateSpace, controller: OnChannels | StateSpace) -> StateSpace:
+    """A controller as a law between channels of a system, from sample to sample where that is sampled."""
+    law = law_of(controller, system.outputs, system.inputs, system.units)
+    return held(law, system.sample) if system.sample is not None and law.sample is None else law
 
 
 def held(system: StateSpace, period: float, delay: float = 0.0, delayed: Sequence[int] | None = None) -> StateSpace:
