@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
 from pydantic import model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.friction import StrokeFriction
+from flexapod.model.friction import Rubs
 from flexapod.model.motion import check_times
 from flexapod.schema.base import Key, Quantity, Series
 from flexapod.schema.csv_tables import forces
@@ -16,6 +16,15 @@ from flexapod.schema.table import Table
 
 if TYPE_CHECKING:
     from flexapod.schema.section import Section
+
+
+Backlash = Annotated[
+    float | None,
+    Quantity(
+        "length", "angle", least=0, usual="none",
+        why="free travel of what it drives, from one end to the other; of a crank an angle: for `flexapod.accuracy`",
+    ),
+]  # fmt: skip
 
 
 def read_columns(section: Section, dimension: str) -> Mapping[str, object]:
@@ -37,20 +46,8 @@ class PrescribedDrive(Table):
     holds: ClassVar[bool] = True
     pushes: ClassVar[bool] = False
     type: Annotated[Literal["prescribed"], Key("kind of drive")] = "prescribed"
-    backlash: Annotated[
-        float | None,
-        Quantity(
-            "length",
-            "angle",
-            least=0,
-            why="free travel of what it drives, from one end to the other; of a crank an angle: for "
-            "`flexapod.accuracy`",
-            usual="none",
-        ),
-    ] = None
-    friction: Annotated[
-        StrokeFriction | None, Key("table: friction of the stroke, of a screw at its nut", usual="none")
-    ] = None
+    backlash: Backlash = None
+    friction: Rubs = None
 
 
 class ServoDrive(Table):
@@ -64,20 +61,8 @@ class ServoDrive(Table):
     type: Annotated[Literal["servo"], Key("kind of drive")] = "servo"
     stiffness: Annotated[float, Quantity("stiffness", "rotational stiffness", above=0, why="of the spring")]
     damping: Annotated[float, Quantity("damping", "rotational damping", least=0, why="of the damper")] = 0.0
-    backlash: Annotated[
-        float | None,
-        Quantity(
-            "length",
-            "angle",
-            least=0,
-            why="free travel of what it drives, from one end to the other; of a crank an angle: for "
-            "`flexapod.accuracy`",
-            usual="none",
-        ),
-    ] = None
-    friction: Annotated[
-        StrokeFriction | None, Key("table: friction of the stroke, of a screw at its nut", usual="none")
-    ] = None
+    backlash: Backlash = None
+    friction: Rubs = None
 
 
 class Feedback(Table):
@@ -112,9 +97,7 @@ class ForceDrive(Table):
         ),
     ] = None
     feedback: Annotated[Feedback | None, Key("table: correction by the stroke's error")] = None
-    friction: Annotated[
-        StrokeFriction | None, Key("table: friction of the stroke, of a screw at its nut", usual="none")
-    ] = None
+    friction: Rubs = None
 
     @classmethod
     def from_table(cls, section: Section, among: tuple[str, ...] = ()) -> Self:

@@ -11,7 +11,7 @@ from flexapod.schema.base import Key, Quantity
 from flexapod.schema.table import Table
 from flexapod.words import number
 
-__all__ = ["JointFriction", "ScrewFriction", "StrokeFriction"]
+__all__ = ["JointFriction", "Rubs", "ScrewFriction", "StrokeFriction"]
 
 
 SHORTEST, LEAST = 1e-10, 1e-8  # m, less than an atom; rad, that on a radius of 10 mm
@@ -183,6 +183,10 @@ class StrokeFriction(Table):
     def static(self) -> float:
         """Force of breaking away [N]."""
         return self.force if self.stribeck is None else self.stribeck.force
+
+
+#: What drives have of it.
+Rubs = Annotated[StrokeFriction | None, Key("table: friction of the stroke, of a screw at its nut", usual="none")]
 
 
 def _numbers(

@@ -11,7 +11,7 @@ from pydantic import PlainSerializer, PlainValidator, model_validator
 
 from flexapod.arrays import Array
 from flexapod.errors import InputError
-from flexapod.model.friction import StrokeFriction
+from flexapod.model.friction import Rubs
 from flexapod.schema.base import Key, Quantity, array_of
 from flexapod.schema.table import Table
 from flexapod.words import text
@@ -72,9 +72,7 @@ class HydraulicDrive(Table):
     bulk_modulus: Annotated[float, Quantity("stress", above=0, why="of the oil, with its air and hoses")]
     leakage: Annotated[float, Quantity("leakage", least=0, why="flow past the piston by pressure")] = 0.0
     double_ended: Annotated[bool, Key("whether the rod leaves at both ends")] = False
-    friction: Annotated[
-        StrokeFriction | None, Key("table: friction of the stroke, of a screw at its nut", usual="none")
-    ] = None
+    friction: Rubs = None
     limits: Annotated[HydraulicLimits, Key("table: what the drive is made for")] = HydraulicLimits()
 
     @classmethod

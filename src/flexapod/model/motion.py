@@ -34,7 +34,12 @@ def _distinct(axes: tuple[str, ...]) -> tuple[str, ...]:
 
 
 #: Coordinates that are commanded where a robot has fewer than six motions; the others follow.
-Independent = Annotated[tuple[Axis, ...], AfterValidator(_distinct)]
+Independent = Annotated[
+    Annotated[tuple[Axis, ...], AfterValidator(_distinct)] | None,
+    Key("axes that are commanded, of a robot with fewer than six motions", usual="all that the robot has"),
+]
+Pivot = Annotated[Vec3, Quantity("length", why="point that turns are about, in the platform frame")]
+Hold = Annotated[float, Quantity("time", least=0, why="rest after it")]
 
 
 class AxisMotion(Table):
@@ -54,15 +59,10 @@ class AxisMotion(Table):
         ),
     ]
     duration: Annotated[float, Quantity("time", above=0, why="time to get there")]
-    hold: Annotated[float, Quantity("time", least=0, why="rest after it")] = 0.0
+    hold: Hold = 0.0
     profile: Annotated[Profile, Key("law of the way over time")] = "quintic"
-    pivot: Annotated[Vec3, Quantity("length", why="point that turns are about, in the platform frame")] = Field(
-        default=_ORIGIN, validate_default=True
-    )
-    independent: Annotated[
-        Independent | None,
-        Key("axes that are commanded, of a robot with fewer than six motions", usual="all that the robot has"),
-    ] = None
+    pivot: Pivot = Field(default=_ORIGIN, validate_default=True)
+    independent: Independent = None
 
     @classmethod
     def measuring(cls, section: Section, among: tuple[str, ...]) -> tuple[str, ...]:
@@ -107,15 +107,10 @@ class CombinedMotion(Table):
         dict[Axis, Annotated[float, Quantity("length", "angle")]], Key("table: poses reached, by axis")
     ]
     duration: Annotated[float, Quantity("time", above=0, why="time to get there")]
-    hold: Annotated[float, Quantity("time", least=0, why="rest after it")] = 0.0
+    hold: Hold = 0.0
     profile: Annotated[Profile, Key("law of the way over time")] = "quintic"
-    pivot: Annotated[Vec3, Quantity("length", why="point that turns are about, in the platform frame")] = Field(
-        default=_ORIGIN, validate_default=True
-    )
-    independent: Annotated[
-        Independent | None,
-        Key("axes that are commanded, of a robot with fewer than six motions", usual="all that the robot has"),
-    ] = None
+    pivot: Pivot = Field(default=_ORIGIN, validate_default=True)
+    independent: Independent = None
 
     @classmethod
     def resolved(cls, section: Section) -> Mapping[str, object]:
@@ -181,15 +176,10 @@ class WaypointMotion(Table):
     placed: ClassVar[tuple[str, ...]] = ("pivot",)
     type: Annotated[Literal["waypoints"], Key("kind of motion: an axis, several, points, a table")] = "waypoints"
     points: Annotated[tuple[Waypoint, ...], Key("list of tables: the poses")]
-    hold: Annotated[float, Quantity("time", least=0, why="rest after it")] = 0.0
+    hold: Hold = 0.0
     profile: Annotated[Profile, Key("law of the way over time")] = "quintic"
-    pivot: Annotated[Vec3, Quantity("length", why="point that turns are about, in the platform frame")] = Field(
-        default=_ORIGIN, validate_default=True
-    )
-    independent: Annotated[
-        Independent | None,
-        Key("axes that are commanded, of a robot with fewer than six motions", usual="all that the robot has"),
-    ] = None
+    pivot: Pivot = Field(default=_ORIGIN, validate_default=True)
+    independent: Independent = None
 
     @classmethod
     def resolved(cls, section: Section) -> Mapping[str, object]:
@@ -253,14 +243,9 @@ class CsvMotion(Table):
     file: Annotated[str | None, Key("CSV file of the poses")] = None
     time: Annotated[Series, Quantity("time")]
     pose: Annotated[Series6, Quantity("length", "angle")]
-    hold: Annotated[float, Quantity("time", least=0, why="rest after it")] = 0.0
-    pivot: Annotated[Vec3, Quantity("length", why="point that turns are about, in the platform frame")] = Field(
-        default=_ORIGIN, validate_default=True
-    )
-    independent: Annotated[
-        Independent | None,
-        Key("axes that are commanded, of a robot with fewer than six motions", usual="all that the robot has"),
-    ] = None
+    hold: Hold = 0.0
+    pivot: Pivot = Field(default=_ORIGIN, validate_default=True)
+    independent: Independent = None
 
     @classmethod
     def resolved(cls, section: Section) -> Mapping[str, object]:
