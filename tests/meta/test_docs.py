@@ -77,6 +77,10 @@ def test_formulas_show_on_github(page):
     assert not [f for f in formulas if f != f.strip() or re.search(r"\\[,;:!{}]|\\tag", f)]  # backslashes are eaten
 
 
+def test_the_readme_is_read_in_a_minute():
+    assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 100
+
+
 def test_every_source_package_is_in_the_folder_map():
     text = (ROOT / "docs" / "ARCHITECTURE.md").read_text(encoding="utf-8")
     packages = [p.parent.name for p in (ROOT / "src" / "flexapod").glob("*/__init__.py")]

@@ -59,7 +59,7 @@ class _Commands(TyperGroup):
         return code
 
 
-app = typer.Typer(
+app: typer.Typer = typer.Typer(
     name="flexapod",
     cls=_Commands,
     add_completion=False,
@@ -109,8 +109,8 @@ _ALL = (
     cache,
     view,
 )
-for command in _ALL:
-    app.command("map" if command is workspace_map else None)(command)
+for _command in _ALL:
+    app.command("map" if _command is workspace_map else None)(_command)
 
 
 def main() -> None:

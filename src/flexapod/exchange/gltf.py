@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 SIDES = 16  # of a drawn rod
 WIDER = 1.5  # a cylinder than its piston
 GREY, PLATE = "#9AA3AB", "#5B6B78"
-UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # x y z w: z up to y up
+UP: list[float] = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # x y z w: z up to y up
 STILL = 1e-12  # m: what moves less stands
 
 

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.arrays import Array
+from flexapod.arrays import Array, Mask
 from flexapod.errors import ComputationError
 from flexapod.feedforward.drive_loads import DriveLimits
 from flexapod.feedforward.table import named
@@ -31,15 +31,20 @@ SHARE = 0.9  # of the bound for vibration that the way is made for: linear in it
 class StraightWay:
     """A way from pose to pose: its law, drives along it, what it makes the robot do."""
 
+    origin: Study
+    limits: DriveLimits
+    first_pose: Array
+    change: Array
+
     def __init__(self, study: Study, limits: DriveLimits, first: Array, last: Array) -> None:
         from scipy.interpolate import BSpline
 
         self.origin, self.limits, self.first_pose, self.change = study, limits, first, last - first
-        self.axes = kinematics.commanded_axes(study.robot, study.motion)
+        self.axes: Mask = kinematics.commanded_axes(study.robot, study.motion)
         knots = np.concatenate([[0.0] * 3, np.linspace(0.0, 1.0, ROWS + 1), [1.0] * 3])
         bend = BSpline(knots, np.eye(ROWS + 3)[:, 1:-1], 3)  # (T22.18)  accelerations are 0 at both ends
-        self.bases = bend.antiderivative(2), bend.antiderivative(1), bend
-        self.looks = np.linspace(0.0, 1.0, LOOKS * ROWS + 1)
+        self.bases: tuple[BSpline, BSpline, BSpline] = bend.antiderivative(2), bend.antiderivative(1), bend
+        self.looks: Array = np.linspace(0.0, 1.0, LOOKS * ROWS + 1)
 
     def law(self, c: Array, T: float, tau: Array) -> Law:
         """Share of the way at instants tau T, with rates, (any,)."""

@@ -81,7 +81,7 @@ class ActuatorScene(PageScene):
         with self.lock:
             if self._motion is None:
                 return
-            self.time = float(time)
+            self.time: float = float(time)
             i, bent, straight = self._motion.at(time, self.scale)
             length, twist = float(self._motion.length[i]), self.scale * self._motion.twist[i]
             with self.client.atomic():

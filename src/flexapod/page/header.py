@@ -20,6 +20,8 @@ class Header:
     `said`: the words that are shown (HTML).
     """
 
+    said: str
+
     def __init__(
         self, client: ClientHandle, name: str, simulate: Callable[[], None], cancel: Callable[[], None]
     ) -> None:

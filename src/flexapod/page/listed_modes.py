@@ -31,6 +31,8 @@ class ModeShow:
     1; `size`: what the amplitude is a share of.
     """
 
+    lock: threading.RLock
+
     def __init__(
         self,
         gui: viser.GuiApi,
@@ -135,6 +137,8 @@ class ListedModes(ABC, Generic[Study]):
 
     size: str
     """What amplitudes are a share of."""
+    client: viser.ClientHandle
+    scene: PageScene
 
     def __init__(self, client: viser.ClientHandle, scene: PageScene, threads: Threads) -> None:
         self.client, self.scene = client, scene

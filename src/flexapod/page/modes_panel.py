@@ -166,6 +166,9 @@ def _beam_table(modes: Shapes, study: model.ActuatorStudy) -> str:
 class ModesPanel:
     """Modes for one user; made inside the tab that holds them, with what `ListedModes` takes."""
 
+    client: viser.ClientHandle
+    scene: PageScene
+
     def __init__(self, client: viser.ClientHandle, scene: PageScene, threads: Threads) -> None:
         self.client, self.scene, self._threads = client, scene, threads
         self._place = client.gui.add_folder(None)

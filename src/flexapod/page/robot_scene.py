@@ -46,7 +46,7 @@ class _Drawn:
 class RobotScene(PageScene):
     """One user's view of a robot."""
 
-    quantities = QUANTITIES
+    quantities: tuple[str, ...] = QUANTITIES
 
     def __init__(self, client: viser.ClientHandle) -> None:
         super().__init__(client)
@@ -112,7 +112,7 @@ class RobotScene(PageScene):
         with self.lock:
             if self._drawn is None or self._motion is None:
                 return
-            self.time = float(time)
+            self.time: float = float(time)
             now = self._motion.at(time, self.scale, self.point)
             with self.client.atomic():
                 self._only(*OF_RESULTS)
@@ -168,7 +168,7 @@ class RobotScene(PageScene):
         self._motion = self._colors = None
         if data is not None and self._drawn is not None:
             self._motion = RobotMotion(self._drawn.study, data)
-            self.point = self._wanted if self._motion.tool_apart else "com"
+            self.point: str = self._wanted if self._motion.tool_apart else "com"
         return self._motion
 
     def _redraw_paths(self) -> None:

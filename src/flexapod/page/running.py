@@ -120,6 +120,8 @@ class Watcher(Protocol):
 class Run:
     """One simulation for a session, on the `cores` of the server; `watcher` is told how it goes."""
 
+    study: model.Study | model.ActuatorStudy
+
     def __init__(
         self, study: model.Study | model.ActuatorStudy, threads: Threads, cores: Cores, watcher: Watcher
     ) -> None:

@@ -39,6 +39,15 @@ class PageScene(ABC):
     has become another.
     """
 
+    client: viser.ClientHandle
+    lock: threading.RLock
+    scale: float
+    automatic: float
+    time: float
+    quantity: str
+    point: str
+    drawn: str
+
     quantities: tuple[str, ...] = ("plain",)
 
     def __init__(self, client: viser.ClientHandle) -> None:

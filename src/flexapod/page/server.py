@@ -55,7 +55,7 @@ class View:
                 self._server = _Server(host=host, port=port, label="flexapod", verbose=False)
         self._server._thread_executor = Pool(self._fault, self._visitor)
         self._server.get_event_loop().set_exception_handler(_unhandled)
-        self.port = self._server.get_port()
+        self.port: int = self._server.get_port()
         self._server.gui.configure_theme(
             show_logo=False, show_share_button=False, control_width="large", brand_color=(0, 90, 160)
         )

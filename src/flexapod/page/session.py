@@ -40,6 +40,8 @@ class Session:
     `study`: the last valid one; `data`: results of it, or None.
     """
 
+    client: ClientHandle
+
     def __init__(self, client: ClientHandle, source: StudySource, cores: Cores) -> None:
         self.client, self._cores = client, cores
         self._threads, self._sent = Threads(self.fault), Sent()
@@ -189,15 +191,15 @@ class Session:
         self._picture = Picture(gui, self._back, self.scene.reset_view)
         tabs = gui.add_tab_group()
         with tabs.add_tab("Time"):
-            self.time_panel = TimePanel(self.client, self.scene, self._threads, self._point_chosen)
+            self.time_panel: TimePanel = TimePanel(self.client, self.scene, self._threads, self._point_chosen)
         with tabs.add_tab("Study"):
-            self.study_panel = StudyPanel(self.client, document, self._threads, self._edited)
+            self.study_panel: StudyPanel = StudyPanel(self.client, document, self._threads, self._edited)
         with tabs.add_tab("Modes"):
-            self.modes_panel = ModesPanel(self.client, self.scene, self._threads)
+            self.modes_panel: ModesPanel = ModesPanel(self.client, self.scene, self._threads)
         with tabs.add_tab("Budget"):
-            self.budget_panel = BudgetPanel(self.client, self._threads)
+            self.budget_panel: BudgetPanel = BudgetPanel(self.client, self._threads)
         with tabs.add_tab("Files"):
-            self.files_panel = FilesPanel(
+            self.files_panel: FilesPanel = FilesPanel(
                 self.client,
                 self._threads,
                 self._sent,

@@ -26,6 +26,8 @@ _NOTHING = "add a value ..."
 class StudyPanel:
     """The tab "Study" of one client; `on_edit` is called with each `Edit`, valid or refused."""
 
+    document: Document
+
     def __init__(
         self, client: ClientHandle, document: Document, threads: Threads, on_edit: Callable[[Edit], None]
     ) -> None:

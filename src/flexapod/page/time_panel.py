@@ -36,6 +36,9 @@ class TimePanel:
     `told_point` is called after the user has chosen another point of the payload.
     """
 
+    client: viser.ClientHandle
+    scene: PageScene
+
     def __init__(
         self, client: viser.ClientHandle, scene: PageScene, threads: Threads, told_point: Callable[[], None]
     ) -> None:

@@ -29,7 +29,7 @@ class Sent:
 
     def __init__(self) -> None:
         self._end = ExitStack()
-        self.folder = self._end.enter_context(scratch())
+        self.folder: Path = self._end.enter_context(scratch())
 
     def close(self) -> None:
         """Delete the tables."""

@@ -82,6 +82,9 @@ _FORMS: dict[str, Any] = {GREETING: _Camera, INPUT: _Input, BEGIN: _Begin, FILE:
 class Visitor(ServerConnection):
     """A connection whose messages are looked at before they are decoded; `work`: callbacks that wait or run for it."""
 
+    peer: str
+    whose: str
+
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
         self.work: set[Future[Any]] = set()

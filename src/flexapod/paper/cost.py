@@ -42,11 +42,17 @@ class Counted:
     def __add__(self, other: Counted | float) -> Counted:
         return self._done(self.value + _plain(other))
 
+    def __radd__(self, other: Counted | float) -> Counted:
+        return self + other
+
     def __sub__(self, other: Counted | float) -> Counted:
         return self._done(self.value - _plain(other))
 
     def __mul__(self, other: Counted | float) -> Counted:
         return self._done(self.value * _plain(other))
+
+    def __rmul__(self, other: Counted | float) -> Counted:
+        return self * other
 
     def __truediv__(self, other: Counted | float) -> Counted:
         return self._done(self.value / _plain(other))
@@ -64,8 +70,6 @@ class Counted:
     def sin(self) -> Counted:
         """Sine, for NumPy."""
         return self._done(float(np.sin(self.value)))
-
-    __radd__, __rmul__ = __add__, __mul__
 
 
 def _plain(number: Counted | float) -> float:

@@ -17,6 +17,7 @@ from functools import cache
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -51,6 +52,8 @@ UNITS, WORTH_IT = 2, 60_000
 NATIVE = "-march=native"
 LONGEST = 300.0  # seconds that a compiler may take: usual are 2 to 20
 SILENT = 2.0  # seconds after which it is told that there is a compiler at work
+#: Sizes of inputs, and shapes of outputs, of a function.
+Signature = dict[str, list[Any]]
 _log = logging.getLogger("flexapod")
 #: Function of every library that returns sizes of inputs and shapes of outputs, as JSON.
 SIGNATURES = "flexapod_signatures"
@@ -87,7 +90,7 @@ def _say_passed_over(chosen: str, found: str) -> None:
 class CompiledFunction:
     """One generated C function called on arrays."""
 
-    def __init__(self, library: ctypes.CDLL, name: str, signature: dict[str, list]) -> None:
+    def __init__(self, library: ctypes.CDLL, name: str, signature: Signature) -> None:
         self._function = getattr(library, name)
         self._sizes: list[int] = signature["inputs"]
         self._shapes: list[tuple[int, int]] = [tuple(s) for s in signature["outputs"]]
@@ -131,7 +134,7 @@ class CompiledFunction:
 
 def compiled_library(
     key: Sequence[object], functions: Callable[[], list], command: list[str], callers: str = ""
-) -> tuple[ctypes.CDLL, dict[str, dict]]:
+) -> tuple[ctypes.CDLL, dict[str, Signature]]:
     """Load (compiling on first use) generated functions, and their signatures.
 
     Parameters
@@ -219,7 +222,7 @@ def _signatures(known: dict[str, dict[str, object]]) -> str:
 
 def _library(
     name: str, units: list[str], flags: Sequence[str], command: list[str], cache: Path | None, folder: Path
-) -> tuple[ctypes.CDLL, dict[str, dict]]:
+) -> tuple[ctypes.CDLL, dict[str, Signature]]:
     """Library `name` of these units, from the cache or made in `folder`."""
     if cache and (found := _first(intact_libraries(cache, name))):
         return found  # other equations have the same text
@@ -285,7 +288,7 @@ def _processor() -> str:
     return "".join(text for key, text in told.items() if key.strip() in ("model name", "flags", "Features"))
 
 
-def _load(path: Path) -> tuple[ctypes.CDLL, dict[str, dict]]:
+def _load(path: Path) -> tuple[ctypes.CDLL, dict[str, Signature]]:
     """Library and signatures; OSError if it is none of ours, or not for this machine."""
     library = ctypes.CDLL(str(path))
     try:
@@ -296,7 +299,7 @@ def _load(path: Path) -> tuple[ctypes.CDLL, dict[str, dict]]:
     return library, json.loads(signatures())
 
 
-def _first(paths: Sequence[Path]) -> tuple[ctypes.CDLL, dict[str, dict]] | None:
+def _first(paths: Sequence[Path]) -> tuple[ctypes.CDLL, dict[str, Signature]] | None:
     """The first library that loads here: a home may be shared by machines with different C libraries."""
     for path in paths:
         try:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,9 +18,10 @@ __all__ = ["INPUTS", "OUTPUTS", "Geophone", "PlantChannel", "asked"]
 
 AXES = COMPONENTS[:3]
 WRENCH = ("fx", "fy", "fz", "mx", "my", "mz")
+Groups = Mapping[str, object]
 #: Groups and their single channels; "legs": one a leg.
-INPUTS = {"wrench": WRENCH, "drive": "legs", "command": "legs", "floor": COMPONENTS, "force": AXES}
-OUTPUTS = {
+INPUTS: Groups = {"wrench": WRENCH, "drive": "legs", "command": "legs", "floor": COMPONENTS, "force": AXES}
+OUTPUTS: Groups = {
     "tool": COMPONENTS, "com": AXES, "tool-base": COMPONENTS, "com-base": AXES, "stroke": "legs",
     "drive-force": "legs", "joint-force": "legs axes", "force-sensor:base": "legs", "force-sensor:drive": "legs",
     "force-sensor:platform": "legs", "encoder": "legs", "accelerometer": AXES, "geophone": AXES,
@@ -81,11 +82,11 @@ def asked(names: str | Sequence[str], robot: Robot, key: str) -> list[PlantChann
     return list(found.values())
 
 
-def _words(known: dict[str, object]) -> str:
+def _words(known: Groups) -> str:
     return ", ".join(f"{name}:POINT" if name in AT_POINTS else name for name in known)
 
 
-def _of(name: str, known: dict[str, object], robot: Robot, key: str) -> list[PlantChannel]:
+def _of(name: str, known: Groups, robot: Robot, key: str) -> list[PlantChannel]:
     group = next((g for g in sorted(known, key=len, reverse=True) if name == g or name.startswith(f"{g}:")), None)
     if group is None:
         raise InputError(

@@ -82,10 +82,10 @@ class Call:
     """Structures of one call, and the arrays that they point to."""
 
     def __init__(self, system: System, flow: Flow, rows: Array, method: GeneralizedAlpha, h: float, every: int) -> None:
-        self.settings = settings(system, method, h, every)
+        self.settings: Structure = settings(system, method, h, every)
         arrays = (flow.q, flow.v, flow.v_dot, flow.a, flow.lam, flow.drive, flow.pose, flow.bristles)
         arrays += (flow.sums, flow.powers, rows)
-        self.state = _State(*[address(x) for x in arrays])
+        self.state: Structure = _State(*[address(x) for x in arrays])
 
 
 def settings(system: System, method: GeneralizedAlpha, h: float, every: int) -> Structure:

@@ -70,11 +70,16 @@ class Within:
         A controller, at whose samples steps end.
     """
 
+    system: System
+    series: Series
+    horizon: float
+    tolerance: float
+
     def __init__(
         self, system: System, series: Series, horizon: float, tolerance: float, loop: "SampledLoop | None" = None
     ) -> None:
         self.system, self.series, self.horizon, self.tolerance = system, series, horizon, tolerance
-        self.loop = loop
+        self.loop: SampledLoop | None = loop
         self._along = _along(system)
         self._memory = memory(loops(system.kernel).radau_memory(byref(settings(system, GeneralizedAlpha(1.0), 1.0, 1))))
         self._memory[STEP] = FIRST

@@ -123,6 +123,9 @@ class SampledLoop:
         No such channel; an output that moves what is held.
     """
 
+    sampled: Sampled
+    system: System
+
     def __init__(
         self, sampled: Sampled, system: System, robot: Robot, path: Callable[[Array], tuple[Array, Array]]
     ) -> None:

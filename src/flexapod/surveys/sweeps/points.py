@@ -114,14 +114,16 @@ class Points:
         self.dimensions: dict[str, str] = {}
         try:
             probe = self._probe()
-            self.columns = tuple(self._columns())
-            self.leaves = tuple(self._leaves(probe, t) for t in plan.draws.tolerances) if plan.draws else ()
+            self.columns: tuple[Any, ...] = tuple(self._columns())
+            self.leaves: tuple[tuple[_Leaf, ...], ...] = (
+                tuple(self._leaves(probe, t) for t in plan.draws.tolerances) if plan.draws else ()
+            )
             self._check_room()
             cube = plan.hypercube
-            self.cube = None if cube is None else hypercube_values(cube, self.dimensions)
+            self.cube: Array | None = None if cube is None else hypercube_values(cube, self.dimensions)
         except InputError as error:
             raise error.located(file=plan.file) from None
-        self.draws = standard_draws(plan.draws, tuple(map(len, self.leaves))) if plan.draws else ()
+        self.draws: tuple[Array, ...] = standard_draws(plan.draws, tuple(map(len, self.leaves))) if plan.draws else ()
         self._packed: dict[int, bytes] = {}
         self._room = MEMORY
         self._cell: _Cell | None = None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 
 import numpy as np
@@ -39,7 +39,7 @@ from flexapod.verify.robots import (
 )
 
 COUNTS = ("freedoms", "gruebler", "mobility", "redundant", "locked", "self_stress")
-TABLE = {  # the counts above
+TABLE: dict[str, tuple[Callable[..., Robot], tuple[int, ...]]] = {  # the counts above
     "6-UPS": (hexapod, (36, 6, 6, 0, 0, 0)),
     "6-UPS on similar hexagons": (partial(hexapod, lower=LOWER, upper=LOWER), (36, 6, 6, 0, 3, 3)),
     "6-SPS": (partial(hexapod, "SPS"), (42, 12, 12, 0, 6, 0)),

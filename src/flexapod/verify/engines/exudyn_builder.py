@@ -67,10 +67,10 @@ class Builder:
         self.integration = integration
         #: Called before each step, at the state with which it begins.
         self.before_step: list[Callable[[], None]] = []
-        self.container = self.exu.SystemContainer()  # owns the system
-        self.mbs = self.container.AddSystem()
+        self.container: Any = self.exu.SystemContainer()  # owns the system
+        self.mbs: Any = self.container.AddSystem()
         node = self.mbs.AddNode(self.items.NodePointGround())
-        self.ground = self.coordinate(node, 0)
+        self.ground: int = self.coordinate(node, 0)
 
     def body(self, mass: float, inertia: Array, place: Array, turn: Array, gravity: Array) -> int:
         """A rigid body that nothing holds: inertia (3, 3) about its centre of mass, which is there; quaternion (4,)."""

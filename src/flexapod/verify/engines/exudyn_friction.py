@@ -20,6 +20,17 @@ class Bristles:
     rate of Stribeck's law, viscous friction, damping time; `step` [s].
     """
 
+    sliding: float
+    arm: float
+    presliding: float
+    excess: float
+    slower: float
+    viscous: float
+    time: float
+    step: float
+    bent: Array
+    rate: Array
+
     def __init__(self, numbers: Numbers, step: float, count: int = 1) -> None:
         self.sliding, self.arm, self.presliding, self.excess, self.slower, self.viscous, self.time = numbers
         self.step, self.bent, self.rate = step, np.zeros(count), np.zeros(count)

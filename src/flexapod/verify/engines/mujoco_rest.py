@@ -21,8 +21,11 @@ class AtRest:
     All is MuJoCo's: `mj_forward` says which accelerations are left, with loops as soft as the file makes them.
     """
 
+    payload: int
+    home: Array
+
     def __init__(self, text: str) -> None:
-        self.mujoco = mujoco_module()
+        self.mujoco: Any = mujoco_module()
         self.model: Any = self.mujoco.MjModel.from_xml_string(text)
         self.model.opt.tolerance, self.model.opt.iterations = 0, 50
         self.data: Any = self.mujoco.MjData(self.model)
