@@ -32,6 +32,7 @@ from flexapod.description.leg import (
     describe_leg,
     load_remarks,
 )
+from flexapod.description.rest import Rest, VibrationToExpect, vibration_to_expect
 from flexapod.description.screw import ScrewDescription, back_words, describe_screws, screw_remarks
 from flexapod.elements.springs import springs_along
 from flexapod.errors import FlexapodError, InputError
@@ -42,24 +43,19 @@ from flexapod.results.inside import guide_results
 from flexapod.results.mode_shapes import mode_kinds
 from flexapod.results.path import RigidPath
 from flexapod.review.checks import check_path
-from flexapod.review.estimates import bending_moments, buckling_loads, residual_vibration
+from flexapod.review.estimates import bending_moments, buckling_loads
 from flexapod.review.unstable_loops import loop_remarks
 from flexapod.runtime.threads import one_thread
-from flexapod.solve.modal.at_poses import locked_poses, robot_modes
 from flexapod.solve.modal.loss_factor import loss_words
 from flexapod.solve.modal.modal_loops import unstable_words
-from flexapod.solve.modal.modes import the_modes
+from flexapod.solve.robot_system import refuse_massless
 from flexapod.solve.statics.lost_motion import lost_motion, places_with_friction
 from flexapod.solve.statics.parts import part_stiffness
 from flexapod.solve.statics.stiffness import compliance, stiffness_of
-from flexapod.solve.time.robot_march import refuse_massless
 from flexapod.ties import EQUALS, first_largest
 
 SHOWN = 6
 ROUNDING = 1e-12  # of the largest compliance: below it a plane holds the platform
-BAND = 1e-6  # amplitude at which the tool counts as settled [m]
-HIGHEST = 2e3  # [Hz]: no motion of a machine excites a mode above
-PER_PERIOD, FEWEST, MOST = 12, 2000, 100_000  # instants of the motion: of a period of the highest mode, of all
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,31 +104,13 @@ class PoseDescription:
     bushings: tuple[tuple[float, ...], ...] = ()
 
 
-@dataclass(frozen=True, kw_only=True)
-class VibrationToExpect:
-    """Residual vibration of the tool after the motion (T8.14)-(T8.18).
-
-    `amplitude` [m]: all modes in phase; `frequency` [Hz] and `share` of the largest; `settling` [s] until the sum is
-    below `band` [m], inf without damping; `left_out` [Hz]: the lowest mode that is not in it, because the motion is too
-    long to be sampled for it; None where none is.
-    """
-
-    amplitude: float
-    frequency: float
-    share: float
-    settling: float
-    band: float
-    left_out: float | None
-
-
-def describe_pose(study: model.Study, name: str, time: float) -> PoseDescription:
+def describe_pose(name: str, rest: Rest) -> PoseDescription:
     """The robot at rest at an instant of its path."""
-    robot, simulation = study.robot, study.simulation
-    path = _at_rest(study, time)
+    study, path, time = rest.study, rest.path, rest.time
+    robot = study.robot
     parts, lost = _parts(robot, path), _lost_motion(robot, path)
     try:
-        locked = locked_poses(robot, simulation, path, study.load, time)
-        found = the_modes(locked)
+        locked, found = rest.locked, rest.modes
         stiffness = None if robot.platform_fixed else _stiffness(stiffness_of(robot, locked).total)
     except FlexapodError as error:
         return PoseDescription(name=name, time=time, problem=str(error), parts=parts, lost_motion=lost)
@@ -178,40 +156,6 @@ def _stiffness(total: Array) -> StiffnessDescription:
         softest=tuple(softest.tolist()),
         turning_least=float(1 / turning[-1]),
         turning_most=float(1 / turning_most),
-    )
-
-
-def _at_rest(study: model.Study, time: float) -> kinematics.Poses:
-    moving = kinematics.poses(study.robot, study.motion, np.array([time]))
-    return kinematics.Poses.at_rest(moving.position, moving.rotation)
-
-
-def vibration_to_expect(study: model.Study, end: float) -> VibrationToExpect | None:
-    """Residual vibration after the motion that ends at `end` [s]; None where it cannot vibrate."""
-    robot = study.robot
-    if robot.platform_fixed:
-        return None
-    try:
-        modes = robot_modes(robot, study.simulation, _at_rest(study, end), study.load, end)
-    except FlexapodError:
-        return None
-    if modes.growth:
-        return None
-    wanted = modes.frequency[(modes.frequency > 0) & (modes.frequency <= HIGHEST) & (modes.damping_ratio < 1)]
-    count = int(np.clip(np.ceil(PER_PERIOD * wanted.max(initial=0.0) * end), FEWEST, MOST))
-    t = np.linspace(0.0, end, count + 1)
-    path = kinematics.poses(robot, study.motion, t)
-    found = residual_vibration(robot, modes, t, path, BAND, from_rest=study.initial.start != "moving")
-    if not found.frequency.size:
-        return None
-    largest = first_largest(found.amplitude, EQUALS)
-    return VibrationToExpect(
-        amplitude=found.total,
-        frequency=float(found.frequency[largest]),
-        share=float(found.amplitude[largest] / found.total) if found.total > 0 else 0.0,
-        settling=found.time_to_band(),
-        band=BAND,
-        left_out=min(set(wanted.tolist()) - set(found.frequency.tolist()), default=None),
     )
 
 
@@ -291,13 +235,13 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         return describe_actuator(study)
     path = RigidPath(study)
     remarks = [*check_path(study, path), *_in_time(study)]
-    legs, singularity = describe_legs(path), _singularity(study.robot, path.time, path.poses)
+    legs, singularity = describe_legs(path), _singularity(path)
     screws, hydraulics = describe_screws(path), describe_hydraulics(path)
     end = min(study.motion.end_time - study.motion.hold, study.duration)
-    instants = {"start": 0.0, "end of the motion": end}
+    rests = {"start": Rest(study, 0.0), "end of the motion": Rest(study, end)}
     worst = singularity.time if singularity else end
     if min(worst, abs(worst - end)) > 0.02 * end and worst < end:
-        instants["nearest to a singularity"] = worst
+        rests["nearest to a singularity"] = Rest(study, worst)
     return RobotDescription(
         file=study.path,
         duration=study.duration,
@@ -316,8 +260,8 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
         clearance=leg_clearance(path),
         stroke_ends=stroke_ends(study.robot),
         singularity=singularity,
-        poses=tuple(describe_pose(study, name, instant) for name, instant in instants.items()),
-        vibration=vibration_to_expect(study, end),
+        poses=tuple(describe_pose(name, rest) for name, rest in rests.items()),
+        vibration=vibration_to_expect(rests["end of the motion"]),
         accuracy=accuracy_words(study),
         disturbances=vibration_words(study),
         ideal=ideal_words(study.robot),
@@ -355,16 +299,16 @@ def _in_time(study: model.Study) -> list[str]:
     return []
 
 
-def _singularity(robot: model.Robot, t: Array, path: kinematics.Poses) -> Singularity | None:
-    if robot.platform_fixed:
+def _singularity(path: RigidPath) -> Singularity | None:
+    if path.robot.platform_fixed:
         return None
-    home, found = kinematics.singularity(robot, kinematics.home_pose(robot)), kinematics.singularity(robot, path)
+    home, found = kinematics.singularity(path.robot, kinematics.home_pose(path.robot)), path.nearest
     return Singularity(
         home_smallest_singular_value=float(home.smallest_singular_value[0]),
         home_condition=float(home.condition[0]),
-        smallest_singular_value=float(found.smallest_singular_value[found.worst]),
-        condition=float(found.condition[found.worst]),
-        time=float(t[found.worst]),
+        smallest_singular_value=found.smallest_singular_value,
+        condition=found.condition,
+        time=float(path.time[found.worst]),
     )
 
 

@@ -18,7 +18,8 @@ from flexapod.words import column, columns, number, scale, sentence, text
 if TYPE_CHECKING:
     from flexapod.description.actuator import ActuatorDescription, BeamDescription
     from flexapod.description.leg import Extreme
-    from flexapod.description.robot import PoseDescription, RobotDescription, VibrationToExpect
+    from flexapod.description.rest import VibrationToExpect
+    from flexapod.description.robot import PoseDescription, RobotDescription
 
 SHOWN_ANGLE = math.radians(60)
 

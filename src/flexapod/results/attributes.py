@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 
 from flexapod import model, version
 from flexapod.results.record import Record
-from flexapod.solve.time.recording import Counters
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+    from flexapod.solve.time.recording import Counters
 
 KEPT = 16  # of the last studies, so that their results need not be read as text again
 _log = logging.getLogger("flexapod")

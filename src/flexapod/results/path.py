@@ -87,6 +87,11 @@ class RigidPath:
         return kinematics.inverse_kinematics(self.robot, self.poses)
 
     @cached_property
+    def nearest(self) -> kinematics.NearestSingularity:
+        """Where the path comes nearest to a singularity."""
+        return kinematics.nearest_singularity(self.robot, self.poses)
+
+    @cached_property
     def wrench(self) -> Array:
         """Load at the tool, world axes, (T, 6)."""
         return kinematics.wrench(self.study.load, self.time)

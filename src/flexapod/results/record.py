@@ -11,10 +11,11 @@ import numpy as np
 
 from flexapod.arrays import Array
 from flexapod.errors import ComputationError
-from flexapod.solve.time.problem import Chunk
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+    from flexapod.solve.time.problem import Chunk
 
 #: Called with the simulated time reached and the whole simulated time [s].
 Progress = Callable[[float, float], None]

@@ -104,11 +104,10 @@ def check_geometry(study: Study, path: RigidPath | None = None) -> list[str]:
         _refuse_off_the_screw(robot, t, found.length)
         _refuse_folded(t, found)
         _refuse_turned(path)
-        nearest = kinematics.nearest_singularity(robot, path.poses)
-        _refuse_singular(t, nearest)
+        _refuse_singular(t, path.nearest)
     except InputError as error:
         raise error.located(file=study.path) from None
-    return remarks + _remarks(robot, t, found.length, nearest) + _touching(path)
+    return remarks + _remarks(robot, t, found.length, path.nearest) + _touching(path)
 
 
 def path_remarks(robot: Robot, t: Array, poses: kinematics.Poses) -> list[str]:

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexapod import kinematics
 from flexapod.arrays import Array, Mask
@@ -254,15 +255,30 @@ def residual_vibration(
     impulse = (
         -steps @ (mass @ shapes.T) + _fed_forward(robot, t, path) @ _ways(robot, modes, shapes).T
     )  # (T8.14)  Q_j dt
-    middle = np.concatenate([t[:1], 0.5 * (t[1:] + t[:-1]), t[-1:]])
-    kernel = np.exp((1j * damped - ratio * omega) * (t[-1] - middle)[:, None])
-    answer = np.abs((impulse * kernel).sum(axis=0)) / damped  # (T8.15)
+    answer = np.abs(_rung_on(impulse, 1j * damped - ratio * omega, t)) / damped  # (T8.15)
     amplitude = answer * _tool_amplitudes(robot, modes, shapes)  # (T8.16)
     with np.errstate(divide="ignore", invalid="ignore"):
         settling = np.where(amplitude > band, np.log(amplitude / band) / (ratio * omega), 0.0)  # (T8.17)
     return VibrationEstimate(
         frequency=frequency, damping_ratio=ratio, amplitude=amplitude, settling=settling, band=band
     )
+
+
+def _rung_on(impulse: Array, rate: NDArray[np.complex128], t: Array) -> NDArray[np.complex128]:
+    """Sum at the end of impulses (T + 1, m), at the start, between equally spaced instants, at the end: (T8.15).
+
+    Between them exponentials of few times, of products of two, stand for those of all.
+    """
+    between, step = impulse[-2:0:-1], t[1] - t[0]  # latest first
+    count, modes = between.shape
+    row = math.isqrt(count - 1) + 1
+    rows = np.zeros((modes, row * row))
+    rows[:, :count] = between.T
+    at = np.arange(row)[:, None]
+    early, late = np.exp(rate * (row * step) * at), np.exp(rate * step * (at + 0.5))
+    of_rows = rows.reshape(modes, row, row) @ np.ascontiguousarray(late.T)[..., None].view(float)
+    inside = (early.T * of_rows.view(complex)[..., 0]).sum(axis=1)
+    return impulse[0] * np.exp(rate * (t[-1] - t[0])) + inside + impulse[-1]
 
 
 def _rigid_rates(robot: Robot, modes: RobotModes, path: kinematics.Poses) -> Array:

@@ -26,8 +26,8 @@ from flexapod.review.estimates import (
 )
 from flexapod.solve.batch import RestStates
 from flexapod.solve.sections import leg_values, stepped_stress
+from flexapod.solve.shapes import amplitudes, lateral_signs
 from flexapod.solve.system import System
-from flexapod.solve.time.actuator_march import amplitudes, lateral_signs
 from flexapod.ties import first_largest, first_least, most
 from flexapod.words import brief
 

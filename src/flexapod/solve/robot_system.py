@@ -9,16 +9,18 @@ from flexapod import kinematics
 from flexapod.arrays import Mask
 from flexapod.elements.element import Standing
 from flexapod.elements.known import kinds_of
+from flexapod.elements.springs import springs_along
+from flexapod.errors import InputError
 from flexapod.kinematics.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
 from flexapod.mechanics.layout import Shapes, columns
 from flexapod.mechanics.layout import leg_parameters as leg_layout
-from flexapod.model import Robot, Simulation
+from flexapod.model import Robot, Simulation, Study
 from flexapod.solve.kernel import kernel
 from flexapod.solve.parameters import leg_parameters, payload_parameters, standings
 from flexapod.solve.shapes import robot_shapes
 from flexapod.solve.system import System
 
-__all__ = ["at_rotors", "robot_system", "smooth"]
+__all__ = ["at_rotors", "refuse_massless", "robot_system", "smooth"]
 
 
 def robot_system(
@@ -115,3 +117,21 @@ def at_rotors(robot: Robot, simulation: Simulation, per_loss: float) -> System:
         if system.kernel.shapes.has(name):
             held[:, system.kernel.shapes.index(name)] = True
     return replace(system, leg_p=leg_p, held=held)
+
+
+def refuse_massless(study: Study) -> None:
+    """Raise InputError if a piston without mass leaves coordinates that nothing but their stiffness determines."""
+    simulation = study.simulation
+    for i, leg in enumerate(study.robot.legs, start=1):
+        still = leg.strut is not None or (leg.drive.holds and leg.holds_stroke)
+        soft = {spring.at for spring in springs_along(leg)} - ({"base"} if leg.cylinder.mass else set())
+        alone = simulation.axial_shapes(study.robot.legs[0].axial_modes) - still + len(soft & {"base", "platform"})
+        if leg.piston.rhoA == 0 and (simulation.lateral_shapes or alone > 0):
+            raise InputError(
+                f"of leg {i} leaves shapes of the piston without mass: they have statics, but no motion in time",
+                file=study.path,
+                key="leg.piston.rhoA",
+                value=0,
+                allowed='0 in modes, stiffness, maps; in time with "rigid", or "lumped" and prescribed strokes',
+                next_step="Give a small rhoA, as 1e-6 kg/m: steps need not follow what is that light",
+            )

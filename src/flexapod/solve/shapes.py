@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from flexapod import bases, kinematics
+from flexapod.arrays import Array
 from flexapod.bases.lateral import LateralBasis
 from flexapod.elements.element import Physics
 from flexapod.elements.known import elements_of
@@ -15,7 +16,7 @@ from flexapod.elements.slot import Slot
 from flexapod.elements.tip_body import PlanarTipBody, TipBody
 from flexapod.elements.torsion import Torsion
 from flexapod.kinematics.limbs import ABSENT, COORDINATES, FREE, HELD, Limbs
-from flexapod.mechanics.layout import Shapes
+from flexapod.mechanics.layout import Shapes, columns
 from flexapod.mechanics.leg_beam import LegBeam
 from flexapod.mechanics.leg_chain import LegChain
 from flexapod.model import Actuator, Rectangle, Robot, Simulation, Tube
@@ -23,8 +24,10 @@ from flexapod.model import Actuator, Rectangle, Robot, Simulation, Tube
 __all__ = [
     "SPACE_NAMES",
     "actuator_shapes",
+    "amplitudes",
     "beam_shapes",
     "home",
+    "lateral_signs",
     "leg_shapes",
     "places",
     "planar_shapes",
@@ -169,3 +172,13 @@ def home(actuator: Actuator) -> dict[str, float]:
     """Where an actuator stands at t = 0 [rad, m], by the names of `places`; the extension from the pivot."""
     begin = {"extension": actuator.hub_radius + actuator.free_length, "rotation": actuator.angle}
     return begin | ({"elevation": actuator.elevation} if actuator.space else {})
+
+
+def lateral_signs(shapes: Shapes, along: float, up: float) -> list[tuple[str, float]]:
+    """Amplitudes by name, and their parts of a deflection ``along`` the rotation and ``up`` the elevation, (T9.9)."""
+    return [("a", along)] if shapes.chain.planar else [("b", -along), ("a", up)]
+
+
+def amplitudes(shapes: Shapes, q: Array, name: str) -> Array:
+    """Columns of q (T, n) of the amplitudes called ``name``."""
+    return q[:, columns(shapes.layout, name)]

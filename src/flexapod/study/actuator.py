@@ -19,8 +19,8 @@ from flexapod.review.checks import check_actuator_path
 from flexapod.review.plausibility import actuator_warnings
 from flexapod.runtime.threads import one_thread
 from flexapod.solve.batch import tips
-from flexapod.solve.shapes import places
-from flexapod.solve.time.actuator_march import ActuatorMarch, amplitudes, lateral_signs, prepare_actuator
+from flexapod.solve.shapes import amplitudes, lateral_signs, places
+from flexapod.solve.time.actuator_march import ActuatorMarch, prepare_actuator
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -9,11 +9,11 @@ from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
-from flexapod.mechanics.layout import Shapes, columns
+from flexapod.mechanics.layout import columns
 from flexapod.model import DRIVEN_BY, Actuator, ActuatorStudy, Simulation
 from flexapod.solve.kernel import kernel
 from flexapod.solve.parameters import SPACE, actuator_parameters
-from flexapod.solve.shapes import SPACE_NAMES, actuator_shapes, home, places
+from flexapod.solve.shapes import SPACE_NAMES, actuator_shapes, amplitudes, home, lateral_signs, places
 from flexapod.solve.system import COLUMNS, Flow, State, System
 from flexapod.solve.time.march import initial_step, march
 from flexapod.solve.time.problem import Chunk, Problem, Weight
@@ -173,11 +173,6 @@ def _state(study: ActuatorStudy, system: System, law: Law, amplitudes: Array | N
     return State(q=q, v=v, v_dot=np.zeros(system.n), lam=none, drive=drive, pose=np.zeros(7))
 
 
-def lateral_signs(shapes: Shapes, along: float, up: float) -> list[tuple[str, float]]:
-    """Amplitudes by name, and their parts of a deflection ``along`` the rotation and ``up`` the elevation, (T9.9)."""
-    return [("a", along)] if shapes.chain.planar else [("b", -along), ("a", up)]
-
-
 def _measure(system: System, actuator: Actuator, recording: Recording) -> list[Array]:
     """How far the tip moves, and angles and length where they are free.
 
@@ -202,11 +197,6 @@ def _weights(system: System, actuator: Actuator) -> tuple[Weight, ...]:
             tip[columns(shapes.layout, name)] = size
     free = [j for j in sorted(places(shapes).values()) if not system.held[0, j]]
     return Weight(leg=tip, hub=none), *(Weight(leg=np.eye(n)[j], hub=none) for j in free)
-
-
-def amplitudes(shapes: Shapes, q: Array, name: str) -> Array:
-    """Columns of q (T, n) of the amplitudes called ``name``."""
-    return q[:, columns(shapes.layout, name)]
 
 
 def _check(system: System, actuator: Actuator, recording: Recording) -> None:

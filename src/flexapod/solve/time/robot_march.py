@@ -8,7 +8,6 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.arrays import Array
-from flexapod.elements.springs import springs_along
 from flexapod.errors import ComputationError, InputError
 from flexapod.integration import GeneralizedAlpha
 from flexapod.kinematics.inverse import BETA_LIMIT
@@ -19,7 +18,7 @@ from flexapod.solve.batch import RestStates
 from flexapod.solve.frames import floor
 from flexapod.solve.modal.loss_factor import per_loss
 from flexapod.solve.rigid_motion import built_state, rigid_state
-from flexapod.solve.robot_system import robot_system
+from flexapod.solve.robot_system import refuse_massless, robot_system
 from flexapod.solve.statics.branch import flipped, refuse_fallen, refuse_flipped
 from flexapod.solve.statics.equilibrium import equilibrium
 from flexapod.solve.statics.locked import refuse_pure_force
@@ -133,24 +132,6 @@ def _around(sampled: "Sampled | None", system: System, study: Study, path: "_Pat
             next_step="Install gcc or clang, or `pip install ziglang`",
         )
     return SampledLoop(sampled, system, study.robot, lambda t: path.exact(np.minimum(t, study.duration)))
-
-
-def refuse_massless(study: Study) -> None:
-    """Raise InputError if a piston without mass leaves coordinates that nothing but their stiffness determines."""
-    simulation = study.simulation
-    for i, leg in enumerate(study.robot.legs, start=1):
-        still = leg.strut is not None or (leg.drive.holds and leg.holds_stroke)
-        soft = {spring.at for spring in springs_along(leg)} - ({"base"} if leg.cylinder.mass else set())
-        alone = simulation.axial_shapes(study.robot.legs[0].axial_modes) - still + len(soft & {"base", "platform"})
-        if leg.piston.rhoA == 0 and (simulation.lateral_shapes or alone > 0):
-            raise InputError(
-                f"of leg {i} leaves shapes of the piston without mass: they have statics, but no motion in time",
-                file=study.path,
-                key="leg.piston.rhoA",
-                value=0,
-                allowed='0 in modes, stiffness, maps; in time with "rigid", or "lumped" and prescribed strokes',
-                next_step="Give a small rhoA, as 1e-6 kg/m: steps need not follow what is that light",
-            )
 
 
 def refuse_gaps(study: Study) -> None:
