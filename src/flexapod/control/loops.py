@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linear_sum_assignment, minimize_scalar
 
-from flexapod.control.arguments import numbers
+from flexapod.control.arguments import number, numbers
 from flexapod.control.interconnect import closed, law_of, opened
 from flexapod.control.poles import damping_of, poles_of, zeros_of
 from flexapod.control.sampling import held
+from flexapod.control.state_space import a_system
 from flexapod.errors import InputError
 from flexapod.units import to_si
 
@@ -84,6 +85,7 @@ def best_gain(
 
     law = _law(system, controller)
     edge = np.inf if below is None else to_si(below, "frequency", key="below")
+    least, most = number(least, "least"), number(most, "most")
     if not 0 < least < most:
         raise InputError("are no factors", key="least, most", value=f"{least}, {most}", allowed="0 < least < most")
     factors = np.geomspace(least, most, int(np.ceil(STEPS * np.log10(most / least))) + 1)
@@ -99,7 +101,7 @@ def best_gain(
 
 
 def _law(system: StateSpace, controller: Controller | StateSpace) -> StateSpace:
-    law = law_of(controller, system.outputs, system.inputs, system.units)
+    law = law_of(controller, a_system(system).outputs, system.inputs, system.units)
     return held(law, system.sample) if system.sample is not None and law.sample is None else law
 
 

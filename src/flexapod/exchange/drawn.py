@@ -66,8 +66,6 @@ def check_motion(study: model.Study, data: Dataset) -> None:
 def drawn_robot(study: model.Study, data: Dataset, scale: float = 1.0) -> DrawnRobot:
     """The robot of a result of `study`, deflections `scale` times larger."""
     check_motion(study, data)
-    if not isinstance(scale, int | float) or not 0 < scale < np.inf:
-        raise InputError("is not a factor", key="magnify", value=scale, allowed="above 0")
     motion = RobotMotion(study, data)
     scenes = [motion.at(t, scale).flexible for t in motion.time]
     base, tip = (np.array([getattr(x, name) for x in scenes]) for name in ("base", "platform"))

@@ -81,7 +81,7 @@ def shaper(kind: str, frequency: ArrayLike, ratio: ArrayLike = 0.0) -> Shaper:
     InputError
         An unknown kind, no frequency, or a mode that does not oscillate.
     """
-    if kind not in KINDS:
+    if not isinstance(kind, str) or kind not in KINDS:
         raise InputError(
             "is not known", key="kind", value=kind, allowed=", ".join(KINDS), next_step=closest(str(kind), tuple(KINDS))
         )

@@ -15,7 +15,7 @@ from flexapod.kinematics.laws import spline, spline_law
 from flexapod.model import AXES, ActuatorStudy, CsvLaw, CsvMotion, Motion, Study, load
 from flexapod.model.motion import Axis
 from flexapod.results.arguments import FileLike
-from flexapod.runtime.files import write_text
+from flexapod.runtime.files import path_of, write_text
 from flexapod.schema.csv_tables import POSE, header
 
 __all__ = ["Tabled", "named", "saved", "tabled"]
@@ -139,6 +139,22 @@ def _graded(knots: Array, count: int, nearest: float) -> Array:
 S = TypeVar("S", bound=Study | ActuatorStudy)
 
 
+def check_out(study: Study | ActuatorStudy, path: FileLike) -> Path:
+    """Where a study is to be written; refused where that is no study file, or the one that is read."""
+    place = path_of(path, "out")
+    if place.suffix != ".toml":
+        raise InputError("is no name of a study file", key="out", value=str(path), allowed="NAME.toml")
+    if place.is_dir():
+        raise InputError("is a folder", key="out", value=str(path), allowed="NAME.toml")
+    own, table = None if study.path is None else Path(study.path).resolve(), place.with_suffix(".csv").name
+    if own is not None and place.resolve() == own:
+        raise InputError("is the file of the study itself", key="out", value=str(path), next_step="Choose another name")
+    if own is not None and place.resolve().parent == own.parent and table in study.source_text:
+        words = f"would replace {table}, a table that the study names"
+        raise InputError(words, key="out", value=str(path), next_step="Choose another name")
+    return place
+
+
 def saved(study: S, path: FileLike) -> S:
     """The study as a file with the table of its commands beside it; the study that the file holds.
 
@@ -149,9 +165,7 @@ def saved(study: S, path: FileLike) -> S:
     path : path
         ``NAME.toml``; the table is ``NAME.csv``. In the folder of the study whose other tables it names.
     """
-    place = Path(path)
-    if place.suffix != ".toml":
-        raise InputError("is no name of a study file", key="out", value=str(path), allowed="NAME.toml")
+    place = check_out(study, path)
     beside = place.with_suffix(".csv")
     written, first, columns = _named(study, beside.name)
     rows = [",".join(map(repr, row)) for row in columns.tolist()]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flexapod.control.arguments import frequencies
+from flexapod.control.arguments import flag, frequencies
 from flexapod.control.state_space import StateSpace
 from flexapod.kinematics.rotations import matrix
 from flexapod.results.arguments import LoadLike, PoseLike, RobotLike
@@ -109,6 +109,7 @@ def transmissibility(
     >>> print(data.transmissibility.sel(output="tool:z", input="floor:z", part="real").round(2).values)
     [1.   1.02 0.02]
     """
+    flag(tilt, "tilt")
     found, plant = plant_of(study, pose, load, drives, friction)
     inputs, outputs = asked("floor", plant.robot, "inputs"), asked("tool", plant.robot, "outputs")
     (point, *_) = asked(f"accelerometer:{at}", plant.robot, "outputs")
