@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod.arrays import Array
+from flexapod.control.arguments import number
 from flexapod.control.channels import Names
 from flexapod.control.controllers import pairs
 from flexapod.control.function import Function
 from flexapod.control.sampling import period_of
 from flexapod.errors import InputError
-from flexapod.units import to_si
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
@@ -45,6 +45,12 @@ class Tracker:
     lowest: float | str = 0.1
     highest: float | str = 1e4
 
+    def __post_init__(self) -> None:
+        """Numbers above 0."""
+        number(self.width, "width", above=0.0)
+        number(self.speed, "speed", least=0.0)
+        self.start()
+
     def start(self) -> Array:
         """Oscillator in and out of phase, angular frequency [rad/s]."""
         found, low, high = self._limits
@@ -71,7 +77,7 @@ class Tracker:
         """Angular frequencies [rad/s]: at first, lowest, highest."""
         texts = (self.frequency, self.lowest, self.highest)
         names = ("frequency", "lowest", "highest")
-        found = [2 * np.pi * to_si(text, "frequency", key=key) for text, key in zip(texts, names, strict=True)]
+        found = [2 * np.pi * number(text, key, "frequency", above=0.0) for text, key in zip(texts, names, strict=True)]
         return found[0], found[1], found[2]
 
 
@@ -93,6 +99,12 @@ class AdaptiveDamping:
     sensor: Names = "stroke"
     actuator: Names = "drive"
 
+    def __post_init__(self) -> None:
+        """A gain that is a number, and a tracker."""
+        number(self.gain, "gain")
+        if not isinstance(self.tracker, Tracker):
+            raise InputError("is no tracker", key="tracker", value=self.tracker, allowed='Tracker(frequency="12 Hz")')
+
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: object = None) -> StateSpace:
         """Refuses: what adapts has no linear law."""
         raise InputError("adapts: it has no linear law", key="controller", next_step="Use it in fx.simulate")
@@ -104,7 +116,7 @@ class AdaptiveDamping:
 
         `outputs`, `inputs`: names of the channels there are, of which it takes its own.
         """
-        T = period_of(period)
+        T, gain = period_of(period), number(self.gain, "gain")
         sensors, actuators = pairs(self.sensor, self.actuator, outputs, inputs)
         start = np.stack([self.tracker.start()] * len(sensors))
         known: dict[int, Array] = {}
@@ -114,6 +126,6 @@ class AdaptiveDamping:
             state = known.get(k, start) if k else start
             state = np.stack([self.tracker.step(v, x, T) for v, x in zip(y, state, strict=True)])
             known[k + 1] = state
-            return self.gain * state[:, 2] * state[:, 1]  # (T21.45)  y' = a' = -w b
+            return gain * state[:, 2] * state[:, 1]  # (T21.45)  y' = a' = -w b
 
         return Function(function=asked, inputs=tuple(sensors), outputs=tuple(actuators))

@@ -11,6 +11,7 @@ from scipy.linalg import block_diag
 
 from flexapod.arrays import Array
 from flexapod.control import laws
+from flexapod.control.arguments import matrix
 from flexapod.control.channels import RATE, Names, chosen
 from flexapod.control.interconnect import law_of
 from flexapod.control.laws import ControlLaw, Number
@@ -90,8 +91,7 @@ class Decentralised(Controller):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
-        if not isinstance(self.law, ControlLaw):
-            raise InputError("is no law", key="law", value=self.law, allowed="of flexapod.control, as gain(2.0)")
+        laws.a_law(self.law)
         sensors, actuators = pairs(self.sensor, self.actuator, outputs, inputs)
         each = np.eye(len(sensors))
         return assembled([self.law * -1.0] * len(sensors), each, each, sensors, actuators, units)
@@ -182,6 +182,7 @@ class Fused(Controller):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
+        laws.a_law(self.law)
         below, above = laws.complementary(self.corner, self.order)
         low, actuators = pairs(self.low, self.actuator, outputs, inputs)
         high, _ = pairs(self.high, self.actuator, outputs, inputs)
@@ -215,14 +216,19 @@ class Decoupled(Controller):
         """See `Controller.on`."""
         sensors = [outputs[i] for i in chosen(self.sensor, outputs, "sensor")]
         actuators = [inputs[i] for i in chosen(self.actuator, inputs, "actuator")]
-        into, out = np.atleast_2d(np.asarray(self.into, float)), np.asarray(self.out, float)
-        out = out[:, None] if out.ndim == 1 else out
-        given = [self.law] * len(into) if isinstance(self.law, ControlLaw) else list(self.law)
+        into, out = matrix(self.into, "into", "(k, sensors)"), matrix(self.out, "out", "(actuators, k)")
+        out = out.T if np.ndim(self.out) == 1 else out
+        each = (
+            [self.law] * len(into)
+            if isinstance(self.law, ControlLaw) or not isinstance(self.law, Sequence)
+            else self.law
+        )
+        given = [laws.a_law(law) for law in each]
         shapes = {"into": (into, (len(given), len(sensors))), "out": (out, (len(actuators), len(given)))}
-        for key, (matrix, shape) in shapes.items():
-            if matrix.shape != shape:
+        for key, (found, shape) in shapes.items():
+            if found.shape != shape:
                 words = f"{shape}: {len(given)} laws, {len(sensors)} sensors, {len(actuators)} actuators"
-                raise InputError(f"has the shape {matrix.shape}", key=key, allowed=words)
+                raise InputError(f"has the shape {found.shape}", key=key, allowed=words)
         return assembled([law * -1.0 for law in given], into, out, sensors, actuators, units)
 
 
@@ -234,7 +240,8 @@ class Together(Controller):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
-        each = [law_of(part, outputs, inputs, units) for part in self.parts]
+        parts = self.parts if isinstance(self.parts, Sequence) else ()
+        each = [law_of(part, outputs, inputs, units) for part in parts]
         if not each:
             raise InputError("are none", key="parts", allowed="a controller at least")
         readings = tuple(dict.fromkeys(name for part in each for name in part.inputs))

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.arrays import Array
-from flexapod.control.arguments import numbers
+from flexapod.control.arguments import matrix, number, numbers, whole
 from flexapod.control.channels import Names
 from flexapod.control.controllers import Decoupled
 from flexapod.control.laws import ControlLaw
+from flexapod.control.state_space import a_system
 from flexapod.errors import ComputationError, InputError
-from flexapod.units import to_si
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
@@ -45,13 +45,7 @@ def by_jacobian(jacobian: ArrayLike) -> Decoupling:
 
     With the centre of mass masses do not couple, with the centre of stiffness springs do not.
     """
-    try:
-        J = np.atleast_2d(np.asarray(jacobian, dtype=float))
-    except (TypeError, ValueError):
-        J = np.full((1, 1), np.nan)
-    if J.ndim != 2 or not np.isfinite(J).all():
-        raise InputError("is no matrix of finite numbers", key="jacobian", value=jacobian, allowed="(m, d)")
-    inverse = _inverse(J, "jacobian")
+    inverse = _inverse(matrix(jacobian, "jacobian", "(m, d)"), "jacobian")
     return Decoupling(into=inverse, out=inverse.T)
 
 
@@ -95,8 +89,13 @@ def centre_of_stiffness(jacobian: ArrayLike, stiffness: ArrayLike = 1.0) -> Arra
     The stiffness of translation with rotation, K_tr, at a point beside it by a is K_tr + K_tt [a]x, Eq. (T21.37), with
     the least sum of squares there.
     """
-    J = np.asarray(jacobian, dtype=float)
-    K = J.T @ (np.broadcast_to(np.asarray(stiffness, dtype=float), len(J))[:, None] * J)
+    J = matrix(jacobian, "jacobian", "(m, 6)")
+    springs = numbers(stiffness, "stiffness", "one number, or one for each drive [N/m]")
+    if J.shape[1] != 6 or len(springs) not in (1, len(J)):
+        raise InputError(
+            "do not fit", key="jacobian, stiffness", allowed=f"(m, 6) and (m,), not {J.shape} and {springs.shape}"
+        )
+    K = J.T @ (np.broadcast_to(springs, len(J))[:, None] * J)
     turns = [K[:3, :3] @ np.cross(np.eye(3), axis) for axis in np.eye(3)]
     system = np.stack([turn.ravel() for turn in turns], axis=1)
     return np.asarray(np.linalg.lstsq(system, -K[:3, 3:].ravel(), rcond=None)[0], dtype=float)
@@ -122,14 +121,12 @@ def by_modes(
     ComputationError
         Modes that sensors or actuators do not tell apart.
     """
-    part = system.select(actuator, sensor)
-    k = min(part.D.shape) if count is None else count
-    if not 0 < k <= min(part.D.shape):
-        raise InputError("cannot be told apart", key="count", value=k, allowed=f"1 to {min(part.D.shape)}")
+    part = a_system(system).select(actuator, sensor)
+    k = min(part.D.shape) if count is None else whole(count, "count", 1, min(part.D.shape))
     values, right = np.linalg.eig(part.A)
     left = np.linalg.solve(right, part.B.astype(complex))
     shown = part.C @ right
-    edge = 2 * np.pi * to_si(above, "frequency", key="above")
+    edge = 2 * np.pi * number(above, "above", "frequency", least=0.0)
     slowest = np.argsort(np.abs(values), kind="stable")
     modes = [i for i in slowest if np.imag(values[i]) > 0 and abs(values[i]) > edge]
     if len(modes) < k:
@@ -143,8 +140,8 @@ def by_singular_vectors(
     system: StateSpace, hz: float | str, *, sensor: Names = "stroke", actuator: Names = "drive"
 ) -> Decoupling:
     """Singular vectors of a real matrix near the response at a frequency, Eq. (T21.39): G ~ U S V'."""
-    at = to_si(hz, "frequency", key="hz")
-    G = system.select(actuator, sensor).at(at)[:, :, 0]
+    at = number(hz, "hz", "frequency", least=0.0)
+    G = a_system(system).select(actuator, sensor).at(at)[:, :, 0]
     if G.shape[0] != G.shape[1]:
         raise InputError("is not square", key="sensor", allowed="as many sensors as actuators")
     D = np.linalg.pinv((G.conj().T @ G).real)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexapod.errors import ComputationError, InputError
-from flexapod.runtime.files import replacing
+from flexapod.runtime.files import path_of, replacing
 from flexapod.runtime.loading import loaded
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def to_control(system: StateSpace) -> Any:
 
 def save(system: StateSpace, path: str | Path) -> Path:
     """See `StateSpace.save`."""
-    path = Path(path)
+    path = path_of(path, "path")
     write = WRITERS.get(path.suffix.lower())
     if write is None:
         raise InputError("is not a format of linear systems", key="path", value=path.name, allowed=", ".join(WRITERS))

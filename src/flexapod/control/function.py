@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from flexapod.arrays import Array
+from flexapod.errors import InputError, names_of
 
 __all__ = ["Function"]
 
@@ -26,3 +27,10 @@ class Function:
     function: Callable[[float, Array], object]
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        """A function, and names of channels."""
+        if not callable(self.function):
+            raise InputError("is no function", key="function", value=self.function, allowed="function(t, readings)")
+        for key in ("inputs", "outputs"):
+            object.__setattr__(self, key, tuple(names_of(getattr(self, key), key)))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.control.arguments import frequencies
+from flexapod.control.state_space import a_system
 from flexapod.errors import InputError
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ def impedance(system: StateSpace, hz: ArrayLike, *, force: str, place: str) -> D
     """
     from flexapod.control.datasets import impedance_dataset
 
-    part = system.select(force, place)
+    part = a_system(system).select(force, place)
     if len(part.inputs) != 1 or len(part.outputs) != 1:
         raise InputError("are more than one channel", key="force, place", value=f"{force}, {place}")
     frequency = frequencies(hz)

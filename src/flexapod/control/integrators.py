@@ -92,5 +92,5 @@ def _as_powers(A: Array, B: Array, C: Array, N: NDArray[np.int_], main: NDArray[
         A=A[main][:, main],
         B=B[main],
         C=C[:, main],
-        powers=np.array(powers).reshape(-1, len(C), B.shape[1]),
+        powers=np.array(powers).reshape(len(powers), len(C), B.shape[1]),
     )

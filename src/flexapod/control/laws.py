@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexapod.arrays import Array
-from flexapod.control.arguments import frequencies, numbers
+from flexapod.control.arguments import frequencies, number, numbers
 from flexapod.errors import InputError
-from flexapod.units import to_si
+from flexapod.units import DIMENSIONS
 
 __all__ = [
     "ControlLaw",
+    "a_law",
     "complementary",
     "gain",
     "high_pass",
@@ -44,6 +45,19 @@ class ControlLaw:
     B: Array
     C: Array
     D: Array
+
+    def __post_init__(self) -> None:
+        """Finite arrays whose shapes fit."""
+        n = int(np.shape(self.A)[0]) if np.ndim(self.A) == 2 else 0
+        for name, shape in (("A", (n, n)), ("B", (n, 2)), ("C", (n,)), ("D", (2,))):
+            try:
+                value = np.asarray(getattr(self, name), dtype=float)
+            except (TypeError, ValueError):
+                value = np.full(1, np.nan)
+            if value.shape != shape or not np.isfinite(value).all():
+                allowed = f"finite numbers of the shape {shape}, of {n} states"
+                raise InputError("is no array of a law", key=name, value=getattr(self, name), allowed=allowed)
+            object.__setattr__(self, name, value)
 
     @classmethod
     def of(cls, numerator: Sequence[float], denominator: Sequence[float] = (1.0,)) -> ControlLaw:
@@ -79,7 +93,8 @@ class ControlLaw:
     def __mul__(self, other: ControlLaw | float) -> ControlLaw:
         """A number of times the law, or one law behind the other: their transfers multiply, Eq. (T21.7)."""
         if not isinstance(other, ControlLaw):
-            return ControlLaw(A=self.A, B=self.B, C=float(other) * self.C, D=float(other) * self.D)
+            factor = number(other, "factor")
+            return ControlLaw(A=self.A, B=self.B, C=factor * self.C, D=factor * self.D)
         first, second = (self, other) if not other.uses_rate else (other, self)
         if second.uses_rate:
             raise InputError("both take rates: their product needs a rate of a rate", key="law")
@@ -95,6 +110,7 @@ class ControlLaw:
 
     def __add__(self, other: ControlLaw) -> ControlLaw:
         """Two laws side by side: their outputs add."""
+        a_law(other)
         n, m = len(self.A), len(other.A)
         return ControlLaw(
             A=np.block([[self.A, np.zeros((n, m))], [np.zeros((m, n)), other.A]]),
@@ -109,6 +125,13 @@ class ControlLaw:
         given = np.stack([np.ones_like(s), s])
         moved = np.linalg.solve(s[:, None, None] * np.eye(len(self.A)) - self.A, (self.B @ given).T[..., None])
         return (moved[..., 0] @ self.C) + self.D @ given
+
+
+def a_law(law: ControlLaw) -> ControlLaw:
+    """The law, where it is one."""
+    if not isinstance(law, ControlLaw):
+        raise InputError("is no law", key="law", value=law, allowed="of flexapod.control, as gain(2.0)")
+    return law
 
 
 def gain(value: float) -> ControlLaw:
@@ -132,28 +155,26 @@ def integrator(value: float, high_pass: Number = 0.0) -> ControlLaw:
 
 def low_pass(corner: Number, order: int = 1, damping: float = 0.5**0.5) -> ControlLaw:
     """1 at rest, above the corner [Hz] falling with a power of one or two; of order 2 with a damping ratio."""
-    w = _omega(corner, "corner")
+    w, damping = _omega(corner, "corner"), number(damping, "damping", above=0.0)
     return ControlLaw.of([1.0], _of_order(order, [1 / w, 1.0], [1 / w**2, 2 * damping / w, 1.0]))
 
 
 def high_pass(corner: Number, order: int = 1, damping: float = 0.5**0.5) -> ControlLaw:
     """1 far above the corner [Hz], below it falling with a power of one or two."""
-    w = _omega(corner, "corner")
+    w, damping = _omega(corner, "corner"), number(damping, "damping", above=0.0)
     top = _of_order(order, [1 / w, 0.0], [1 / w**2, 0.0, 0.0])
     return ControlLaw.of(top, _of_order(order, [1 / w, 1.0], [1 / w**2, 2 * damping / w, 1.0]))
 
 
 def lead(crossing: Number, ratio: float) -> ControlLaw:
     """(1 + s h / w) / (1 + s / (h w)) / h: size 1 at the crossing [Hz], phase most there, Eq. (T21.9)."""
-    w = _omega(crossing, "crossing")
-    if not ratio > 0:
-        raise InputError("is not above 0", key="ratio", value=ratio)
+    w, ratio = _omega(crossing, "crossing"), number(ratio, "ratio", above=0.0)
     return ControlLaw.of([1 / w, 1 / ratio], [1 / (ratio * w), 1.0])
 
 
 def notch(frequency: Number, damping: float = 0.5, depth: float = 0.0) -> ControlLaw:
     """1 but about a frequency [Hz], where it is `depth`; `damping`: how broad, Eq. (T21.10)."""
-    w = _omega(frequency, "frequency")
+    w, damping, depth = _omega(frequency, "frequency"), number(damping, "damping", above=0.0), number(depth, "depth")
     return ControlLaw.of([1.0, 2 * depth * damping * w, w**2], [1.0, 2 * damping * w, w**2])
 
 
@@ -161,20 +182,22 @@ def pid(
     proportional: float, integral: float = 0.0, derivative: float = 0.0, low_pass: Number | None = None
 ) -> ControlLaw:
     """Reading, integral and rate, each times a number; `low_pass` [Hz] of the rate alone."""
-    law = gain(proportional)
+    law, integral, derivative = gain(proportional), number(integral, "integral"), number(derivative, "derivative")
+    if low_pass is not None:
+        _omega(low_pass, "low_pass")
     law = law + integrator(integral) if integral else law
     return law + rate(derivative, low_pass) if derivative else law
 
 
 def positive_feedback(frequency: Number, damping: float, value: float) -> ControlLaw:
     """What positive position feedback passes on of a reading: value w^2 / (s^2 + 2 zeta w s + w^2)."""
-    w = _omega(frequency, "frequency")
+    w, damping, value = _omega(frequency, "frequency"), number(damping, "damping", above=0.0), number(value, "value")
     return ControlLaw.of([value * w**2], [1.0, 2 * damping * w, w**2])
 
 
 def complementary(corner: Number, order: int = 1) -> tuple[ControlLaw, ControlLaw]:
     """Low-pass and high-pass that add up to 1 and fall with the power `order` outside of their bands, Eq. (T21.11)."""
-    if order not in (1, 2, 3):
+    if not isinstance(order, int) or order not in (1, 2, 3):
         raise InputError("is not an order of complementary filters", key="order", value=order, allowed="1, 2, 3")
     w, n = _omega(corner, "corner"), 2 * order - 1
     terms = [comb(n, k) * w**k for k in range(n + 1)]  # of (s + w)^n
@@ -183,14 +206,17 @@ def complementary(corner: Number, order: int = 1) -> tuple[ControlLaw, ControlLa
 
 
 def _of_order(order: int, one: list[float], two: list[float]) -> list[float]:
-    if order not in (1, 2):
+    if not isinstance(order, int) or order not in (1, 2):
         raise InputError("is not an order of this filter", key="order", value=order, allowed="1, 2")
     return one if order == 1 else two
 
 
 def _omega(frequency: Number, key: str, least: float | None = None) -> float:
     """Angular frequency [rad/s] of a number [Hz] or a text."""
-    found = to_si(frequency, "frequency", key=key)
+    found, known = number(frequency, key, "frequency"), DIMENSIONS["frequency"]
     if found < 0 or (least is None and found == 0):
         raise InputError("is not a frequency", key=key, value=frequency, allowed="above 0 Hz")
+    if found and not known.least <= found <= known.most:
+        allowed = f"{known.least:g} to {known.most:g} Hz"
+        raise InputError("is not a frequency of a machine", key=key, value=frequency, allowed=allowed)
     return 2 * np.pi * found

@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from flexapod.arrays import Array
+from flexapod.control.arguments import number
 from flexapod.control.closing import DelayedLoop
 from flexapod.control.interconnect import closed
 from flexapod.control.poles import damping_of
 from flexapod.control.sampling import law_beside
+from flexapod.control.state_space import a_system
 from flexapod.errors import ComputationError, InputError
-from flexapod.units import to_si
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -61,8 +62,8 @@ def margins(system: StateSpace, controller: Controller | StateSpace, *, delay: f
     """
     from flexapod.control.datasets import margins_dataset
 
-    law = law_beside(system, controller)
-    late = to_si(delay, "time", key="delay")
+    law = law_beside(a_system(system), controller)
+    late = number(delay, "delay", "time", least=0.0)
     if system.sample is not None and late:
         raise InputError("is for continuous systems", key="delay", value=delay, next_step=".sampled(period, delay)")
     around = _around(DelayedLoop(system=system, controller=law, delay=late))
@@ -169,8 +170,8 @@ def _growing(poles: Complex, sample: float | None, delay: float, around: Gains, 
         at = float(hz[i] + share * (hz[i + 1] - hz[i]))
         there = np.linalg.eigvals(around(np.array([at])))[0]
         angle = float(np.angle(there[np.abs(there - (1 - share) * values[i, j] - share * values[i + 1, j]).argmin()]))
-        turns = np.arange((angle % (2 * np.pi)) / (2 * np.pi * at), delay, 1 / at)
-        count += 2 * len(turns) * (1 if size[i + 1, j] < size[i, j] else -1)
+        turns = max(0, int(np.ceil((delay - (angle % (2 * np.pi)) / (2 * np.pi * at)) / (1 / at))))
+        count += 2 * turns * (1 if size[i + 1, j] < size[i, j] else -1)
     return count
 
 

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linear_sum_assignment, minimize_scalar
 
-from flexapod.control.arguments import numbers
+from flexapod.control.arguments import number, numbers
 from flexapod.control.interconnect import closed, opened
 from flexapod.control.poles import damping_of, poles_of, zeros_of
 from flexapod.control.sampling import law_beside
+from flexapod.control.state_space import a_system
 from flexapod.errors import InputError
 from flexapod.units import to_si
 
@@ -52,7 +53,7 @@ def root_locus(system: StateSpace, controller: Controller | StateSpace, gains: A
     factors = numbers(gains, "gains", "factors on the controller, one at least")
     if not factors.size:
         raise InputError("are none", key="gains", allowed="factors on the controller, one at least")
-    law = law_beside(system, controller)
+    law = law_beside(a_system(system), controller)
     poles = np.stack([_poles(system, law, factor) for factor in factors])
     for i in range(1, len(poles)):
         away = np.abs(poles[i - 1][:, None] - poles[i])
@@ -82,8 +83,9 @@ def best_gain(
     """
     from flexapod.control.datasets import best_dataset
 
-    law = law_beside(system, controller)
+    law = law_beside(a_system(system), controller)
     edge = np.inf if below is None else to_si(below, "frequency", key="below")
+    least, most = number(least, "least"), number(most, "most")
     if not 0 < least < most:
         raise InputError("are no factors", key="least, most", value=f"{least}, {most}", allowed="0 < least < most")
     factors = np.geomspace(least, most, int(np.ceil(STEPS * np.log10(most / least))) + 1)

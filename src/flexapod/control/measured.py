@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from flexapod.arrays import Array
 from flexapod.errors import InputError
-from flexapod.runtime.files import LARGEST_TABLE, read_bytes
+from flexapod.runtime.files import LARGEST_TABLE, path_of, read_bytes
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -67,7 +67,7 @@ def read_frf(path: str | Path) -> Dataset:
     >>> print(data.frequency_response.sel(output="tool:z", input="wrench:fz", part="real").values)
     [4.0e-09 4.1e-09]
     """
-    path = Path(path)
+    path = path_of(path, "path")
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise InputError("is not a format of responses", file=path, allowed=", ".join(READERS))

@@ -10,9 +10,9 @@ import numpy as np
 import scipy.linalg
 
 from flexapod.arrays import Array
+from flexapod.control.arguments import flag, number
 from flexapod.control.poles import damping_of
 from flexapod.errors import ComputationError, InputError
-from flexapod.units import to_si
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
@@ -51,10 +51,11 @@ def reduced(system: StateSpace, modes: int | None, below: float | str | None, re
     """See `StateSpace.reduce`."""
     if (modes is None) == (below is None) or modes is None is below:
         raise InputError("one of the two says what stays", key="modes", allowed='modes=20, or below="500 Hz"')
+    flag(residual, "residual")
     if system.sample is not None:
         raise InputError("is of samples: its fast modes have no static response", key="sample", value=system.sample)
     poles, frequency, _ = damping_of(system.poles(), None)
-    edge = _edge(frequency, modes) if modes is not None else to_si(below, "frequency", key="below")
+    edge = _edge(frequency, modes) if modes is not None else number(below, "below", "frequency", least=0.0)
     slow, fast = apart(system.A, system.B, system.C, lambda pole: abs(pole) < 2 * np.pi * edge)
     D = np.array(system.D)
     if residual and len(fast.A):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from flexapod.control.arguments import whole
 from flexapod.control.sampling import period_of
 from flexapod.errors import InputError
 
@@ -42,6 +43,7 @@ def ring_down(samples: ArrayLike, period: float | str, order: int = 10) -> NDArr
         x = np.full(1, np.nan)
     if not x.size or not np.isfinite(x).all():
         raise InputError("are no finite numbers", key="samples", allowed="(T,) or (T, m), equally spaced")
+    order = whole(order, "order", 1, 2 * LONGEST)
     x = np.diff(x.reshape(len(x), -1), axis=0)
     length = min(len(x) // 2, LONGEST)
     if length * x.shape[1] <= order:

@@ -13,7 +13,7 @@ from flexapod.arrays import Array
 from flexapod.control.channels import RATE
 from flexapod.control.interconnect import OnChannels, law_of
 from flexapod.errors import InputError
-from flexapod.units import to_si
+from flexapod.units import DIMENSIONS, to_si
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
@@ -31,7 +31,7 @@ def period_of(sample: float | str) -> float:
     except InputError:
         rate = to_si(sample, "frequency", key="sample")
         period = 1.0 / rate if rate else 0.0
-    if not period > 0:
+    if not DIMENSIONS["time"].least <= period <= DIMENSIONS["time"].most:
         raise InputError("is not a time", key="sample", value=sample, allowed='above 0 s, for example "5 kHz"')
     return period
 
@@ -49,7 +49,7 @@ def held(system: StateSpace, period: float, delay: float = 0.0, delayed: Sequenc
     """
     n, m = system.B.shape
     late = list(range(m)) if delayed is None else list(delayed)
-    if delay == 0 or not late:
+    if abs(delay) <= NEARLY * period or not late:
         step, push = _integrals(system.A, system.B, period)
         return without_rates(replace(system.select(), A=step, B=push, sample=period))
     if not 0 <= delay <= LATEST * period:

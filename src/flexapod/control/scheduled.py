@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod.arrays import Array
+from flexapod.control.arguments import number, numbers
 from flexapod.control.controllers import Controller
 from flexapod.control.function import Function
 from flexapod.control.interconnect import law_of
 from flexapod.control.sampling import period_of
 from flexapod.errors import InputError
+from flexapod.model import AXES
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
@@ -40,12 +42,19 @@ class Scheduled:
 
     def __post_init__(self) -> None:
         """Axes that rise, a controller for each point."""
-        for name, values in self.axes.items():
-            if len(values) < 2 or (np.diff(np.asarray(values, dtype=float)) <= 0).any():
-                raise InputError("does not rise", key=f"axes.{name}", value=list(values), allowed="two values or more")
-        points = int(np.prod([len(values) for values in self.axes.values()]))
-        if len(self.controllers) != points:
-            raise InputError(f"are {len(self.controllers)}", key="controllers", allowed=f"{points}, one for each point")
+        if not isinstance(self.axes, Mapping) or not self.axes:
+            raise InputError("are none", key="axes", value=self.axes, allowed='as {"heave": [-0.1, 0, 0.1]} [m, rad]')
+        for name, given in self.axes.items():
+            values = numbers(given, f"axes.{name}", "two values or more, rising")
+            if len(values) < 2 or (np.diff(values) <= 0).any():
+                raise InputError("does not rise", key=f"axes.{name}", value=given, allowed="two values or more")
+        points, known = (
+            int(np.prod([len(values) for values in self.axes.values()])),
+            isinstance(self.controllers, Sequence),
+        )
+        if not known or len(self.controllers) != points:
+            words = f"are {len(self.controllers)}" if known else "are no list of controllers"
+            raise InputError(words, key="controllers", allowed=f"{points}, one for each point")
 
     def at(
         self, pose: Mapping[str, float], outputs: Sequence[str], inputs: Sequence[str], period: float | None = None
@@ -57,7 +66,8 @@ class Scheduled:
         InputError
             A pose outside of the grid, or controllers of several kinds.
         """
-        each = [_law(one, outputs, inputs, period) for one in self.controllers]
+        T = None if period is None else period_of(period)
+        each = [_law(one, outputs, inputs, T) for one in self.controllers]
         _check_alike(each)
         found = dict.fromkeys("ABCD", 0.0)
         for k, weight in _weights(self.axes, pose):
@@ -103,9 +113,12 @@ def _check_alike(each: Sequence[StateSpace]) -> None:
 
 def _weights(axes: Mapping[str, Sequence[float]], pose: Mapping[str, float]) -> list[tuple[int, float]]:
     """Points about a pose and their weights, which add up to 1."""
+    if not isinstance(pose, Mapping) or set(pose) - {*axes, *AXES}:
+        words = 'coordinates by name, as {"heave": 0.05} [m, rad]; of the grid: ' + ", ".join(axes)
+        raise InputError("is no pose of this grid", key="pose", value=pose, allowed=words)
     sides = []
     for name, values in axes.items():
-        grid, x = np.asarray(values, dtype=float), float(pose.get(name, 0.0))
+        grid, x = np.asarray(values, dtype=float), number(pose.get(name, 0.0), name)
         if not grid[0] <= x <= grid[-1]:
             raise InputError("is outside of the grid", key=name, value=x, allowed=f"{grid[0]:g} to {grid[-1]:g}")
         k = min(int(np.searchsorted(grid, x, side="right")) - 1, len(grid) - 2)

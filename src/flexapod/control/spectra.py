@@ -82,9 +82,9 @@ def _sources(system: StateSpace, given: Sources) -> list[Source]:
     if isinstance(given, Disturbance):
         tables = {field: getattr(given, field) for field in GROUPS}
         return [_source(system, SOURCES[f], GROUPS[f], table) for f, table in tables.items() if table is not None]
-    if not given or not isinstance(given, Mapping):
-        words = "are none" if given else "is empty: nothing shakes"
-        raise InputError(words, key="sources", value=given or None, allowed=EXAMPLE)
+    if not isinstance(given, Mapping) or not given:
+        words = "is empty: nothing shakes" if given is None or isinstance(given, Mapping) else "are none"
+        raise InputError(words, key="sources", value=given, allowed=EXAMPLE)
     return [_source(system, name, name, table) for name, table in given.items()]
 
 

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexapod.arrays import Array
-from flexapod.control.arguments import frequencies
+from flexapod.control.arguments import frequencies, number
 from flexapod.control.channels import Names, chosen, groups
 from flexapod.control.frequency import response
 from flexapod.control.histories import histories, instants
 from flexapod.control.norms import h2_norms, hinf_norm, relative_gains
 from flexapod.control.poles import damping_of, poles_of, zeros_of
-from flexapod.errors import InputError
+from flexapod.errors import InputError, names_of
 from flexapod.units import to_si
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from flexapod.control.controllers import Controller
     from flexapod.control.spectra import Sources
 
-__all__ = ["StateSpace"]
+__all__ = ["StateSpace", "a_system"]
 
 Complex = NDArray[np.complex128]
 
@@ -59,6 +59,10 @@ class StateSpace:
 
     def __post_init__(self) -> None:
         """Read-only matrices whose shapes fit the names."""
+        for name in ("inputs", "outputs", "states"):
+            object.__setattr__(self, name, _names(getattr(self, name), name))
+        if not isinstance(self.units, Mapping):
+            raise InputError("are no units", key="units", value=self.units, allowed='by channel, as {"tool:z": "m"}')
         n, m, p = len(self.states), len(self.inputs), len(self.outputs)
         for name, shape in (("A", (n, n)), ("B", (n, m)), ("C", (p, n)), ("D", (p, m))):
             try:
@@ -73,8 +77,8 @@ class StateSpace:
                 raise InputError("has numbers that are not finite", key=name)
             value.setflags(write=False)
             object.__setattr__(self, name, value)
-        if self.sample is not None and not self.sample > 0:
-            raise InputError("is not a time", key="sample", value=self.sample, allowed="above 0 s, or None")
+        if self.sample is not None:
+            object.__setattr__(self, "sample", number(self.sample, "sample", "time", above=0.0))
 
     def __repr__(self) -> str:
         """How large it is, and its channels by group."""
@@ -271,3 +275,21 @@ class StateSpace:
         from flexapod.control.datasets import damping_dataset
 
         return damping_dataset(*damping_of(self.poles(), self.sample))
+
+
+def _names(given: object, key: str) -> tuple[str, ...]:
+    """Names of channels or states, none twice among channels."""
+    found = names_of(given, key)
+    if key != "states" and len(set(found)) < len(found):
+        twice = dict.fromkeys(name for name in found if found.count(name) > 1)
+        raise InputError("are twice", key=key, value=", ".join(twice), allowed="each name once")
+    return tuple(found)
+
+
+def a_system(system: StateSpace) -> StateSpace:
+    """The system, where it is one."""
+    if not isinstance(system, StateSpace):
+        raise InputError(
+            "is no linear system", key="system", value=system, allowed="a StateSpace, as fx.linearize returns it"
+        )
+    return system

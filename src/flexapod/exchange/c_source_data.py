@@ -90,7 +90,7 @@ def marched(study: model.Study, commands: str, step: float | None) -> Marched:
     InputError
         Unknown commands; no fixed step; a robot as built whose commands would come from outside.
     """
-    if commands not in ("inputs", "motion"):
+    if not isinstance(commands, str) or commands not in ("inputs", "motion"):
         raise InputError("is not known", key="commands", value=commands, allowed='"inputs" or "motion"')
     h = step if step is not None else study.simulation.step
     if h is None:
@@ -104,6 +104,9 @@ def marched(study: model.Study, commands: str, step: float | None) -> Marched:
             allowed='"motion", which has them built in',
         )
     study = model.override(study, step=h, output_step=h)
+    if not study.simulation.outputs(study.duration):
+        allowed = f"at most its duration of {study.duration:g} s"
+        raise InputError("is longer than the study's simulation", key="step", value=h, allowed=allowed)
     march = prepare(study)
     if march.system.kernel.library is None:
         raise InputError("needs a C compiler", key="format", next_step="Install gcc or clang")

@@ -69,8 +69,6 @@ def motion_of(study: model.Study, data: Dataset | None) -> Dataset:
 
 def drawn_robot(study: model.Study, data: Dataset | None, scale: float) -> DrawnRobot:
     """The robot of `motion_of` a study, deflections `scale` times larger."""
-    if not isinstance(scale, int | float) or not 0 < scale < np.inf:
-        raise InputError("is not a factor", key="magnify", value=scale, allowed="above 0")
     data = motion_of(study, data)
     motion = RobotMotion(study, data)
     scenes = [motion.at(t, scale).flexible for t in motion.time]

@@ -94,6 +94,8 @@ def _written(study: model.Study, pose: PoseLike, elements: int, modes: int, titl
     _refuse_mounts(robot)
     _check_count("elements", elements, 2, _MOST)
     _check_count("modes", modes, 1, _MOST)
+    if not isinstance(title, str) or len(title.splitlines()) > 1:
+        raise InputError("is no line of text", key="title", value=title)
     path = as_pose(robot, pose)
     locked = locked_poses(robot, model.Simulation(), path, study.load)
     the_equilibrium(locked)

@@ -12,7 +12,7 @@ from flexapod import model
 from flexapod.errors import InputError, closest
 from flexapod.exchange.content import Content
 from flexapod.results.arguments import LoadLike, PoseLike, RobotLike, at_pose
-from flexapod.runtime.files import replacing
+from flexapod.runtime.files import path_of, replacing
 from flexapod.runtime.loading import loaded
 
 if TYPE_CHECKING:
@@ -149,7 +149,9 @@ def export(
         "pose": pose, "load": load, "title": title, "elements": elements, "modes": modes, "fidelity": fidelity,
         "data": data, "magnify": magnify, "commands": commands, "step": step, "inputs": inputs, "outputs": outputs,
     }  # fmt: skip
-    return written(at_pose(study), format, Path(out), {k: value for k, value in given.items() if value is not None})
+    return written(
+        at_pose(study), format, path_of(out, "out"), {k: value for k, value in given.items() if value is not None}
+    )
 
 
 def written(study: model.Study, format: str, path: Path, given: Mapping[str, object]) -> Exported:

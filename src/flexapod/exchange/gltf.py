@@ -8,6 +8,7 @@ import numpy as np
 
 from flexapod import model
 from flexapod.arrays import Array
+from flexapod.control.arguments import number
 from flexapod.exchange.content import Content
 from flexapod.exchange.drawn import DrawnRobot, drawn_robot
 from flexapod.exchange.glb import TRIANGLES, VERTICES, Entry, Glb
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 SIDES = 16  # of a drawn rod
 WIDER = 1.5  # a cylinder than its piston
+LARGEST = 1e9  # factor on deflections: the format's numbers have 32 bits
 GREY, PLATE = "#9AA3AB", "#5B6B78"
 UP: list[float] = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # x y z w: z up to y up
 STILL = 1e-12  # m: what moves less stands
@@ -33,6 +35,7 @@ def gltf(study: model.Study, *, data: Dataset | None = None, magnify: float = 1.
     Metres, y up. Nodes `cylinder_i` stand in the base joints, their children `piston_i` begin at the mouth and are one
     unit long, scaled to the length of the free part; weights of their morph targets are the amplitudes of their shapes.
     """
+    magnify = number(magnify, "magnify", above=0.0, most=LARGEST)
     robot = drawn_robot(study, data, magnify)
     file = Glb(f"flexapod {__version__}")
     time = file.store(robot.time, name="time")

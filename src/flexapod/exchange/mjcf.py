@@ -29,7 +29,7 @@ def mjcf(study: model.Study, *, fidelity: str | None = None) -> Content:
     """
     robot = study.robot
     refuse_tables(robot.legs, "MJCF")
-    simulation = model.override(study, fidelity=fidelity).simulation if fidelity else study.simulation
+    simulation = model.override(study, fidelity=fidelity).simulation if fidelity is not None else study.simulation
     rigid = simulation.fidelity == "rigid"
     springs = rigid_springs(robot) if rigid else flexible_springs(robot, simulation.lateral_shapes > 0)
     limbs = kinematics.rigid_limbs(robot) if rigid else kinematics.robot_limbs(robot)

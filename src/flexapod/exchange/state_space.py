@@ -32,7 +32,12 @@ def state_space(
     into = ["wrench"] * of_platform + ["drive" if pushed else "command"] + ["floor"] * in_space
     out = ["tool"] * of_platform + ["stroke", "drive-force"]
     found = linearize(
-        study, pose, inputs=inputs or into, outputs=outputs or out, drives="force" if pushed else "given", load=load
+        study,
+        pose,
+        inputs=into if inputs is None else inputs,
+        outputs=out if outputs is None else outputs,
+        drives="force" if pushed else "given",
+        load=load,
     )
     with scratch() as folder:
         content = found.save(folder / Path(name).name).read_bytes()

@@ -96,7 +96,7 @@ def _told(made: TipStudy, law: MotionLaw, out: str | Path | None) -> TipStudy:
 def _refuse(study: ActuatorStudy, drives: str) -> tuple[MotionLaw, float]:
     """The law of the hub, and how long it moves [s]; what has no linear model is refused."""
     actuator, motion = study.actuator, study.motion
-    if drives not in ("given", "force"):
+    if not isinstance(drives, str) or drives not in ("given", "force"):
         raise InputError("is not a way to take drives", key="drives", value=drives, allowed='"given", "force"')
     if motion.rotation is None or isinstance(motion.rotation, RateLaw) or motion.rotation.law == "spin-up":
         raise InputError(

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import Literal, get_args, overload
 
+from flexapod.control.arguments import flag
 from flexapod.errors import InputError
 from flexapod.feedforward.beam import tip_inversion
 from flexapod.feedforward.compensation import compensation
 from flexapod.feedforward.elastic_path import elastic_compensation
-from flexapod.feedforward.table import check_place
+from flexapod.feedforward.table import check_out
 from flexapod.model import ActuatorStudy, Study
-from flexapod.results.arguments import FileLike, RobotLike, read
+from flexapod.results.arguments import FileLike, RobotLike, as_study, read
 from flexapod.runtime.threads import one_thread
 
 __all__ = ["compensate"]
@@ -90,19 +91,29 @@ def compensate(
     >>> print(ahead.notes[0])
     commands make up for what weight and load do ...: the tool misses the wanted path by ... in place of 20.4 µm, ...
     """
-    check_place(out)
     subject = read(study)
-    if order not in get_args(Order):
+    if not isinstance(order, str | int) or isinstance(order, bool) or order not in get_args(Order):
         raise InputError("is not known", key="order", value=order, allowed='0, 2, "stable-inversion"')
+    if not isinstance(subject, Study | ActuatorStudy):
+        subject = as_study(subject)
+    if out is not None:
+        check_out(subject, out)
+    flag(as_built, "as_built")
     if isinstance(subject, ActuatorStudy):
-        if order != "stable-inversion":
-            raise InputError(
-                "is not known of a single actuator", key="order", value=order, allowed='"stable-inversion"'
-            )
+        _refuse_of_robots(order, corrections, as_built)
         return tip_inversion(subject, drives, out).study
-    if drives != "given":
+    if not isinstance(drives, str) or drives != "given":
         raise InputError("is for single actuators", key="drives", value=drives, allowed='"given" of robots')
     settings = {"corrections": corrections, "as_built": as_built, "out": out}
     if order == "stable-inversion":
         return elastic_compensation(subject, **settings).study
     return compensation(subject, order, **settings).study
+
+
+def _refuse_of_robots(order: Order, corrections: int, as_built: bool) -> None:
+    """Refuse what a single actuator has none of."""
+    for key, value, usual in (("corrections", corrections, 2), ("as_built", as_built, True)):
+        if value != usual:
+            raise InputError("is for robots", key=key, value=value, allowed=f"{usual}, of a single actuator")
+    if order != "stable-inversion":
+        raise InputError("is not known of a single actuator", key="order", value=order, allowed='"stable-inversion"')

@@ -12,10 +12,11 @@ from numpy.typing import ArrayLike
 from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.control import StateSpace
+from flexapod.control.arguments import flag, number
 from flexapod.errors import InputError
 from flexapod.feedforward.drive_loads import Given, limits_of
 from flexapod.feedforward.switching import Switched, switched
-from flexapod.feedforward.table import check_place, saved
+from flexapod.feedforward.table import check_out, saved
 from flexapod.feedforward.vibration import vibration_along
 from flexapod.feedforward.way import StraightWay
 from flexapod.model import Study
@@ -29,6 +30,7 @@ from flexapod.words import text
 __all__ = ["Fastest", "fastest", "time_optimal"]
 
 PERIODS = 6
+RESIDUAL = "1 um"  # how much vibration is left where nothing else is asked for
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,7 +77,7 @@ def time_optimal(
     start: PoseLike = None,
     end: PoseLike | ArrayLike = None,
     *,
-    residual: Given = "1 um",
+    residual: Given = RESIDUAL,
     speed: Given = None,
     acceleration: Given = None,
     force: Given = None,
@@ -124,10 +126,16 @@ def time_optimal(
     >>> fx.time_optimal(double, end=1.0)  # a mass of 1 kg, 1 m away, a force of 1 N: full ahead, full back
     Switched(1, end 2: the input switches 1 times and is over after 2 s: ...)
     """
-    check_place(out)
-    if isinstance(subject, StateSpace):
-        return switched(subject, np.asarray(end, dtype=float), limit, robust=robust)
     limits = {"speed": speed, "acceleration": acceleration, "force": force}
+    flag(robust, "robust")
+    if isinstance(subject, StateSpace):
+        for key, value in (limits | {"start": start, "out": out, "residual": residual}).items():
+            if value is not None and not (key == "residual" and isinstance(value, str) and value == RESIDUAL):
+                raise InputError("is for robots", key=key, value=value, allowed="end, limit, robust of a linear system")
+        return switched(subject, end, limit, robust=robust)  # type: ignore[arg-type]
+    for key, value, usual in (("limit", number(limit, "limit"), 1.0), ("robust", robust, False)):
+        if value != usual:
+            raise InputError("is for linear systems", key=key, value=value, allowed="speed, acceleration, force")
     return fastest(subject, start, end, residual=residual, out=out, **limits).study
 
 
@@ -136,7 +144,7 @@ def fastest(
     start: PoseLike = None,
     end: PoseLike = None,
     *,
-    residual: Given = "1 um",
+    residual: Given = RESIDUAL,
     speed: Given = None,
     acceleration: Given = None,
     force: Given = None,
@@ -144,6 +152,8 @@ def fastest(
 ) -> Fastest:
     """As `time_optimal` of a robot, with what it costs."""
     study = as_study(subject)
+    if out is not None:
+        check_out(study, out)
     limits, bound = limits_of(study, speed, acceleration, force), to_si(residual, "length", key="residual")
     if bound <= 0:
         raise InputError("is not a bound", key="residual", value=residual, allowed="above 0 m")

@@ -13,10 +13,10 @@ from flexapod import kinematics
 from flexapod.arrays import Array, Mask
 from flexapod.errors import InputError
 from flexapod.feedforward.shapers import Shaper, check_kind, shaper
-from flexapod.feedforward.table import check_place, saved, tabled
+from flexapod.feedforward.table import check_out, saved, tabled
 from flexapod.feedforward.vibration import PERIODS, POSES, vibration_along
 from flexapod.kinematics import Law
-from flexapod.model import ActuatorStudy, CsvMotion, Motion, Study, load
+from flexapod.model import ActuatorStudy, AxisMotion, CombinedMotion, CsvMotion, Motion, Study, WaypointMotion, load
 from flexapod.results.arguments import FileLike, PoseLike, as_pose
 from flexapod.review.checks import check_path
 from flexapod.runtime.threads import one_thread
@@ -29,6 +29,7 @@ __all__ = ["Shaped", "shape", "shaping"]
 
 ON_PATH = 1e-4  # of the way: a shaped path that is no farther beside the own one is on it
 LOOKS = 2001
+SLOWEST, FASTEST = 0.01, 1e4  # of the first mode: frequencies that somebody may mean
 
 Modes = int | Sequence[int | float | str | tuple[float, float]]
 
@@ -139,7 +140,6 @@ def shape(
     20.0 ms longer
     """
     check_kind(kind)
-    check_place(out)
     subject = load(motion) if isinstance(motion, str | Path) else motion
     if isinstance(subject, ActuatorStudy):
         raise InputError(
@@ -147,6 +147,11 @@ def shape(
         )
     if isinstance(subject, Study):
         return shaping(subject, kind, modes=modes, pose=pose, out=out).study
+    if not isinstance(subject, AxisMotion | CombinedMotion | WaypointMotion | CsvMotion):
+        raise InputError("is neither a study nor a motion", key="motion", value=subject)
+    for key, value, usual in (("out", out, None), ("pose", pose, "path")):
+        if value is not usual and not (isinstance(value, str) and value == usual):
+            raise InputError("is for studies", key=key, value=value, next_step="Give the whole study, not its motion")
     given = [] if isinstance(modes, int) else [_frequency(mode) for mode in _named(modes)]
     if not given or any(mode is None for mode in given):
         raise InputError(
@@ -164,19 +169,24 @@ def shaping(
     study: Study, kind: str = "zv", *, modes: Modes = 1, pose: PoseLike | str = "path", out: FileLike | None = None
 ) -> Shaped:
     """As `shape` of a study, with what it brings."""
+    if out is not None:
+        check_out(study, out)
+    shaper(kind, 1.0)  # refuses an unknown kind
+    for mode in _named(modes):
+        _frequency(mode)
     check_path(study)
     robot, motion = study.robot, study.motion
     if robot.platform_fixed:
         raise InputError("has a platform that is fixed: nothing moves", key="robot.platform.fixed", value=True)
     moving = motion.end_time - motion.hold
-    frequency, ratio, ranges = _modes(study, modes, pose, moving)
+    frequency, ratio, ranges, lowest = _modes(study, modes, pose, moving)
     made = shaper(kind, frequency, ratio)
     axes, length = kinematics.commanded_axes(robot, motion), kinematics.rigid_limbs(robot).L_c
     table, duration = _delayed(motion, made, axes, length), study.simulation.duration
     simulation = study.simulation.replace(duration=None if duration is None else duration + made.duration)
     shaped = study.replace(motion=table, simulation=simulation)
     check_path(shaped)
-    rest = PERIODS / ranges.min()
+    rest = max(PERIODS / ranges.min(), 1 / lowest)
     own = vibration_along(study, moving, moving + rest)
     new = vibration_along(shaped, moving + made.duration, moving + made.duration + rest)
     around = np.linspace(ranges[:, 0], ranges[:, 1], 101)
@@ -200,7 +210,7 @@ def _frequency(mode: object) -> tuple[float, float] | None:
 
 def _named(modes: Modes) -> list[object]:
     """Modes one by one."""
-    if isinstance(modes, int):
+    if isinstance(modes, int) and not isinstance(modes, bool):
         return list(range(1, modes + 1))
     if isinstance(modes, str) or not isinstance(modes, Sequence | np.ndarray):
         allowed = 'how many, or a list as [1, 3], [12.5], ["12.5 Hz"]'
@@ -208,19 +218,27 @@ def _named(modes: Modes) -> list[object]:
     return list(modes)
 
 
-def _modes(study: Study, modes: Modes, pose: PoseLike | str, moving: float) -> tuple[Array, Array, Array]:
-    """Frequencies, damping ratios (m,) and ranges along the path (m, 2) of the modes that are named."""
+def _modes(study: Study, modes: Modes, pose: PoseLike | str, moving: float) -> tuple[Array, Array, Array, float]:
+    """Frequencies, damping ratios (m,) and ranges along the path (m, 2) of modes that are named; the lowest there."""
     robot = study.robot
     t = np.linspace(0.0, moving, POSES)
     along = modes_of(locked_poses(robot, study.simulation, kinematics.poses(robot, study.motion, t), study.load),
                      shapes=True)  # fmt: skip
-    at = along
+    at, lowest = along, float(np.nanmin(along.frequency[:, 0]))
     if not (isinstance(pose, str) and pose == "path"):
         at = modes_of(locked_poses(robot, study.simulation, as_pose(robot, pose), study.load), shapes=True)  # type: ignore[arg-type]
     given = _named(modes)
     found = []
     for mode in given:
         if (own := _frequency(mode)) is not None:
+            if own[0] > 0 and not SLOWEST * lowest <= own[0] <= FASTEST * lowest:
+                raise InputError(
+                    f"is far from every mode: the first is at {lowest:.4g} Hz",
+                    key="modes",
+                    value=mode,
+                    allowed=f"{SLOWEST * lowest:.3g} to {FASTEST * lowest:.3g} Hz",
+                    next_step="One mode with its damping ratio is a pair in a list: [(12.5, 0.01)]",
+                )
             found.append((*own, own[0], own[0]))
             continue
         k = int(mode) - 1  # type: ignore[arg-type]
@@ -236,7 +254,7 @@ def _modes(study: Study, modes: Modes, pose: PoseLike | str, moving: float) -> t
     if not found:
         raise InputError("names no mode", key="modes", value=modes, allowed="one at least")
     values = np.array(found)
-    return values[:, 0], values[:, 1], values[:, 2:]
+    return values[:, 0], values[:, 1], values[:, 2:], lowest
 
 
 def _delayed(motion: Motion, made: Shaper, axes: Mask, length: float) -> CsvMotion:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.arrays import Array
-from flexapod.control import StateSpace
+from flexapod.control import StateSpace, arguments
 from flexapod.errors import ComputationError, InputError
 from flexapod.words import number, text
 
@@ -78,9 +78,11 @@ def switched(system: StateSpace, end: ArrayLike, limit: float = 1.0, *, robust: 
     ComputationError
         No input of that size gets there.
     """
-    A, B, target = _chain(system, np.atleast_1d(np.asarray(end, dtype=float)), robust)
-    if not (np.isfinite(limit) and limit > 0):
-        raise InputError("is not a limit", key="limit", value=limit, allowed="above 0")
+    limit = arguments.number(limit, "limit", above=0.0)
+    end = arguments.numbers(end, "end", "the outputs at the end, a number for each")
+    if not end.any():
+        raise InputError("is where the system starts", key="end", value=end.tolist(), allowed="other outputs than 0")
+    A, B, target = _chain(system, end, robust)
     times, first, missing = _least(A, B * limit, target)
     rigid = _least(*_rigid(A, B * limit, target))[0]
     return Switched(

@@ -15,10 +15,10 @@ from flexapod.kinematics.laws import spline, spline_law
 from flexapod.model import AXES, ActuatorStudy, CsvLaw, CsvMotion, Motion, Study, load
 from flexapod.model.motion import Axis
 from flexapod.results.arguments import FileLike
-from flexapod.runtime.files import write_text
+from flexapod.runtime.files import path_of, write_text
 from flexapod.schema.csv_tables import POSE, header
 
-__all__ = ["Tabled", "check_place", "named", "saved", "tabled"]
+__all__ = ["Tabled", "check_out", "named", "saved", "tabled"]
 
 FEWEST, MOST = 100, 3200  # rows between first and last knot
 ENOUGH = 1e-5  # of the largest acceleration of each kind, by which that of the table may be off in the mean
@@ -139,10 +139,20 @@ def _graded(knots: Array, count: int, nearest: float) -> Array:
 S = TypeVar("S", bound=Study | ActuatorStudy)
 
 
-def check_place(out: FileLike | None) -> None:
-    """Refuse a name that is none of a study file."""
-    if out is not None and Path(out).suffix != ".toml":
-        raise InputError("is no name of a study file", key="out", value=str(out), allowed="NAME.toml")
+def check_out(study: Study | ActuatorStudy, path: FileLike) -> Path:
+    """Where a study is to be written; refused where that is no study file, or the one that is read."""
+    place = path_of(path, "out")
+    if place.suffix != ".toml":
+        raise InputError("is no name of a study file", key="out", value=str(path), allowed="NAME.toml")
+    if place.is_dir():
+        raise InputError("is a folder", key="out", value=str(path), allowed="NAME.toml")
+    own, table = None if study.path is None else Path(study.path).resolve(), place.with_suffix(".csv").name
+    if own is not None and place.resolve() == own:
+        raise InputError("is the file of the study itself", key="out", value=str(path), next_step="Choose another name")
+    if own is not None and place.resolve().parent == own.parent and table in study.source_text:
+        words = f"would replace {table}, a table that the study names"
+        raise InputError(words, key="out", value=str(path), next_step="Choose another name")
+    return place
 
 
 def saved(study: S, path: FileLike) -> S:
@@ -155,8 +165,7 @@ def saved(study: S, path: FileLike) -> S:
     path : path
         ``NAME.toml``; the table is ``NAME.csv``. In the folder of the study whose other tables it names.
     """
-    check_place(path)
-    place = Path(path)
+    place = check_out(study, path)
     beside = place.with_suffix(".csv")
     written, first, columns = _named(study, beside.name)
     rows = [",".join(map(repr, row)) for row in columns.tolist()]

@@ -126,7 +126,7 @@ class Disturbance(Table):
 
 def check_density(frequency: Array, density: Array) -> None:
     """Refuse what is not a power spectral density, saying which row."""
-    if len(frequency) < 2 or len(density) != len(frequency):
+    if frequency.ndim != 1 or len(frequency) < 2 or density.ndim != 2 or len(density) != len(frequency):
         raise InputError("has fewer than two rows, or not one for each frequency", key="density")
     rising = np.append(frequency[0] > 0, np.diff(frequency) > 0)
     if not rising.all():

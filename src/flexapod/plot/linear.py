@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from flexapod.arrays import Array
 from flexapod.control.channels import Names, chosen
 from flexapod.control.datasets import complex_of, per
-from flexapod.errors import InputError
+from flexapod.errors import InputError, names_of
 from flexapod.plot.style import LINE_STYLES, NOTE, PAGE, figure, needs, styled
 from flexapod.scene.colours import AXIS_COLORS, colors_of_legs
 from flexapod.words import scale
@@ -80,7 +80,8 @@ def transmissibility(data: Several) -> Figure:
         From `flexapod.transmissibility` or `flexapod.compliance`; several under the words that the legend shows.
     """
     results = _named(data) if isinstance(data, Mapping) else {}
-    name = next((n for n in ("transmissibility", "compliance") if all(n in one for one in results.values())), None)
+    known = [getattr(one, "data_vars", ()) for one in results.values()]
+    name = next((n for n in ("transmissibility", "compliance") if all(n in one for one in known)), None)
     if name is None or not results:
         raise InputError(
             "cannot be drawn", key="transmissibility", allowed="results of flexapod.transmissibility, or of compliance"
@@ -122,7 +123,10 @@ def cumulative(data: Several, outputs: Names = None) -> Figure:
     """
     results = _named(data)
     first = next(iter(results.values()))
-    names = [first.output.values[i] for i in chosen(outputs, first.output.values.tolist(), "outputs")]
+    shared = [x for x in first.output.values.tolist() if all(x in one.output.values for one in results.values())]
+    names = [shared[i] for i in chosen(outputs, shared, "outputs")]
+    if not names:
+        raise InputError("are in none of the results, or not in all", key="outputs", value=outputs)
     unit_of = dict(zip(first.output.values.tolist(), first.output_units.values.tolist(), strict=True))
     units = list(dict.fromkeys(unit_of[name] for name in names))
     fig = figure(PAGE, 1.2 + 2.1 * len(units))
@@ -191,7 +195,7 @@ def _kind(results: Mapping[str, xr.Dataset], output: str) -> str:
 
 
 def _some(given: Names, among: Sequence[str], key: str, must: bool) -> Iterator[str]:
-    for name in [None] if given is None else [given] if isinstance(given, str) else given:
+    for name in [None] if given is None else names_of(given, key):
         try:
             yield from (among[i] for i in chosen(name, among, key))
         except InputError:

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flexapod.arrays import Array
+from flexapod.control.arguments import number
 from flexapod.control.datasets import complex_of
 from flexapod.errors import InputError
 from flexapod.plot.style import PAGE, SMALL, figure, needs, styled
@@ -108,9 +109,7 @@ def root_locus(data: xr.Dataset, below: float | None = None) -> Figure:
 def _edge(poles: list[Array], below: float | None) -> float:
     """Frequency [Hz] up to which poles are shown."""
     if below is not None:
-        if not below > 0:
-            raise InputError("is not a frequency", key="below", value=below, allowed="above 0 Hz")
-        return float(below)
+        return number(below, "below", "frequency", above=0.0)
     whole = np.concatenate(poles)
     swings = np.abs(whole.imag) > SWINGS * np.abs(whole)
     return 1.08 * float(np.abs(whole[swings] if swings.any() else whole).max(initial=0.0)) / (2 * np.pi) or 1.0

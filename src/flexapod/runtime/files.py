@@ -26,6 +26,7 @@ __all__ = [
     "UNFINISHED",
     "check_name",
     "check_regular",
+    "path_of",
     "read_bytes",
     "read_text",
     "remove_abandoned",
@@ -105,6 +106,13 @@ def _too_large(most: float) -> OSError:
 
 def _zero_byte() -> OSError:
     return OSError(errno.EINVAL, "its name holds a zero byte")
+
+
+def path_of(given: object, key: str) -> Path:
+    """A path of a text or of a path; InputError of what is neither, or of a name that no file can have."""
+    if not isinstance(given, str | os.PathLike) or "\0" in os.fsdecode(given):
+        raise InputError("is no path of a file", key=key, value=given, allowed='a text as "robot.mat", or a Path')
+    return Path(os.fsdecode(given))
 
 
 def check_name(path: str | Path, key: str | None = None) -> None:

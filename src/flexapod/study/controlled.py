@@ -9,6 +9,7 @@ import numpy as np
 
 from flexapod import model
 from flexapod.arrays import Array
+from flexapod.control.arguments import whole
 from flexapod.errors import InputError, closest
 from flexapod.results.asked import Made
 from flexapod.results.record import Record
@@ -110,9 +111,7 @@ def _made(
     from flexapod.solve.time.sampled import Sampled
 
     period = _period(controller, sample)
-    for key, value, most in (("delay_samples", delay_samples, 1000), ("seed", seed, 2**31 - 1)):
-        if not isinstance(value, int) or not 0 <= value <= most:
-            raise InputError("is not in range", key=key, value=value, allowed=f"a whole number from 0 to {most}")
+    delay_samples, seed = whole(delay_samples, "delay_samples", 0, 1000), whole(seed, "seed", 0, 2**31 - 1)
     law = _law(controller, period, robot)
     inputs, outputs = tuple(law.inputs), tuple(law.outputs)
     for key, names in (("controller.inputs", inputs), ("controller.outputs", outputs)):
@@ -200,7 +199,8 @@ def _by_channel(given: PerChannel, names: Sequence[str], key: str, without: floa
                 next_step=closest(name, names),
             )
         if value is not None:
-            found[which] = value if value == without else to_si(value, "number", key=key)
+            unlimited = isinstance(value, float) and value == without
+            found[which] = value if unlimited else to_si(value, "number", key=key)
     if not (found >= 0).all():
         raise InputError("is below 0", key=key, value=given)
     return found

@@ -11,6 +11,7 @@ import numpy as np
 
 from flexapod import model
 from flexapod.arrays import Array
+from flexapod.control.arguments import number
 from flexapod.control.state_space import StateSpace
 from flexapod.errors import InputError
 from flexapod.kinematics import Poses
@@ -26,7 +27,7 @@ from flexapod.solve.linear.states import Descriptor, States, descriptor_of, stat
 from flexapod.solve.statics.branch import fallen
 from flexapod.solve.statics.locked import the_equilibrium
 from flexapod.study.many_modes import poses_of
-from flexapod.units import to_si
+from flexapod.units import DIMENSIONS, to_si
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -161,7 +162,7 @@ def plant_of(study: model.Study, pose: PoseLike, drives: Drives) -> Plant:
 
 
 def _check_drives(drives: object) -> None:
-    if drives not in ("given", "force"):
+    if not isinstance(drives, str) or drives not in ("given", "force"):
         raise InputError("is not a way to take drives", key="drives", value=drives, allowed='"given", "force"')
 
 
@@ -201,7 +202,8 @@ def _of_actuator(
         actuator = actuator.replace(free_length=to_si(given["free_length"], "length", key="pose.free_length"))
     names = ("rotation", "extension", "elevation")
     free = [name for name in names if drives == "force" or getattr(study.motion, name) is None]
-    rate = to_si(given.get("rate", 0.0), "angular rate", key="pose.rate")
+    most = DIMENSIONS["angular rate"].most
+    rate = number(given.get("rate", 0.0), "pose.rate", "angular rate", least=-most, most=most)
     states = actuator_states(actuator, study.simulation, inputs, outputs, rate=rate, free=free)
     return StateSpace(**vars(states))
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexapod.arrays import Array
-from flexapod.control.arguments import frequencies
+from flexapod.control.arguments import flag, frequencies
 from flexapod.control.state_space import StateSpace
 from flexapod.kinematics.rotations import matrix
 from flexapod.results.arguments import LoadLike, PoseLike, RobotLike
@@ -110,6 +110,7 @@ def transmissibility(
     >>> print(data.transmissibility.sel(output="tool:z", input="floor:z", part="real").round(2).values)
     [1.   1.02 0.02]
     """
+    flag(tilt, "tilt")
     hz, found = frequencies(hz), study_of(study, load, drives, friction)
     inputs, outputs = asked("floor", found.robot, "inputs"), asked("tool", found.robot, "outputs")
     (point, *_) = asked(f"accelerometer:{at}", found.robot, "at")
