@@ -351,6 +351,41 @@ def test_adaptive_damping_in_the_march(study):
     assert -pole.real / abs(pole) == pytest.approx((90.0 + C) * w / (2 * K), rel=0.1)
 
 
+GAINS, W = (8e4, 4e6, 60.0), 2 * np.pi * 500.0  # N/m, N/(m s), N s/m of a leg, 1/s
+PID = """
+[control]
+law = "{law}"
+proportional = {proportional}
+integral = {integral}
+derivative = {derivative}
+low_pass = 500
+sample = {T}
+"""
+
+
+@pytest.mark.parametrize("of", ["stroke", "tool"])
+def test_tables_of_proportional_integral_and_rate_feedback(of):
+    """The exact recursion of the payload with u = -(P y + I sum + D w (y - what follows y)) of a leg, or of the tool's
+    height the same shared out over six legs that are inclined alike. Tolerance as above."""
+    s, (P, summed, D) = height(), GAINS
+    gains = {"proportional": P, "integral": summed, "derivative": D}
+    if of == "tool":  # the force along z that six legs with these gains make
+        gains = {name: [0, 0, float(6 * s**2 * value), 0, 0, 0] for name, value in gains.items()}
+    table = PID.format(law="pid" if of == "stroke" else "tool-pid", T=T, **gains)
+    data = fx.simulate(fx.loads(STUDY + table), step=T / 40)
+    payload, x, total, follows, z = Heave(), np.zeros(2), 0.0, 0.0, []
+    keep = np.exp(-W * T)
+    for k in range(len(data.time)):
+        z.append(x[0])
+        y = s * x[0]
+        u = -(P * y + summed * total + D * W * (y - follows))
+        total, follows = total + T * y, keep * follows + (1 - keep) * y
+        x = payload.A @ x + payload.B @ np.array([u, F * (k >= 2)])
+    assert np.abs(heave(data) - z).max() < 8e-4 * np.abs(z).max()
+    without = fx.simulate(fx.loads(STUDY), step=T / 40)
+    assert np.abs(heave(without) - z).max() > 0.1 * np.abs(z).max()  # the loop matters
+
+
 def test_poles_of_a_ring_down():
     """Two vibrations and an offset, known poles, to rounding; too few samples are refused."""
     t, poles = 1e-3 * np.arange(400), np.array([-5 + 200j, -30 + 900j])

@@ -12,6 +12,7 @@ from flexapod.arrays import Array
 from flexapod.errors import InputError, nearest
 from flexapod.results.asked import Made
 from flexapod.results.record import Record
+from flexapod.solve.linear.motions import COMPONENTS
 from flexapod.units import to_si
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ Noise = float | Mapping[str, float] | Mapping[str, Mapping[str, float]] | None
 
 #: Groups of channels that controllers read and move without being told which.
 READ, MOVED = ("stroke", "encoder", "drive-force", "force-sensor:drive", "tool", "com"), ("drive", "command")
+TOOL = tuple(f"tool:{name}" for name in COMPONENTS)
 
 
 def sampled_controller(
@@ -70,7 +72,7 @@ def sampled_controller(
     given |= {"noise": noise, "seed": seed}
     given = {name: value for name, value in given.items() if value is not None}
     if controller is None and study.control is not None:
-        controller, own = _of_table(study.control)
+        controller, own = _of_table(study.control, study.robot)
         given = own | given
     if controller is None:
         if given:
@@ -81,17 +83,51 @@ def sampled_controller(
     return _made(controller, study.robot, **given)  # type: ignore[arg-type]
 
 
-def _of_table(table: model.Control) -> tuple[Controller, dict[str, object]]:
+def _of_table(table: model.Control, robot: model.Robot) -> tuple[AnyController, dict[str, object]]:
     """Controller and settings of a study file."""
-    from flexapod.control.controllers import DVF, IFF
+    names = ("sample", "delay_samples", "saturate", "seed", "quantise", "noise")
+    found = {name: getattr(table, name, None) for name in names}
+    if isinstance(table, model.ToolControl):
+        each = {name: found[name] for name in ("quantise", "noise")}
+        found |= {name: None if x is None else dict(zip(TOOL, x.tolist(), strict=True)) for name, x in each.items()}  # type: ignore[attr-defined]
+    if isinstance(table, model.FileControl) and table.saturate is not None:
+        found["saturate"] = {"drive": table.saturate}
+    return _controller_of(table, robot), {name: value for name, value in found.items() if value is not None}
 
-    settings = {
-        name: getattr(table, name) for name in ("sample", "delay_samples", "saturate", "seed", "quantise", "noise")
-    }
-    found = {name: value for name, value in settings.items() if value is not None}
+
+def _controller_of(table: model.Control, robot: model.Robot) -> Controller | StateSpace:
+    """The controller that a table describes."""
+    from flexapod.control import DVF, IFF, PID, Decoupled, StateSpace, by_jacobian, pid, robot_jacobian
+
     if isinstance(table, model.ForceControl):
-        return IFF(table.gain, high_pass=table.high_pass, sensor=table.reads), found
-    return DVF(table.gain, low_pass=table.low_pass, sensor=table.reads), found
+        return IFF(table.gain, high_pass=table.high_pass, sensor=table.reads)
+    if isinstance(table, model.DampedControl):
+        return DVF(table.gain, low_pass=table.low_pass, sensor=table.reads)
+    if isinstance(table, model.StrokeControl):
+        gains = (table.proportional, table.integral, table.derivative)
+        return PID(*gains, low_pass=table.low_pass, sensor=table.reads)
+    if isinstance(table, model.ToolControl):
+        gains = zip(table.proportional.tolist(), table.integral.tolist(), table.derivative.tolist(), strict=True)
+        out = by_jacobian(robot_jacobian(robot, robot.tool)).out
+        return Decoupled([pid(*each, table.low_pass) for each in gains], into=np.eye(6), out=out, sensor=table.reads)
+    _refuse_unknown(table, robot)
+    return StateSpace(
+        A=table.A, B=table.B, C=table.C, D=table.D, inputs=table.inputs, outputs=table.outputs,
+        states=tuple(f"law x{i + 1}" for i in range(len(table.A))), units={}, sample=table.own,
+    )  # fmt: skip
+
+
+def _refuse_unknown(table: model.FileControl, robot: model.Robot) -> None:
+    """Refuse channels of a law in a file that the robot has not, with the nearest."""
+    from flexapod.solve.linear.channels import asked
+
+    for name, known, channels in (("inputs", "outputs", table.inputs), ("outputs", "inputs", table.outputs)):
+        for channel in channels:
+            try:
+                asked(channel, robot, known)
+            except InputError as error:
+                error.key = name
+                raise error.located(file=table.file) from None
 
 
 def _made(
