@@ -30,7 +30,8 @@ Noise = float | Mapping[str, float] | Mapping[str, Mapping[str, float]] | None
 
 
 #: Groups of channels that controllers read and move without being told which.
-READ, MOVED = ("stroke", "encoder", "drive-force", "force-sensor:drive", "tool", "com"), ("drive", "command")
+READ, MOVED = ("stroke", "encoder", "drive-force", "force-sensor:drive"), ("drive", "command")
+READ_OF_PLATFORM = ("tool", "com", *(f"{x}:{at}" for x in ("accelerometer", "geophone") for at in ("tool", "com")))
 TOOL = tuple(f"tool:{name}" for name in COMPONENTS)
 
 
@@ -195,7 +196,7 @@ def _law(controller: AnyController, period: float, robot: model.Robot) -> StateS
     if isinstance(controller, Controller | AdaptiveDamping):
         read, moved = (
             [channel.name for group in groups for channel in asked(group, robot, key)]
-            for groups, key in ((READ, "outputs"), (MOVED, "inputs"))
+            for groups, key in ((READ + READ_OF_PLATFORM * (not robot.platform_fixed), "outputs"), (MOVED, "inputs"))
         )
         return controller.sampled(period, read, moved)
     if not isinstance(controller, Function):
