@@ -21,7 +21,17 @@ if TYPE_CHECKING:
 
     AnyController = Controller | AdaptiveDamping | StateSpace | Function
 
-__all__ = ["Noise", "PerChannel", "control_attributes", "control_coords", "control_results", "sampled_controller"]
+__all__ = [
+    "Noise",
+    "PerChannel",
+    "control_attributes",
+    "control_coords",
+    "control_remarks",
+    "control_results",
+    "sampled_controller",
+]
+
+SUMS = 1e-9  # of a pole from 1, of what it sums: less is none
 
 #: One number for all channels, or numbers by channels (``stroke:1``) and groups (``stroke``).
 PerChannel = float | Mapping[str, float] | None
@@ -242,6 +252,21 @@ def _by_channel(given: PerChannel, names: Sequence[str], key: str, without: floa
     if not (found >= 0).all():
         raise InputError("is below 0", key=key, value=given)
     return found
+
+
+def control_remarks(sampled: Sampled | None) -> tuple[str, ...]:
+    """Doubt about a controller: one that sums forces alone leaves no stiffness at rest."""
+    if sampled is None or sampled.function is not None or not len(sampled.A):
+        return ()
+    values, left = np.linalg.eig(sampled.A.T)
+    summed = np.abs(left[:, np.abs(values - 1) < SUMS].T @ sampled.B) > SUMS
+    forces = [name.startswith(("force-sensor:", "drive-force:", "joint-force:")) for name in sampled.readings]
+    if not (summed.any(axis=1) & ~summed[:, ~np.array(forces)].any(axis=1)).any():
+        return ()
+    return (
+        "the controller sums forces without a high-pass, so that static stiffness is lost: nothing holds at rest what "
+        "the drives carry; give high_pass, for example a tenth of the first frequency, or springs beside them",
+    )
 
 
 def control_results(sampled: Sampled | None, record: Record) -> dict[str, Made]:
