@@ -62,3 +62,15 @@ def test_wrong_arguments_are_refused(flexapod, study, arguments, words):
     said = flexapod(arguments[0], study(*SHORT), *arguments[1:])
     assert said.exit_code == 2
     assert words in said.stderr.replace("\n", " ")
+
+
+def test_check_says_what_a_controller_leaves_of_static_stiffness(flexapod, folder):
+    file = folder / "nano.toml"
+    text = fx.model.preset_text("nano-hexapod")
+    file.write_text(text + '[control]\nlaw = "iff"\ngain = 200\nsample = "0.1 ms"\nhigh_pass = 5\n')
+    found = flexapod("check", file)
+    assert found.exit_code == 0, found.stderr
+    assert "Controller" in found.stdout and "without the controller" in found.stdout
+    assert len(json.loads(flexapod("check", file, "--json").stdout)["control"]) == 1
+    file.write_text(text)
+    assert "control" not in json.loads(flexapod("check", file, "--json").stdout)

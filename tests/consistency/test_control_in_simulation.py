@@ -24,6 +24,15 @@ def test_a_controller_and_its_state_spaces_are_the_same_law():
         np.testing.assert_array_equal(run(other).control_input.values, exact)
 
 
+@pytest.mark.parametrize("sensor", ["geophone:tool:z", "accelerometer:com:z"])
+def test_sensors_at_points_are_found_by_name(sensor):
+    law = fc.Decentralised(fc.gain(0.5) * fc.low_pass(100.0), sensor=sensor, actuator="drive:1")
+    found = run(law)
+    assert found.sensor.values.tolist() == [sensor] and np.abs(found.control_input.values).max() > 0
+    placed = run(law.on([sensor], ["drive:1"])).control_input.values
+    np.testing.assert_array_equal(found.control_input.values, placed)
+
+
 def test_gains_along_a_path_are_those_of_the_law_where_they_do_not_change():
     law = fc.PID(2000.0, 0.0, 20.0, low_pass="1 kHz")
     grid = fc.Scheduled(axes={"heave": [-1.0, 1.0]}, controllers=[law, law])

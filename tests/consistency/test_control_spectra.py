@@ -156,7 +156,7 @@ def test_files_keep_matrices_names_and_units(tmp_path, ending, sample):
 
 
 def test_other_endings_are_refused(tmp_path):
-    with pytest.raises(InputError, match=r"Allowed: \.mat, \.npz, \.nc"):
+    with pytest.raises(InputError, match=r"Allowed: \.mat, \.npz, \.json, \.nc"):
         mode().save(tmp_path / "robot.csv")
 
 

@@ -296,7 +296,10 @@ def test_samples_off_the_outputs_and_beside_jumps(study):
         ({"controller": None, "step": None, "sample": T}, "there is none"),
         ({"controller": Function(function=len, inputs=("strok:1",), outputs=("drive:1",))}, "'stroke'"),
         ({"controller": Function(function=len, inputs=("stroke:1",), outputs=("motor:1",))}, "not a channel"),
-        ({"controller": Function(function=len, inputs=("geophone:tool:z",), outputs=("drive:1",))}, "not read in time"),
+        (
+            {"controller": Function(function=len, inputs=("force-sensor:base:1",), outputs=("drive:1",))},
+            "not read in time",
+        ),
         ({"controller": Function(function=len, inputs=("stroke",), outputs=("drive:1",))}, "not one channel"),
         ({"saturate": -1.0}, "below 0"),
     ],
@@ -349,6 +352,67 @@ def test_adaptive_damping_in_the_march(study):
     pole = next(x for x in fx.control.ring_down(heave(data)[60:], T, order=4) if x.imag > 1)
     w = np.sqrt(6 * height() ** 2 * K / M)
     assert -pole.real / abs(pole) == pytest.approx((90.0 + C) * w / (2 * K), rel=0.1)
+
+
+@pytest.mark.parametrize("steps", [{"step": T / 40}, {"tolerance": 1e-6}])
+def test_a_geophone_at_the_tool(steps):
+    """The payload with a proof mass, its corner of 60 Hz not far below heave, exact from sample to sample: forces
+    against the voltage damp heave by a third of critical. Between samples the march takes velocities as straight: of a
+    sine (w T)^2 / 12 = 1.5e-3 of what the proof mass adds to them, which is 2 zeta w0 / w = 0.4 of the reading."""
+    corner, damping, volts, gain, period = 2 * np.pi * 60.0, 0.6, 28.8, 20.0, T / 4
+    law = StateSpace(
+        A=np.zeros((0, 0)), B=np.zeros((0, 1)), C=np.zeros((6, 0)), D=-gain * np.ones((6, 1)), states=(), units={},
+        inputs=("geophone:tool[60 Hz, 0.6, 28.8]:z",), outputs=DRIVES, sample=period,
+    )  # fmt: skip
+    s = height()
+    rows = np.zeros((4, 6))  # z, z', proof mass and its rate, by the same and by the force of a leg and the load
+    rows[0, 1], rows[2, 3] = 1.0, 1.0
+    rows[1] = [-6 * s**2 * K / M, -6 * s**2 * C / M, 0, 0, 6 * s / M, 1 / M]
+    rows[3] = rows[1] + [0, 0, -(corner**2), -2 * damping * corner, 0, 0]
+    whole = expm(period * np.vstack([rows, np.zeros((2, 6))]))[:4]
+    x, z, read = np.zeros(4), [], []
+    data = fx.simulate(fx.loads(STUDY), controller=law, output_step=period, **steps)
+    for k in range(len(data.time)):
+        z.append(x[0])
+        read.append(volts * x[3])
+        x = whole[:, :4] @ x + whole[:, 4:] @ np.array([-gain * read[-1], F * (k >= 8)])
+    assert np.abs(heave(data) - z).max() < 8e-4 * np.abs(z).max()
+    np.testing.assert_allclose(data.sensor_reading.values[1:, 0], read[:-1], atol=2e-3 * np.abs(read).max())
+
+
+GAINS, W = (8e4, 4e6, 60.0), 2 * np.pi * 500.0  # N/m, N/(m s), N s/m of a leg, 1/s
+PID = """
+[control]
+law = "{law}"
+proportional = {proportional}
+integral = {integral}
+derivative = {derivative}
+low_pass = 500
+sample = {T}
+"""
+
+
+@pytest.mark.parametrize("of", ["stroke", "tool"])
+def test_tables_of_proportional_integral_and_rate_feedback(of):
+    """The exact recursion of the payload with u = -(P y + I sum + D w (y - what follows y)) of a leg, or of the tool's
+    height the same shared out over six legs that are inclined alike. Tolerance as above."""
+    s, (P, summed, D) = height(), GAINS
+    gains = {"proportional": P, "integral": summed, "derivative": D}
+    if of == "tool":  # the force along z that six legs with these gains make
+        gains = {name: [0, 0, float(6 * s**2 * value), 0, 0, 0] for name, value in gains.items()}
+    table = PID.format(law="pid" if of == "stroke" else "tool-pid", T=T, **gains)
+    data = fx.simulate(fx.loads(STUDY + table), step=T / 40)
+    payload, x, total, follows, z = Heave(), np.zeros(2), 0.0, 0.0, []
+    keep = np.exp(-W * T)
+    for k in range(len(data.time)):
+        z.append(x[0])
+        y = s * x[0]
+        u = -(P * y + summed * total + D * W * (y - follows))
+        total, follows = total + T * y, keep * follows + (1 - keep) * y
+        x = payload.A @ x + payload.B @ np.array([u, F * (k >= 2)])
+    assert np.abs(heave(data) - z).max() < 8e-4 * np.abs(z).max()
+    without = fx.simulate(fx.loads(STUDY), step=T / 40)
+    assert np.abs(heave(without) - z).max() > 0.1 * np.abs(z).max()  # the loop matters
 
 
 def test_poles_of_a_ring_down():

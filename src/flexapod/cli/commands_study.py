@@ -179,7 +179,12 @@ def check(file: StudyFile, verbose: Verbose = False, json: Json = False) -> None
     """Validate a study and say in words what it asks of its legs: lengths, strokes, loads, stiffness, frequencies."""
     from flexapod.description.robot import describe
     from flexapod.document.check import check_items
-    from flexapod.model import load
+    from flexapod.model import Study, load
 
-    found = describe(load(file))
-    tell(check_items(found), found.as_dict, json=json, verbose=verbose)
+    found, control = describe(study := load(file)), ()
+    if isinstance(study, Study) and study.control is not None:
+        from flexapod.study.predicted import control_words
+
+        control = control_words(study)
+    data = lambda: found.as_dict() | ({"control": control} if control else {})  # noqa: E731
+    tell(check_items(found, control), data, json=json, verbose=verbose)

@@ -106,7 +106,8 @@ class IFF(Controller):
     gain : float
         [1/s]
     high_pass : float or str
-        Corner [Hz] below which nothing is integrated: static stiffness stays, and a robot that turns stays stable.
+        Corner [Hz] below which nothing is integrated: of static stiffness w / (w + gain) stays, and a robot that turns
+        stays stable. Without it and without `parallel_stiffness` nothing holds at rest what the drives carry.
     parallel_stiffness : float
         Force per `stroke` [N/m] that is added to what the sensors read, as if springs beside actuators and sensors
         carried it: the robot keeps that stiffness.

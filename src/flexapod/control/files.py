@@ -1,7 +1,8 @@
-"""Linear systems for other programs: MATLAB, NumPy and NetCDF files with all names and units, python-control."""
+"""Linear systems for other programs: MATLAB, NumPy, JSON, NetCDF files with all names and units, python-control."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -62,10 +63,14 @@ def _npz(system: StateSpace, path: Path) -> None:
         np.savez(file, allow_pickle=False, **_named(system))
 
 
+def _json(system: StateSpace, path: Path) -> None:
+    path.write_text(json.dumps({name: x.tolist() for name, x in _named(system).items()}), encoding="utf-8")
+
+
 def _nc(system: StateSpace, path: Path) -> None:
     from flexapod.control.datasets import system_dataset
 
     system_dataset(system).to_netcdf(path, engine="netcdf4")
 
 
-WRITERS: dict[str, Callable[[StateSpace, Path], None]] = {".mat": _mat, ".npz": _npz, ".nc": _nc}
+WRITERS: dict[str, Callable[[StateSpace, Path], None]] = {".mat": _mat, ".npz": _npz, ".json": _json, ".nc": _nc}

@@ -254,7 +254,7 @@ class StateSpace:
         return to_control(self)
 
     def save(self, path: str | Path) -> Path:
-        """Matrices, names, units and sample time as ``.mat`` (MATLAB 5), ``.npz`` or ``.nc``; replaces a file."""
+        """Matrices, names, units, sample time as ``.mat`` (MATLAB 5), ``.npz``, ``.json``, ``.nc``; replaces a file."""
         from flexapod.control.files import save
 
         return save(self, path)

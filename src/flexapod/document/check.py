@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 SHOWN_ANGLE = math.radians(60)
 
 
-def check_items(found: RobotDescription | ActuatorDescription) -> Iterator[Item]:
-    """A description in sections."""
-    return _robot(found) if found.kind == "robot" else _actuator(found)  # type: ignore[arg-type]
+def check_items(found: RobotDescription | ActuatorDescription, control: Sequence[str] = ()) -> Iterator[Item]:
+    """A description in sections; `control`: what is said of the controller."""
+    return _robot(found, control) if found.kind == "robot" else _actuator(found)  # type: ignore[arg-type]
 
 
-def _robot(found: RobotDescription) -> Iterator[Item]:
+def _robot(found: RobotDescription, control: Sequence[str]) -> Iterator[Item]:
     yield (
         f"The path keeps all limits. The motion takes {found.motion_end:.4g} s, the simulation {found.duration:.4g} s "
         f"({found.fidelity}). Estimates from the rigid path:"
@@ -50,6 +50,7 @@ def _robot(found: RobotDescription) -> Iterator[Item]:
     yield Chapter("Vibration to expect after the motion, at the tool", [_vibration(found.vibration)])
     yield Chapter("The machine as built", map(sentence, found.accuracy))
     yield Chapter("Disturbances", map(sentence, found.disturbances))
+    yield Chapter("Controller", map(sentence, control))
     ideal = [found.ideal] if found.ideal else []
     yield Chapter("Remarks", [*ideal, Remarks(found.remarks or (() if ideal else ("None.",)))])
 

@@ -3,7 +3,7 @@
 from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
 from flexapod.model.chain import Chain, chain_of, chains_of
 from flexapod.model.circle import base_circle, platform_circle
-from flexapod.model.control import Control, DampedControl, ForceControl
+from flexapod.model.control import Control, DampedControl, FileControl, ForceControl, StrokeControl, ToolControl
 from flexapod.model.cylinder import Cylinder, Mounted
 from flexapod.model.damping import Damping, damping_parts
 from flexapod.model.disturbance import CURVES, Disturbance, Floor, Spectrum
@@ -102,6 +102,7 @@ __all__ = [
     "Encoder",
     "Expansion",
     "Feedback",
+    "FileControl",
     "Floor",
     "ForceControl",
     "ForceDrive",
@@ -152,10 +153,12 @@ __all__ = [
     "StepLaw",
     "StepWrench",
     "Stroke",
+    "StrokeControl",
     "StrokeFriction",
     "Strut",
     "Study",
     "Tolerances",
+    "ToolControl",
     "Travel",
     "Tube",
     "Waypoint",

@@ -2,15 +2,28 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
-from pydantic import Field
+import numpy as np
+from pydantic import Field, PlainSerializer, PlainValidator, model_validator
 
-from flexapod.schema.base import Key, Quantity
+from flexapod.arrays import Array
+from flexapod.errors import InputError
+from flexapod.schema.base import Key, Quantity, Vec6, array_of
 from flexapod.schema.table import Table
 
-__all__ = ["Control", "DampedControl", "ForceControl"]
+if TYPE_CHECKING:
+    from flexapod.model.motion import Motion
+    from flexapod.model.robot import Robot
+    from flexapod.schema.section import Section
 
+__all__ = ["Control", "DampedControl", "FileControl", "ForceControl", "StrokeControl", "ToolControl"]
+
+Matrix = Annotated[
+    Array, PlainValidator(array_of((None, None))), PlainSerializer(lambda rows: rows.tolist()), Quantity("number")
+]
+NONE = (0.0,) * 6
 Count = Annotated[int, Field(strict=True, ge=0, le=1000)]
 Seed = Annotated[int, Field(strict=True, ge=0, le=2**31 - 1)]
 
@@ -65,4 +78,130 @@ class DampedControl(_Sampled):
     )
 
 
-Control = ForceControl | DampedControl
+class StrokeControl(_Sampled):
+    """Proportional, integral and rate feedback of each stroke: `proportional` [N/m], `integral` [N/(m s)].
+
+    `derivative` [N s/m], its `low_pass` [Hz]; numbers of readings in m.
+    """
+
+    reads: ClassVar[str] = "stroke"
+    law: Annotated[Literal["pid"], Key("what is fed back")] = "pid"
+    proportional: Annotated[float, Quantity("stiffness", least=0, why="force of the drive against its stroke")] = 0.0
+    integral: Annotated[
+        float, Quantity("integral stiffness", least=0, why="force of the drive against the integral of its stroke")
+    ] = 0.0
+    derivative: Annotated[
+        float, Quantity("damping", least=0, why="force of the drive against the rate of its stroke")
+    ] = 0.0
+    low_pass: Annotated[
+        float | None,
+        Quantity("frequency", above=0, why="above it the rate counts less", usual="differences from sample to sample"),
+    ] = None
+    quantise: Annotated[
+        float | None, Quantity("length", least=0, why="step of the readings, as of an encoder", usual="none")
+    ] = None
+    noise: Annotated[float | None, Quantity("length", least=0, why="standard deviation of a reading", usual="none")] = (
+        None
+    )
+
+    @model_validator(mode="after")
+    def _something(self) -> StrokeControl:
+        _refuse_nothing(self)
+        return self
+
+
+class ToolControl(_Sampled):
+    """The same of the six motions of the tool beside its path, each by gains of its own, decoupled by the drives.
+
+    Six numbers along and about the world's axes: `proportional` [N/m, N m/rad], `integral` [N/(m s), N m/(rad s)],
+    `derivative` [N s/m, N m s/rad], `quantise` and `noise` [m, rad].
+    """
+
+    reads: ClassVar[str] = "tool"
+    law: Annotated[Literal["tool-pid"], Key("what is fed back")] = "tool-pid"
+    proportional: Annotated[
+        Vec6,
+        Quantity("stiffness", "rotational stiffness", why="force and moment at the tool against x, y, z, rx, ry, rz"),
+    ] = Field(default=NONE, validate_default=True)
+    integral: Annotated[
+        Vec6, Quantity("integral stiffness", "integral gain", why="the same against their integrals")
+    ] = Field(default=NONE, validate_default=True)
+    derivative: Annotated[Vec6, Quantity("damping", "rotational damping", why="the same against their rates")] = Field(
+        default=NONE, validate_default=True
+    )
+    low_pass: Annotated[
+        float | None,
+        Quantity("frequency", above=0, why="above it rates count less", usual="differences from sample to sample"),
+    ] = None
+    quantise: Annotated[Vec6 | None, Quantity("length", "angle", why="steps of the readings", usual="none")] = None
+    noise: Annotated[
+        Vec6 | None, Quantity("length", "angle", why="standard deviations of the readings", usual="none")
+    ] = None
+
+    @model_validator(mode="after")
+    def _something(self) -> ToolControl:
+        for name in ("proportional", "integral", "derivative", "quantise", "noise"):
+            given = getattr(self, name)
+            if given is not None and (given < 0).any():
+                at = int(np.argmax(given < 0)) + 1
+                raise InputError("is below 0", key=f"{name}[{at}]", value=float(given[at - 1]), allowed="0 or more")
+        _refuse_nothing(self)
+        return self
+
+    def check(self, robot: Robot, motion: Motion) -> None:
+        """Refuse a robot whose drives do not move the tool in six ways, or whose base does not stand still."""
+        fewer = sum(bool(leg.driven) for leg in robot.legs) < 6 or motion.independent is not None
+        if fewer or robot.platform_fixed or robot.base_motion is not None:
+            raise InputError(
+                "moves the tool in six ways, and reads it against a base that stands still",
+                key="control.law",
+                value=self.law,
+                allowed="robots with six drives or more and six motions, without robot.base_motion",
+                next_step='Feed back the strokes: law = "pid"',
+            )
+
+
+def _refuse_nothing(table: StrokeControl | ToolControl) -> None:
+    if not any(np.any(x) for x in (table.proportional, table.integral, table.derivative)):
+        raise InputError(
+            "is 0, and so are integral and derivative: nothing is fed back", key="proportional", allowed="one above 0"
+        )
+
+
+class FileControl(_Sampled):
+    """A law of one's own: a state space from readings to outputs, its matrices and channels in a `file`.
+
+    From `inputs` (m), the sensors, to `outputs` (p), the actuators, with n states: A (n, n), B (n, m), C (p, n),
+    D (p, m); `own`: its time between samples [s], None of a law in continuous time.
+    """
+
+    derived: ClassVar[tuple[str, ...]] = ("A", "B", "C", "D", "inputs", "outputs", "own")
+    law: Annotated[Literal["file"], Key("what is fed back")] = "file"
+    file: Annotated[str, Key("state space as `StateSpace.save` writes it: .json, .npz, .mat, relative to this file")]
+    A: Matrix
+    B: Matrix
+    C: Matrix
+    D: Matrix
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    own: Annotated[float | None, Quantity("time", above=0)] = None
+
+    @classmethod
+    def resolved(cls, section: Section) -> Mapping[str, object]:
+        """Its matrices and channels."""
+        found = section.linear_system()
+        return found | {"own": found.pop("sample")}
+
+    @model_validator(mode="after")
+    def _samples(self) -> FileControl:
+        if self.own is not None and abs(self.own - self.sample) > 1e-9 * self.sample:
+            raise InputError(
+                "is not the time between samples of the law in the file",
+                key="sample",
+                value=self.sample,
+                allowed=f"{self.own:.9g} s; a law in continuous time takes any",
+            )
+        return self
+
+
+Control = ForceControl | DampedControl | StrokeControl | ToolControl | FileControl

@@ -11,7 +11,7 @@ from typing import Literal, TypeVar, overload
 
 from flexapod.errors import InputError, closest
 from flexapod.model.actuator import Actuator, ActuatorInitial, read_drives
-from flexapod.model.control import DampedControl, ForceControl
+from flexapod.model.control import DampedControl, FileControl, ForceControl, StrokeControl, ToolControl
 from flexapod.model.disturbance import read_disturbance
 from flexapod.model.laws import Load
 from flexapod.model.motion import AxisMotion, CombinedMotion, CsvMotion, Motion, WaypointMotion
@@ -40,6 +40,7 @@ RobotPreset = Literal[
 ]
 AT_REST = AxisMotion(type="heave", amplitude=0.0, duration=1.0)
 _AS_BUILT = ("geometry", "heat", "tolerances")
+_LOOPS = (ForceControl, DampedControl, StrokeControl, ToolControl, FileControl)
 _COMMON = ("motion", "load", "initial", "simulation")
 
 
@@ -254,7 +255,7 @@ def _study(top: Section, text: str) -> Study:
         initial=_given(top.section("initial"), Initial),
         simulation=simulation,
         disturbance=read_disturbance(top, robot),
-        control=None if (loop := top.section("control")) is None else loop.one_of((ForceControl, DampedControl)),
+        control=None if (loop := top.section("control")) is None else loop.one_of(_LOOPS),
         source_text=text,
         path=top.file,
         notes=(*unused_settings(settings, simulation), *_unused_axial_modes(top, simulation)),

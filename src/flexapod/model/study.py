@@ -9,7 +9,7 @@ from pydantic import field_validator, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
-from flexapod.model.control import Control
+from flexapod.model.control import Control, ToolControl
 from flexapod.model.disturbance import Disturbance
 from flexapod.model.laws import Load
 from flexapod.model.motion import AXES, Motion, moved_axes
@@ -114,6 +114,8 @@ class Study(_Documented):
                 allowed="drives that are servos or forces",
                 next_step='Give leg.drive type = "servo" with a stiffness, or leave [control] out',
             )
+        if isinstance(self.control, ToolControl):
+            self.control.check(self.robot, self.motion)
         return self
 
     @model_validator(mode="after")

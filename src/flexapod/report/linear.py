@@ -53,7 +53,7 @@ def _damped(study: Study) -> Iterator[Item]:
     """A table of damping without the controller and with it."""
     if study.control is None:
         return
-    from flexapod.study.predicted import predicted_damping
+    from flexapod.study.predicted import control_words, predicted_damping
 
     try:
         found = predicted_damping(study)
@@ -67,5 +67,6 @@ def _damped(study: Study) -> Iterator[Item]:
     head = ["frequency [Hz]", "damping [%]", "with the controller [Hz]", "its damping [%]"]
     yield TextTable(head, list(zip(*columns, strict=True)), left=())
     yield Text("Predicted by the linear model, from sample to sample, without noise and limits.", "soft")
+    yield from map(sentence, control_words(study))
     if found.growing:
         yield Text(f"{found.growing} poles of the loop grow.", "bad")

@@ -11,6 +11,7 @@ from flexapod.arrays import Array
 from flexapod.schema.axes import WORDS, axis_of
 from flexapod.schema.columns import Column, columns_of
 from flexapod.schema.csv_tables import Unreadable, read_table
+from flexapod.schema.systems import read_system
 from flexapod.schema.table import Table
 from flexapod.schema.values import Values
 
@@ -116,5 +117,13 @@ class Section(Values):
         self.need(name)
         try:
             return read_table(self.folder / str(self.text(name)), columns, needed=needed, jumps=jumps, along=along)
+        except Unreadable as error:
+            raise self.error(error.what, name, next_step=error.next_step) from None
+
+    def linear_system(self, name: str = "file") -> dict[str, Any]:
+        """The linear system in the file under `file` or another name (`schema.systems`)."""
+        self.need(name)
+        try:
+            return read_system(self.folder / str(self.text(name)))
         except Unreadable as error:
             raise self.error(error.what, name, next_step=error.next_step) from None

@@ -13,6 +13,7 @@ from flexapod.control.arguments import whole
 from flexapod.errors import InputError, closest
 from flexapod.results.asked import Made
 from flexapod.results.record import Record
+from flexapod.solve.linear.motions import COMPONENTS
 from flexapod.units import to_si
 
 if TYPE_CHECKING:
@@ -21,7 +22,17 @@ if TYPE_CHECKING:
 
     AnyController = Controller | AdaptiveDamping | StateSpace | Function
 
-__all__ = ["Noise", "PerChannel", "control_attributes", "control_coords", "control_results", "sampled_controller"]
+__all__ = [
+    "Noise",
+    "PerChannel",
+    "control_attributes",
+    "control_coords",
+    "control_remarks",
+    "control_results",
+    "sampled_controller",
+]
+
+SUMS = 1e-9  # of a pole from 1, of what it sums: less is none
 
 #: One number for all channels, or numbers by channels (``stroke:1``) and groups (``stroke``).
 PerChannel = float | Mapping[str, float] | None
@@ -30,7 +41,9 @@ Noise = float | Mapping[str, float] | Mapping[str, Mapping[str, float]] | None
 
 
 #: Groups of channels that controllers read and move without being told which.
-READ, MOVED = ("stroke", "encoder", "drive-force", "force-sensor:drive", "tool", "com"), ("drive", "command")
+READ, MOVED = ("stroke", "encoder", "drive-force", "force-sensor:drive"), ("drive", "command")
+READ_OF_PLATFORM = ("tool", "com", *(f"{x}:{at}" for x in ("accelerometer", "geophone") for at in ("tool", "com")))
+TOOL = tuple(f"tool:{name}" for name in COMPONENTS)
 
 
 def sampled_controller(
@@ -71,7 +84,7 @@ def sampled_controller(
     given |= {"noise": noise, "seed": seed}
     given = {name: value for name, value in given.items() if value is not None}
     if controller is None and study.control is not None:
-        controller, own = _of_table(study.control)
+        controller, own = _of_table(study.control, study.robot)
         given = own | given
     if controller is None:
         if given:
@@ -82,17 +95,51 @@ def sampled_controller(
     return _made(controller, study.robot, **given)  # type: ignore[arg-type]
 
 
-def _of_table(table: model.Control) -> tuple[Controller, dict[str, object]]:
+def _of_table(table: model.Control, robot: model.Robot) -> tuple[AnyController, dict[str, object]]:
     """Controller and settings of a study file."""
-    from flexapod.control.controllers import DVF, IFF
+    names = ("sample", "delay_samples", "saturate", "seed", "quantise", "noise")
+    found = {name: getattr(table, name, None) for name in names}
+    if isinstance(table, model.ToolControl):
+        each = {name: found[name] for name in ("quantise", "noise")}
+        found |= {name: None if x is None else dict(zip(TOOL, x.tolist(), strict=True)) for name, x in each.items()}  # type: ignore[attr-defined]
+    if isinstance(table, model.FileControl) and table.saturate is not None:
+        found["saturate"] = {"drive": table.saturate}
+    return _controller_of(table, robot), {name: value for name, value in found.items() if value is not None}
 
-    settings = {
-        name: getattr(table, name) for name in ("sample", "delay_samples", "saturate", "seed", "quantise", "noise")
-    }
-    found = {name: value for name, value in settings.items() if value is not None}
+
+def _controller_of(table: model.Control, robot: model.Robot) -> Controller | StateSpace:
+    """The controller that a table describes."""
+    from flexapod.control import DVF, IFF, PID, Decoupled, StateSpace, by_jacobian, pid, robot_jacobian
+
     if isinstance(table, model.ForceControl):
-        return IFF(table.gain, high_pass=table.high_pass, sensor=table.reads), found
-    return DVF(table.gain, low_pass=table.low_pass, sensor=table.reads), found
+        return IFF(table.gain, high_pass=table.high_pass, sensor=table.reads)
+    if isinstance(table, model.DampedControl):
+        return DVF(table.gain, low_pass=table.low_pass, sensor=table.reads)
+    if isinstance(table, model.StrokeControl):
+        gains = (table.proportional, table.integral, table.derivative)
+        return PID(*gains, low_pass=table.low_pass, sensor=table.reads)
+    if isinstance(table, model.ToolControl):
+        gains = zip(table.proportional.tolist(), table.integral.tolist(), table.derivative.tolist(), strict=True)
+        out = by_jacobian(robot_jacobian(robot, robot.tool)).out
+        return Decoupled([pid(*each, table.low_pass) for each in gains], into=np.eye(6), out=out, sensor=table.reads)
+    _refuse_unknown(table, robot)
+    return StateSpace(
+        A=table.A, B=table.B, C=table.C, D=table.D, inputs=table.inputs, outputs=table.outputs,
+        states=tuple(f"law x{i + 1}" for i in range(len(table.A))), units={}, sample=table.own,
+    )  # fmt: skip
+
+
+def _refuse_unknown(table: model.FileControl, robot: model.Robot) -> None:
+    """Refuse channels of a law in a file that the robot has not, with the nearest."""
+    from flexapod.solve.linear.channels import asked
+
+    for name, known, channels in (("inputs", "outputs", table.inputs), ("outputs", "inputs", table.outputs)):
+        for channel in channels:
+            try:
+                asked(channel, robot, known)
+            except InputError as error:
+                error.key = name
+                raise error.located(file=table.file) from None
 
 
 def _made(
@@ -158,7 +205,7 @@ def _law(controller: AnyController, period: float, robot: model.Robot) -> StateS
     if isinstance(controller, Controller | AdaptiveDamping):
         read, moved = (
             [channel.name for group in groups for channel in asked(group, robot, key)]
-            for groups, key in ((READ, "outputs"), (MOVED, "inputs"))
+            for groups, key in ((READ + READ_OF_PLATFORM * (not robot.platform_fixed), "outputs"), (MOVED, "inputs"))
         )
         return controller.sampled(period, read, moved)
     if not isinstance(controller, Function):
@@ -204,6 +251,21 @@ def _by_channel(given: PerChannel, names: Sequence[str], key: str, without: floa
     if not (found >= 0).all():
         raise InputError("is below 0", key=key, value=given)
     return found
+
+
+def control_remarks(sampled: Sampled | None) -> tuple[str, ...]:
+    """Doubt about a controller: one that sums forces alone leaves no stiffness at rest."""
+    if sampled is None or sampled.function is not None or not len(sampled.A):
+        return ()
+    values, left = np.linalg.eig(sampled.A.T)
+    summed = np.abs(left[:, np.abs(values - 1) < SUMS].T @ sampled.B) > SUMS
+    forces = [name.startswith(("force-sensor:", "drive-force:", "joint-force:")) for name in sampled.readings]
+    if not (summed.any(axis=1) & ~summed[:, ~np.array(forces)].any(axis=1)).any():
+        return ()
+    return (
+        "the controller sums forces without a high-pass, so that static stiffness is lost: nothing holds at rest what "
+        "the drives carry; give high_pass, for example a tenth of the first frequency, or springs beside them",
+    )
 
 
 def control_results(sampled: Sampled | None, record: Record) -> dict[str, Made]:

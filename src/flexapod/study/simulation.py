@@ -31,6 +31,7 @@ from flexapod.study.controlled import (
     PerChannel,
     control_attributes,
     control_coords,
+    control_remarks,
     control_results,
     sampled_controller,
 )
@@ -104,7 +105,8 @@ def simulated(study: model.Study, progress: Progress | None = None, sampled: Sam
         As `simulate`.
     """
     path, sampled = RigidPath(study), sampled or sampled_controller(study)
-    remarks, march = [*check_path(study, path), *loop_remarks(study)], prepare(study, sampled=sampled)
+    remarks = [*check_path(study, path), *loop_remarks(study), *control_remarks(sampled)]
+    march = prepare(study, sampled=sampled)
     record = collect(march.chunks, damped_angles(march.system), study.duration, progress)
     return Simulated(study=study, path=path, march=march, record=record, remarks=remarks, sampled=sampled)
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import ctypes
+import re
 from collections.abc import Callable, Sequence
 from ctypes import Structure, c_double, c_long, c_void_p
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.linalg import expm
 
 from flexapod.arrays import Array
 from flexapod.errors import InputError
@@ -15,7 +17,7 @@ from flexapod.kinematics.robot import robot_limbs
 from flexapod.kinematics.rotations import quaternion
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.model import Leg, Robot
-from flexapod.solve.linear.channels import PlantChannel, asked
+from flexapod.solve.linear.channels import Geophone, PlantChannel, asked
 from flexapod.solve.statics.drive_forces import force_ports, push_ports
 from flexapod.solve.system import Flow, System
 from flexapod.solve.time.tables import Law
@@ -23,9 +25,10 @@ from flexapod.solve.time.tables import Law
 __all__ = ["Asked", "Sampled", "SampledLoop"]
 
 NEAR_SAMPLE = 1e-6  # of a period: instants that are no farther from a sample are its own
+PROOF = 5  # numbers that a geophone remembers, as in loop.c
 BLOCK = 1024  # samples whose noise is drawn together
 FORCE, VALUE = 3, 0  # columns of a port in a table
-COORDINATE, PORT_FORCE, CLOSURE, JOINT, PLACE, TURN, ACCELERATION = range(7)  # what is read, as in loop.c
+COORDINATE, PORT_FORCE, CLOSURE, JOINT, PLACE, TURN, ACCELERATION, GEOPHONE = range(8)  # what is read, as in loop.c
 
 #: Of an instant [s] and readings (p,): outputs (m,).
 Asked = Callable[[float, Array], object]
@@ -87,6 +90,8 @@ class _Reading(Structure):
         *[(name, c_long) for name in ("of", "leg", "port", "axis")],
         ("arm", c_double * 3),
         ("along", c_double * 3),
+        *[(name, c_double * 4) for name in ("step", "begin", "end")],
+        ("gain", c_double),
     ]
 
 
@@ -131,7 +136,9 @@ class SampledLoop:
     ) -> None:
         self.sampled, self.system, self._path = sampled, system, path
         start = path(np.zeros(1))[1][0]
-        self._reading = _structures(_Reading, [_reading(name, system, robot, start) for name in sampled.readings])
+        self._reading = _structures(
+            _Reading, [_reading(name, system, robot, start, sampled.period) for name in sampled.readings]
+        )
         self._action = _structures(_Action, [_action(name, system, robot) for name in sampled.outputs])
         self._at = [(a.leg, a.port, a.column) for a in self._action[: len(sampled.outputs)]]
         self._gravity = (c_double * 3)(*robot.gravity)
@@ -149,7 +156,9 @@ class SampledLoop:
     def start(self) -> Array:
         """What it remembers before the first sample, as `split` of loop.c says."""
         readings, states = len(self.sampled.readings), len(self.sampled.A)
-        return np.zeros(3 + 2 * states + len(self.sampled.outputs) + (3 + self.sampled.delay_samples) * readings)
+        return np.zeros(
+            3 + 2 * states + len(self.sampled.outputs) + (3 + PROOF + self.sampled.delay_samples) * readings
+        )
 
     def held(self, flow: Flow) -> Array:
         """Outputs that are held, (m,)."""
@@ -230,8 +239,8 @@ def _structures(kind: type[Structure], items: Sequence[Structure]) -> ctypes.Arr
     return (kind * max(len(items), 1))(*items)
 
 
-def _reading(name: str, system: System, robot: Robot, start: Array) -> _Reading:
-    """What a channel reads; ``start``, (3, 3): attitude of the platform at the start."""
+def _reading(name: str, system: System, robot: Robot, start: Array, period: float) -> _Reading:
+    """What a channel reads every `period` [s]; ``start``, (3, 3): attitude of the platform at the start."""
     channel = _single(name, robot, "outputs")
     leg, group = max(channel.leg, 0), channel.group
     none = (c_double * 3)()
@@ -241,6 +250,10 @@ def _reading(name: str, system: System, robot: Robot, start: Array) -> _Reading:
     if group == "accelerometer" and channel.at is not None:
         along = start[channel.axis]  # axes that turn with the platform, the world's at the start
         return _Reading(ACCELERATION, 0, 0, 0, (c_double * 3)(*channel.at), (c_double * 3)(*along))
+    if channel.geophone is not None and channel.at is not None:
+        matrices = [(c_double * 4)(*matrix.ravel()) for matrix in _proof_mass(channel.geophone, period)]
+        where = (c_double * 3)(*channel.at), (c_double * 3)(*start[channel.axis])
+        return _Reading(GEOPHONE, 0, 0, 0, *where, *matrices, channel.geophone.sensitivity)
     if group == "joint-force":
         return _Reading(CLOSURE, leg, 0, channel.axis, none, none)
     if group == "force-sensor:platform" and not _moving_base(robot):
@@ -257,13 +270,24 @@ def _reading(name: str, system: System, robot: Robot, start: Array) -> _Reading:
         key="controller.inputs",
         value=name,
         allowed="tool and com where the base stands still, stroke, encoder, drive-force, force-sensor:drive of drives "
-        "without a rotor, joint-force, force-sensor:platform where base joints stand still, accelerometer:POINT",
+        "without a rotor, joint-force, force-sensor:platform where base joints stand still, accelerometer:POINT, "
+        "geophone:POINT",
     )
+
+
+def _proof_mass(sensor: Geophone, period: float) -> tuple[Array, Array, Array]:
+    """A proof mass over a `period` [s], by its states and by what moves it at its begin and end, Eq. (T26.10)."""
+    w, rate = 2 * np.pi * sensor.f0, 4 * np.pi * sensor.damping * sensor.f0
+    whole = np.zeros((6, 6))  # what moves it is straight between samples
+    whole[:2] = [[0, 1, 1, 0, 0, 0], [-(w**2), -rate, -rate, 1, 0, 0]]
+    whole[2:4, 4:] = np.eye(2) / period
+    whole = np.asarray(expm(whole * period), dtype=float)[:2]
+    return whole[:, :2], whole[:, 2:4] - whole[:, 4:], whole[:, 4:]
 
 
 def _single(name: str, robot: Robot, key: str) -> PlantChannel:
     found = asked(name, robot, key)
-    if len(found) != 1 or found[0].name != name:
+    if len(found) != 1 or found[0].name != re.sub(r"\s*\[.*\]", "", name):
         raise InputError(
             "is not one channel",
             key=f"controller.{'inputs' if key == 'outputs' else 'outputs'}",

@@ -1,11 +1,13 @@
-/* A sampled controller around the march: what it reads, the one linear law that it computes, what it moves, Eqs. (T26.1)-(T26.6).
+/* A sampled controller around the march: what it reads, the one linear law that it computes, what it moves, Eqs. (T26.1)-(T26.6),
+   (T26.10).
    Between two samples its outputs are held. */
-enum { AT_COORDINATE, AT_FORCE, AT_CLOSURE, AT_JOINT, AT_PLACE, AT_TURN, AT_ACCELERATION };  /* what is read */
+enum { AT_COORDINATE, AT_FORCE, AT_CLOSURE, AT_JOINT, AT_PLACE, AT_TURN, AT_ACCELERATION, AT_GEOPHONE };  /* what is read */
 enum { ASKED = 5 };                     /* status: who was asked for outputs failed */
 
 /* axis: the coordinate, of the leg or of a point on the payload; arm: to that from the centre of mass; port: whose command is
-   what a coordinate is read against; along: a direction in platform axes, or where the base joint is */
-typedef struct { long of, leg, port, axis; double arm[3], along[3]; } Reading;
+   what a coordinate is read against; along: a direction in platform axes, or where the base joint is; what a geophone's proof
+   mass does from sample to sample, by its state and by what moves it at the first and at the second; gain: of its voltage */
+typedef struct { long of, leg, port, axis; double arm[3], along[3], step[4], begin[4], end[4], gain; } Reading;
 typedef struct { long leg, port, column; double gain; } Action;        /* gain: force by a unit of it */
 typedef int (*Asked)(double t, const double *readings, double *outputs);
 
@@ -22,7 +24,8 @@ typedef struct {
 } Loop;
 
 /* What a loop remembers, at the caller's */
-typedef struct { double *next, *work, *power, *x, *u, *y, *zero, *ring, *ahead; } Remembered;
+typedef struct { double *next, *work, *power, *x, *u, *y, *zero, *ring, *proof, *ahead; } Remembered;
+enum { PROOF = 5 };                     /* of a geophone: two states, what moved it, and that at the start */
 
 static Remembered split(const Loop *c) {
   Remembered m;
@@ -33,6 +36,7 @@ static Remembered split(const Loop *c) {
   m.y = at; at += c->readings;
   m.zero = at; at += c->readings;
   m.ring = at; at += (c->delay + 1)*c->readings;
+  m.proof = at; at += PROOF*c->readings;
   m.ahead = at;
   return m;
 }
@@ -93,6 +97,27 @@ static double of_payload(const Loop *c, const Reading *r, const Work *w, const d
   return felt;
 }
 
+/* Velocity behind a proof mass, whose states go on to the present sample, (T26.10) */
+static double of_geophone(const Loop *c, const Reading *r, const Work *w, int first, double *proof) {
+  const double *turn = w->payload.u + 3;
+  double v[3], g[3], a[3], rate[3], in[2] = {0, 0}, old[4];
+  rotate(w->payload.pose + 3, -1, w->payload.u, v);
+  rotate(w->payload.pose + 3, -1, c->gravity, g);
+  cross(turn, r->arm, a);
+  for (int i = 0; i < 3; i++) v[i] += a[i];
+  cross(turn, v, rate);
+  for (int i = 0; i < 3; i++) { in[0] += r->along[i]*v[i]; in[1] += r->along[i]*(rate[i] - g[i]); }
+  if (first) { proof[0] = 0; proof[1] = -in[0]; proof[4] = in[1]; }
+  memcpy(old, proof, sizeof old);
+  in[1] -= proof[4];
+  for (int i = 0; i < 2 && !first; i++) {
+    proof[i] = 0;
+    for (int j = 0; j < 2; j++) proof[i] += r->step[2*i + j]*old[j] + r->begin[2*i + j]*old[2 + j] + r->end[2*i + j]*in[j];
+  }
+  proof[2] = in[0]; proof[3] = in[1];
+  return r->gain*(in[0] + proof[1]);
+}
+
 /* Force of a leg on the platform, along the line between its joints */
 static double along_leg(const Reading *r, const Work *w) {
   double arm[3], length = 0, force = 0;
@@ -105,8 +130,9 @@ static double along_leg(const Reading *r, const Work *w) {
 }
 
 /* All readings as they are, against the commanded path */
-static void read_all(const Settings *s, const Loop *c, const double *path, const double *u, const Work *w, double *y) {
+static void read_all(const Settings *s, const Loop *c, const double *path, const Remembered *m, const Work *w) {
   SIZES(s);
+  double *y = m->y;
   lanes force[GROUPS][PORTS];
   int forces = 0;
   for (long k = 0; k < c->readings; k++) forces |= c->reading[k].of == AT_FORCE;
@@ -124,12 +150,13 @@ static void read_all(const Settings *s, const Loop *c, const double *path, const
       y[k] = w->leg[group].q[r->axis][lane] - w->table[group][r->port*COLUMNS][lane];
       for (long j = 0; j < c->actions; j++) {
         const Action *a = &c->action[j];
-        if (a->leg == r->leg && a->port == r->port && a->column == 0) y[k] += u[j];
+        if (a->leg == r->leg && a->port == r->port && a->column == 0) y[k] += m->u[j];
       }
     }
     else if (r->of == AT_FORCE) y[k] = force[group][r->port][lane];
     else if (r->of == AT_CLOSURE) y[k] = w->leg[group].lam[r->axis][lane];
     else if (r->of == AT_JOINT) y[k] = along_leg(r, w);
+    else if (r->of == AT_GEOPHONE) y[k] = of_geophone(c, r, w, m->next[0] == 0, m->proof + PROOF*k);
     else y[k] = of_payload(c, r, w, path);
   }
 }
@@ -172,7 +199,7 @@ static void read_sample(const Settings *s, const Loop *c, Work *w) {
   long number = (long)m.next[0], row = number - c->first;
   double *to = m.ring + (number % (c->delay + 1))*c->readings;
   set_commands(s, w);
-  read_all(s, c, c->path + 7*row, m.u, w, m.y);
+  read_all(s, c, c->path + 7*row, &m, w);
   for (long k = 0; k < c->readings; k++) {
     if (number == 0) m.zero[k] = m.y[k];
     double value = m.y[k] - m.zero[k] + c->noise[c->readings*row + k], q = c->quantum[k];

@@ -1,0 +1,107 @@
+"""A linear system in a file: matrices A, B, C, D, names of channels, time between samples."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flexapod.errors import InputError
+from flexapod.runtime.files import LARGEST_TABLE, read_bytes
+from flexapod.schema.csv_tables import Unreadable
+
+__all__ = ["SYSTEM_FILES", "read_system"]
+
+MATRICES, NAMES = ("A", "B", "C", "D"), ("inputs", "outputs")
+
+
+def read_system(path: Path) -> dict[str, Any]:
+    """What `StateSpace.save` writes: A (n, n), B (n, m), C (p, n), D (p, m), `inputs`, `outputs`, `sample` [s] or None.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, something in it is missing, or sizes and names do not fit.
+    """
+    reader = SYSTEM_FILES.get(path.suffix.lower())
+    if reader is None:
+        raise Unreadable("is not a format of linear systems", next_step=f"Write it as {', '.join(SYSTEM_FILES)}")
+    try:
+        content = read_bytes(path, LARGEST_TABLE)
+    except OSError as error:
+        raise Unreadable(
+            f"cannot be read: {error.strerror}", next_step="Give its place relative to the study file"
+        ) from None
+    try:
+        data = reader(content)
+    except Exception as error:  # readers let errors of any kind out of files that are damaged
+        raise Unreadable(f"cannot be read: {error}", next_step="Write it with StateSpace.save") from None
+    try:
+        return _checked(data)
+    except InputError as error:
+        raise error.located(file=path) from None
+
+
+def _checked(data: Mapping[str, Any]) -> dict[str, Any]:
+    for name in (*MATRICES, *NAMES):
+        if name not in data:
+            raise InputError("is missing", key=name, allowed=f"{', '.join((*MATRICES, *NAMES))}, and sample [s] or not")
+    names = {name: _texts(data[name]) for name in NAMES}
+    for name, given in names.items():
+        if not given or len({*given}) < len(given):
+            raise InputError("are none, or one of them twice", key=name, value=", ".join(given))
+    n, m, p = int(np.sqrt(np.size(data["A"]))), len(names["inputs"]), len(names["outputs"])
+    found: dict[str, Any] = dict(names)
+    for name, shape in zip(MATRICES, ((n, n), (n, m), (p, n), (p, m)), strict=True):
+        matrix = _matrix(data[name], name)
+        if matrix.shape != shape and not matrix.size == np.prod(shape) == 0:  # matrices of no states have no rows
+            raise InputError(
+                f"has the shape {matrix.shape}", key=name, allowed=f"{shape}: {n} states, {m} inputs, {p} outputs"
+            )
+        found[name] = matrix.reshape(shape)
+    period = _matrix(data.get("sample", 0.0), "sample").ravel()
+    if period.size != 1 or period[0] < 0:
+        raise InputError("is not a time", key="sample", allowed="between samples [s]; 0 of a law in continuous time")
+    return found | {"sample": float(period[0]) or None}
+
+
+def _matrix(value: object, name: str) -> np.ndarray:
+    try:
+        found = np.array(value, dtype=float)
+    except (TypeError, ValueError):
+        found = np.array(np.nan)
+    if not np.isfinite(found).all():
+        raise InputError("is no matrix of finite numbers", key=name)
+    return found
+
+
+def _texts(value: object) -> tuple[str, ...]:
+    """Names of a list, of cells of MATLAB, or of its rows of letters."""
+    cells = np.ravel(np.array(value, dtype=object))
+    return tuple(str(np.ravel(cell)[0]).strip() for cell in cells if np.size(cell))
+
+
+def _json(content: bytes) -> Mapping[str, Any]:
+    data = json.loads(content.decode("utf-8-sig"))
+    if not isinstance(data, Mapping):
+        raise ValueError("it holds no names with matrices")
+    return data
+
+
+def _npz(content: bytes) -> Mapping[str, Any]:
+    with np.load(BytesIO(content), allow_pickle=False) as data:
+        return dict(data)
+
+
+def _mat(content: bytes) -> Mapping[str, Any]:
+    from scipy.io import loadmat
+
+    return loadmat(BytesIO(content))
+
+
+#: Readers by the end of the name.
+SYSTEM_FILES: dict[str, Callable[[bytes], Mapping[str, Any]]] = {".npz": _npz, ".mat": _mat, ".json": _json}
