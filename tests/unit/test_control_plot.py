@@ -35,6 +35,21 @@ def test_bode_shows_named_channels_of_several_results():
     assert plot.bode(both["open"], "floor", "tool").axes[0].get_ylabel() == "size [m/(m/s^2)]"
 
 
+def test_what_symmetry_makes_zero_is_not_drawn_as_noise():
+    C = [[1.0, 0], [1e-12, 0], [1e-12, 0], [1e-7, 0]]  # rounding, in metres and radians, and a stroke that is small
+    names = ("tool:z", "tool:x", "tool:ry", "stroke:1")
+    units = dict(zip(names, ("m", "m", "rad", "m"), strict=True)) | {"u": "N"}
+    one = fc.StateSpace(
+        A=[[0, 1], [-900.0, -3.0]], B=[[0], [1.0]], C=C, D=np.zeros((4, 1)), inputs=("u",), outputs=names,
+        states=("z", "v"), units=units,
+    )  # fmt: skip
+    size, phase = plot.bode(one.frequency_response(HZ)).axes
+    assert labels(size) == ["tool:z by u", "stroke:1 by u"] and len(phase.lines) == 2
+    assert "without 2 that are zero" in size.get_title(loc="left")
+    size, _ = plot.bode(one.frequency_response(HZ), outputs="tool:x").axes  # who asks for it alone sees it
+    np.testing.assert_allclose(size.lines[0].get_ydata(), 1e-12 * np.abs(one.at(HZ)[0, 0]))
+
+
 def test_phases_jump_without_a_line():
     data = mode().frequency_response(HZ)
     y = plot.bode(data, "floor", "tool").axes[1].lines[0].get_ydata()

@@ -26,6 +26,7 @@ Several = xr.Dataset | Mapping[str, xr.Dataset]
 MOST = 12  # curves that a reader tells apart
 WIDTHS = (3.2, 1.3, 1.3)  # of lines: the second often lies upon the first
 FLOOR = 1e-12  # of the largest: what is smaller is rounding
+ROUNDING = 1e-9  # of outputs alike by the same input: what symmetry makes zero comes out at 1e-11 and less
 
 
 @styled
@@ -41,7 +42,7 @@ def bode(data: Several, inputs: Names = None, outputs: Names = None) -> Figure:
         Channels (``drive:1``) and groups (``drive``) to show; by itself all.
     """
     results = _named(data)
-    pairs = _pairs(results, inputs, outputs)
+    pairs, zero = _moved(results, _pairs(results, inputs, outputs))
     strokes = [name for name in results if any(_there(results[name], *pair) for pair in pairs)]
     fig = figure(PAGE, 5.0)
     size, phase = fig.subplots(2, 1, sharex=True, height_ratios=(3, 2))
@@ -57,7 +58,7 @@ def bode(data: Several, inputs: Names = None, outputs: Names = None) -> Figure:
         phase.plot(f, _angles(values), **kind)
     size.set_yscale("log")
     title = " by ".join(pairs[0]) if len(pairs) == 1 else "Response of outputs to inputs"
-    size.set_title(title)
+    size.set_title(title + (f", without {zero} that are zero but for rounding" if zero else ""))
     size.set_ylabel(_unit_words(results, pairs))
     phase.set_ylabel("phase [deg]")
     phase.set_ylim(-185, 185)
@@ -162,12 +163,31 @@ def _pairs(results: Mapping[str, xr.Dataset], inputs: Names, outputs: Names) -> 
         found |= dict.fromkeys((o, i) for o in out for i in into)
     if not found:
         raise InputError("are in none of the results", key="outputs, inputs", value=f"{outputs}, {inputs}")
-    if len(found) > MOST:
+    return list(found)
+
+
+def _moved(results: Mapping[str, xr.Dataset], pairs: list[tuple[str, str]]) -> tuple[list[tuple[str, str]], int]:
+    """Pairs that are more than rounding beside outputs alike by the same input, and how many are not."""
+    size = {pair: max(_largest(data, *pair) for data in results.values()) for pair in pairs}
+    alike = {(output, by): (_kind(results, output), by) for output, by in pairs}
+    most = {of: max(size[pair] for pair in pairs if alike[pair] == of) for of in alike.values()}
+    kept = [pair for pair in pairs if not size[pair] < ROUNDING * most[alike[pair]]]
+    if len(kept) > MOST:
         raise InputError(
-            f"are {len(found)} pairs of channels", key="outputs, inputs", allowed=f"{MOST} curves in a figure",
+            f"are {len(kept)} pairs of channels", key="outputs, inputs", allowed=f"{MOST} curves in a figure",
             next_step='Choose some, for example outputs="tool:z", inputs="wrench"',
         )  # fmt: skip
-    return list(found)
+    return kept, len(pairs) - len(kept)
+
+
+def _largest(data: xr.Dataset, output: str, input: str) -> float:
+    return float(np.abs(_curve(data, output, input)[1]).max(initial=0.0)) if _there(data, output, input) else 0.0
+
+
+def _kind(results: Mapping[str, xr.Dataset], output: str) -> str:
+    """Unit of an output where a turn by one radian counts as a metre, and a moment of 1 N m as 1 N."""
+    found = (data.output_units.sel(output=output).item() for data in results.values() if output in data.output)
+    return str(next(found, "")).replace("rad", "m").replace("N m", "N")
 
 
 def _some(given: Names, among: Sequence[str], key: str, must: bool) -> Iterator[str]:
