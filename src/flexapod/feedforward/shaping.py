@@ -152,6 +152,11 @@ def shape(
     for key, value, usual in (("out", out, None), ("pose", pose, "path")):
         if value is not usual and not (isinstance(value, str) and value == usual):
             raise InputError("is for studies", key=key, value=value, next_step="Give the whole study, not its motion")
+    return _delayed(subject, shaper(kind, *_frequencies(modes)), np.ones(6, dtype=bool), 1.0)
+
+
+def _frequencies(modes: Modes) -> tuple[Array, Array]:
+    """Frequencies [Hz] and damping ratios of modes that are named by them."""
     given = [] if isinstance(modes, int) else [_frequency(mode) for mode in _named(modes)]
     if not given or any(mode is None for mode in given):
         raise InputError(
@@ -162,7 +167,7 @@ def shape(
             next_step="Give the whole study in place of its motion",
         )
     frequency, ratio = np.array(given, dtype=float).T
-    return _delayed(subject, shaper(kind, frequency, ratio), np.ones(6, dtype=bool), 1.0)
+    return frequency, ratio
 
 
 def shaping(
@@ -171,7 +176,6 @@ def shaping(
     """As `shape` of a study, with what it brings."""
     if out is not None:
         check_out(study, out)
-    shaper(kind, 1.0)  # refuses an unknown kind
     for mode in _named(modes):
         _frequency(mode)
     check_path(study)
