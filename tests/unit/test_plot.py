@@ -1,6 +1,7 @@
 """Figures: labelled with units, true to the data, drawn in any state of the user's matplotlib."""
 
 import re
+from collections import Counter
 from itertools import pairwise
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.axis import Axis
 from matplotlib.colors import to_hex, to_rgb, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.image import imread
@@ -18,6 +20,7 @@ from flexapod import plot
 from flexapod.errors import InputError
 from flexapod.model import load, preset
 from flexapod.page.charts import charts
+from flexapod.plot import style
 from flexapod.plot.narrow import narrowed
 from flexapod.plot.style import figure as page_figure
 from flexapod.plot.style import ink
@@ -184,6 +187,19 @@ def test_files_are_replaced_whole(robot, tmp_path):
     plot.save(plot.com_path(robot), tmp_path / "new" / "path")
     assert svg.read_bytes() == first  # the same picture is the same file
     assert sorted(p.name for p in (tmp_path / "new").iterdir()) == ["path.png", "path.svg"]
+
+
+def test_files_are_what_matplotlib_draws_with_its_ticks_found_once(robot, tmp_path, monkeypatch):
+    """The other side is matplotlib's own drawing, layout and all; ticks: two sizes of a panel, two files."""
+    found, find = [], Axis._update_ticks
+    monkeypatch.setattr(Axis, "_update_ticks", lambda axis: found.append(axis) or find(axis))
+    png, _ = plot.save(plot.actuator_forces(robot), tmp_path / "ours")
+    most = max(Counter(map(id, found)).values())
+    assert most <= 4
+    with matplotlib.rc_context(style._RC):
+        plot.actuator_forces(robot).savefig(tmp_path / "theirs.png", dpi=200)
+    assert max(Counter(map(id, found)).values()) > 2 * most
+    assert np.array_equal(imread(png), imread(tmp_path / "theirs.png"))
 
 
 def test_formats_and_their_refusal(robot, tmp_path):

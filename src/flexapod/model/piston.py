@@ -280,7 +280,7 @@ class Piston(Table):
     @property
     def least_EI(self) -> float:
         """Least bending stiffness of its sections, in any direction [N m^2]."""
-        return min(min(step.EI) for step in self.steps_or_one)
+        return min((min(step.EI) for step in self.steps), default=self.EI)
 
     @property
     def mass(self) -> float:

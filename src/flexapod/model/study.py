@@ -336,6 +336,8 @@ def override(
         "friction": friction,
     }
     changes = {name: value for name, value in given.items() if value is not None}
+    if not changes and axial_modes is None:
+        return study  # the same, of which much is known already
     _refuse_unused(fidelity or study.simulation.fidelity, changes, axial_modes)
     if "step" in changes and "tolerance" not in changes:
         changes["tolerance"] = None

@@ -72,23 +72,20 @@ def store(figure: Figure, title: str, stem: Path, formats: Sequence[str] = ("png
     from flexapod.report.interactive import interactive
 
     files = plot.save(figure, stem, formats=formats)
-    png = next((path for path in files if path.suffix == ".png"), None)
-    if png is not None:
-        picture = _picture(png)
-    else:
+    if "png" not in formats:
         with scratch() as folder:
-            picture = _picture(*plot.save(figure, folder / stem.name, formats=("png",)))
-    return Drawn(stem.name, title, picture, interactive(figure), files)
+            plot.save(figure, folder / stem.name, formats=("png",))
+    return Drawn(stem.name, title, _picture(figure), interactive(figure), files)
 
 
-def _picture(png: Path) -> bytes:
-    """A drawing in 128 colours: a third of its size, and no difference to the eye."""
+def _picture(figure: Figure) -> bytes:
+    """The drawing of a figure's PNG file in 128 colours: a third of its size, and no difference to the eye."""
+    import numpy as np
     from PIL import Image
-    from PIL.PngImagePlugin import PngImageFile  # `Image.open` would load the readers of five other formats
 
     made = BytesIO()
-    with PngImageFile(png) as image:
-        few = image.convert("RGB").quantize(128, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    drawn = Image.fromarray(np.asarray(figure.canvas.buffer_rgba()))  # type: ignore[attr-defined]  # of Agg: as last drawn
+    few = drawn.convert("RGB").quantize(128, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
     few.save(made, "PNG", compress_level=FAST)
     return made.getvalue()
 

@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 KEPT = 16  # of the last studies, so that their results need not be read as text again
 _log = logging.getLogger("flexapod")
 _known: OrderedDict[str, model.Study | model.ActuatorStudy] = OrderedDict()
+_latest: list[tuple[model.Study | model.ActuatorStudy, str]] = []  # the last study of a result, and its hash
 
 
 def attributes(study: model.Study | model.ActuatorStudy, warnings: Iterable[str] = ()) -> dict[str, object]:
     """Attributes that every Dataset of a study carries; warnings as lines of text."""
-    content = study.model_dump_json(exclude={"source_text", "path", "notes"})  # with the tables that the text names
-    found, digest = list(dict.fromkeys(warnings)), hashlib.sha256(content.encode()).hexdigest()[:16]
+    found, digest = list(dict.fromkeys(warnings)), _digest(study)
     _remember(digest, study)
     return {
         "title": "flexapod: single actuator" if isinstance(study, model.ActuatorStudy) else "flexapod: parallel robot",
@@ -34,6 +34,17 @@ def attributes(study: model.Study | model.ActuatorStudy, warnings: Iterable[str]
         "study_hash": digest,
         "warnings": "\n".join(found),
     }
+
+
+def _digest(study: model.Study | model.ActuatorStudy) -> str:
+    """Hash of what a study says, tables included; known of the one that it was asked of last."""
+    for known, digest in _latest:
+        if known is study:
+            return digest
+    content = study.model_dump_json(exclude={"source_text", "path", "notes"})  # with the tables that the text names
+    digest = hashlib.sha256(content.encode()).hexdigest()[:16]
+    _latest[:] = [(study, digest)]
+    return digest
 
 
 def _remember(digest: str, study: model.Study | model.ActuatorStudy) -> None:

@@ -1,7 +1,5 @@
 """A table of a study file: read by the fields of its class, kept as it was written, written back."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -41,17 +39,17 @@ class Table(Frozen):
     untold: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
-    def from_table(cls, section: Section, among: tuple[str, ...] = ()) -> Self:
+    def from_table(cls, section: "Section", among: tuple[str, ...] = ()) -> Self:
         """What a table says; `among`: dimensions that count for numbers which may be of several."""
         return section.read(cls, among=cls.measuring(section, among))
 
     @classmethod
-    def measuring(cls, section: Section, among: tuple[str, ...]) -> tuple[str, ...]:
+    def measuring(cls, section: "Section", among: tuple[str, ...]) -> tuple[str, ...]:
         """Dimensions that count in this table for numbers which may be of several."""
         return among
 
     @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
+    def resolved(cls, section: "Section") -> Mapping[str, object]:
         """Fields that are not read key by key; asked once the keys are known to be right."""
         return {}
 

@@ -66,7 +66,7 @@ def arrow_solve(system: System, m: RestMatrices, r: Array, r_payload: Array, g: 
     bases = leg_bases(system, m)
     A = reduced(system, bases, m)
     groups = [_eliminated(system, b, A.B[k], A.C[k], m, r, g, gap) for k, b in enumerate(bases)]
-    r_border = np.pad(r_payload, ((0, 0), (0, system.shared.size)))[:, system.border]
+    r_border = np.concatenate([r_payload, np.zeros((len(r), system.shared.size))], axis=1)[:, system.border]
     y, forces = _border(groups, A.S, r_border, gap, open_forces=system.open)
     dq, dlam, balance, dy = np.zeros_like(r), np.zeros_like(g), r.copy(), np.zeros((len(r), m.P.shape[-1]))
     dy[:, system.hub_free] = y[:, : system.hub_free.size]
