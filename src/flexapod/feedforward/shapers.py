@@ -109,24 +109,19 @@ def _of(kind: str, frequency: float, ratio: float) -> Shaper:
     return Shaper(times=np.array(places) / (frequency * damped), amplitudes=amplitudes)
 
 
-def insensitivity(kind: str, below: float = TOLERATED) -> float:
-    """Width over the frequency of the band around it in which no more is left, undamped, Eq. (T22.11)."""
+def insensitivity(kind: str) -> float:
+    """Width over the frequency of the band around it in which no more than `TOLERATED` is left, undamped, (T22.11)."""
     made = shaper(kind, 1.0)
-    ends = [_edge(made, way, below) for way in (1.0, -1.0)]
-    return ends[0] + ends[1]
+    return sum(_edge(made, way) for way in (1.0, -1.0))
 
 
-def _edge(made: Shaper, way: float, below: float) -> float:
-    """How far from 1 Hz on one side the vibration first rises above a level."""
+def _edge(made: Shaper, way: float) -> float:
+    """How far from 1 Hz on one side the vibration first rises above what is tolerated."""
     from scipy.optimize import brentq
 
+    def over(step: ArrayLike) -> Array:
+        return made.left(1.0 + way * np.asarray(step)) - TOLERATED - 1e-9  # the hump in the middle touches it
+
     steps = np.linspace(0.0, WIDE if way > 0 else 1.0, 4001)
-    over = np.asarray(made.left(1.0 + way * steps) > below + 1e-9)  # the hump in the middle touches it
-    if not over.any():
-        return float(steps[-1])
-    k = int(np.argmax(over))
-    if k == 0:
-        return 0.0
-    low, high = float(steps[k - 1]), float(steps[k])
-    found = brentq(lambda x: float(made.left(1.0 + way * x)) - below - 1e-9, low, high)
-    return float(found)  # type: ignore[arg-type]
+    k = int(np.argmax(over(steps) > 0))
+    return float(brentq(lambda x: float(over(x)), steps[k - 1], steps[k]))  # type: ignore[arg-type]
