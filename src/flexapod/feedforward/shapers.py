@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.arrays import Array
-from flexapod.errors import InputError, closest
+from flexapod.errors import InputError, check_known
 
-__all__ = ["KINDS", "Shaper", "check_kind", "insensitivity", "shaper"]
+__all__ = ["KINDS", "Shaper", "insensitivity", "shaper"]
 
 TOLERATED = 0.05  # vibration left, over that of one impulse, which EI and 2HEI allow at the frequency they are made for
 WIDE = 4.0  # times that frequency: how far insensitivity is looked for
@@ -73,14 +73,6 @@ def _two_humps(K: float) -> tuple[list[float], list[float]]:
 KINDS = {"zv": _zv, "mzv": _mzv, "zvd": _zvd, "ei": _ei, "2hei": _two_humps}
 
 
-def check_kind(kind: object) -> None:
-    """Refuse a kind of impulses that is not known."""
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise InputError(
-            "is not known", key="kind", value=kind, allowed=", ".join(KINDS), next_step=closest(str(kind), KINDS)
-        )
-
-
 def shaper(kind: str, frequency: ArrayLike, ratio: ArrayLike = 0.0) -> Shaper:
     """The impulses of a kind for modes of these frequencies [Hz] and damping ratios, one after the other.
 
@@ -89,7 +81,7 @@ def shaper(kind: str, frequency: ArrayLike, ratio: ArrayLike = 0.0) -> Shaper:
     InputError
         An unknown kind, no frequency, or a mode that does not oscillate.
     """
-    check_kind(kind)
+    check_known(kind, KINDS, "kind")
     modes = np.broadcast_arrays(np.atleast_1d(np.asarray(frequency, dtype=float)), np.asarray(ratio, dtype=float))
     for f, z in zip(*modes, strict=True):
         if not (np.isfinite(f) and f > 0 and 0 <= z < 1):
