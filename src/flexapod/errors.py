@@ -6,7 +6,16 @@ import difflib
 from collections.abc import Iterable
 from pathlib import Path
 
-__all__ = ["ComputationError", "FlexapodError", "InputError", "Malformed", "closest", "names_of", "nearest"]
+__all__ = [
+    "ComputationError",
+    "FlexapodError",
+    "InputError",
+    "Malformed",
+    "check_known",
+    "closest",
+    "names_of",
+    "nearest",
+]
 
 
 class FlexapodError(Exception):
@@ -152,6 +161,13 @@ def nearest(word: str, allowed: Iterable[str]) -> str | None:
     """The allowed word that a mistyped one most resembles, or None."""
     found = difflib.get_close_matches(word, list(allowed), n=1, cutoff=0.6)
     return found[0] if found else None
+
+
+def check_known(value: object, among: Iterable[str], key: str, what: str = "is not known") -> None:
+    """Raise InputError of a value that is none of some words, with the nearest of them."""
+    words = list(among)
+    if not isinstance(value, str) or value not in words:
+        raise InputError(what, key=key, value=value, allowed=", ".join(words), next_step=closest(str(value), words))
 
 
 def names_of(given: object, key: str) -> list[str]:

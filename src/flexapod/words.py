@@ -80,15 +80,15 @@ def rounded_up(value: float) -> float:
     return float(next((k * power for k in (1, 2, 5) if k * power >= value), 10 * power))
 
 
-def along_axes(values: ArrayLike, digits: int = 3, *, signed: bool = False) -> str:
+def along_axes(values: ArrayLike, *, signed: bool = False) -> str:
     """Lengths [m] along x, y, z in words, in a unit each; what is nothing has none: "x 1.2 µm, y 0, z 19.3 µm".
 
     With signs on request, and then without the axes along which there is nothing.
     """
     shown = [(axis, float(value)) for axis, value in zip("xyz", np.asarray(values, dtype=float).tolist(), strict=False)]
     if signed:
-        return ", ".join(f"{axis} {'+' if v > 0 else ''}{text(v, 'm', digits)}" for axis, v in shown if v) or "0"
-    return ", ".join(f"{axis} {text(value, 'm', digits) if value else '0'}" for axis, value in shown)
+        return ", ".join(f"{axis} {'+' if v > 0 else ''}{text(v, 'm')}" for axis, v in shown if v) or "0"
+    return ", ".join(f"{axis} {text(value, 'm') if value else '0'}" for axis, value in shown)
 
 
 def number(value: float, digits: int = 3) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Sequence
 
-from flexapod.errors import InputError, closest
+from flexapod.errors import InputError, check_known, closest
 from flexapod.model import AXES
 from flexapod.surveys.workspace.grid import Range
 from flexapod.units import to_si
@@ -132,10 +132,7 @@ def _numbers(option: str, text: str, allowed: str) -> list[float]:
 
 
 def _check_name(option: str, name: str) -> None:
-    if name not in AXES:
-        raise InputError(
-            "is not a coordinate", key=option, value=name, allowed=", ".join(AXES), next_step=closest(name, AXES)
-        )
+    check_known(name, AXES, option, "is not a coordinate")
 
 
 def _si(option: str, name: str, text: str) -> float:

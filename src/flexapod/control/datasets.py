@@ -32,15 +32,18 @@ __all__ = [
     "in_parts",
     "locus_dataset",
     "margins_dataset",
+    "moved",
     "per",
     "response_dataset",
     "source_dataset",
     "system_dataset",
+    "units_in",
     "vibration_dataset",
 ]
 
 Complex = NDArray[np.complex128]
 PARTS = ["real", "imaginary"]
+ROUNDING = 1e-9  # of the largest response of its kind: what is no more is zero
 RESPONSE = ("frequency_response", "response of outputs to inputs", "output_units / input_units")
 
 
@@ -70,6 +73,24 @@ def per(output: str, input: str) -> str:
     if output == input:
         return "1"
     return f"{output}/({input})" if " " in input or "/" in input else output if input == "1" else f"{output}/{input}"
+
+
+def units_in(data: xr.Dataset, dim: str) -> dict[str, str]:
+    """Units of channels along a dimension, `input` or `output`, by name."""
+    return dict(zip(data[dim].values.tolist(), data[f"{dim}_units"].values.tolist(), strict=True))
+
+
+def moved(sizes: Mapping[tuple[str, str], float], units: Mapping[str, str]) -> list[tuple[str, str]]:
+    """Pairs of output and input whose size is more than rounding beside outputs alike by the same input.
+
+    `units` of the outputs: alike are those of one, where a radian counts as a metre, and 1 N m as 1 N. What symmetry
+    makes zero comes out at 1e-11 and less.
+    """
+    kind = {output: units[output].replace("rad", "m").replace("N m", "N") for output, _ in sizes}
+    most: dict[tuple[str, str], float] = {}
+    for (output, by), size in sizes.items():
+        most[kind[output], by] = max(size, most.get((kind[output], by), 0.0))
+    return [(output, by) for (output, by), size in sizes.items() if not size <= ROUNDING * most[kind[output], by]]
 
 
 def channel_labels(system: Channels, *dims: str) -> dict[str, tuple[str, list[str]]]:

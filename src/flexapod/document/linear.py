@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.control.datasets import complex_of, per
+from flexapod.control.datasets import complex_of, moved, per, units_in
 from flexapod.document.parts import Item, TextTable
 from flexapod.words import column, number, sentence
 
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 ROWS = 42  # of a table on a terminal
-SEEN = 1e-9  # of the largest response of the same units: less is rounding
 GROWS = 1e-9  # damping ratio below minus which a pole grows
 
 
@@ -26,22 +26,18 @@ def frf_items(data: Dataset, pose: str | None, drives: str) -> Iterator[Item]:
     yield f"{_where(pose, drives)}, {number(f[0])} to {number(f[-1])} Hz, {len(f)} frequencies."
     yield ""
     size = np.abs(complex_of(data.frequency_response).transpose("output", "input", "frequency").values)
-    rows, nothing = [], 0
-    for i, output in enumerate(data.output.values):
-        for j, input in enumerate(data.input.values):
-            alike = size[data.output_units.values == data.output_units.values[i]]
-            alike = alike[:, data.input_units.values == data.input_units.values[j]]
-            if size[i, j].max() <= SEEN * alike.max():
-                nothing += 1
-                continue
-            at = int(size[i, j].argmax())
-            unit = per(data.output_units.values[i], data.input_units.values[j])
-            rows.append((output, input, f"{size[i, j, 0]:.4g}", f"{size[i, j, at]:.4g}", f"{f[at]:.4g}", unit))
+    out, into = (units_in(data, dim) for dim in ("output", "input"))
+    curves = dict(zip(product(out, into), size.reshape(-1, len(f)), strict=True))
+    rows = []
+    for output, input in moved({pair: float(curve.max()) for pair, curve in curves.items()}, out):
+        curve, unit = curves[output, input], per(out[output], into[input])
+        at = int(curve.argmax())
+        rows.append((output, input, f"{curve[0]:.4g}", f"{curve[at]:.4g}", f"{f[at]:.4g}", unit))
     head = ["output", "input", f"at {number(f[0])} Hz", "largest", "at [Hz]", "unit"]
     yield TextTable(head, rows[:ROWS], left=(0, 1, 5))
     if len(rows) > ROWS:
         yield f"The first {ROWS} of {len(rows)} responses; --out DIR or --json has all."
-    if nothing:
+    if nothing := len(curves) - len(rows):
         yield sentence(f"{nothing} more are 0 but for rounding")
 
 

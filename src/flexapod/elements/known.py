@@ -54,17 +54,16 @@ def slots_of(kind: type[Physics], legs: Sequence[Leg]) -> tuple[Slot, ...]:
     return tuple(Slot(kind, number) for number in range(1, most + 1))
 
 
-def refuse_tables(legs: Sequence[Leg], reader: str, *, known: Sequence[type[Element]] = ()) -> None:
-    """Raise InputError if legs have elements with tables of their own that some reader of legs does not know."""
+def refuse_tables(legs: Sequence[Leg], reader: str) -> None:
+    """Raise InputError if legs have elements with tables of their own: readers of legs by hand do not know them."""
     for leg in legs:
         for element in leg.elements:
-            if type(element) not in known:
-                raise InputError(
-                    f"is not known to {reader}",
-                    key=f"leg.{element.at}",
-                    allowed="legs without it",
-                    next_step=f"Leave [leg.{element.at}] out for this",
-                )
+            raise InputError(
+                f"is not known to {reader}",
+                key=f"leg.{element.at}",
+                allowed="legs without it",
+                next_step=f"Leave [leg.{element.at}] out for this",
+            )
 
 
 def read_elements(section: Section, own: Collection[str]) -> tuple[Element, ...]:

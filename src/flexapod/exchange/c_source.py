@@ -15,7 +15,7 @@ from flexapod.integration import GeneralizedAlpha
 from flexapod.solve.kernel import FOR_LOOPS, Equations, text_of_one_unit
 from flexapod.solve.time import native
 from flexapod.solve.time.pieces import NODES
-from flexapod.solve.time.recording import record_shapes
+from flexapod.solve.time.recording import record_places
 from flexapod.symbolic.compiler import PRELUDE, STRAIGHT
 
 __all__ = ["FLAGS", "c", "texts"]
@@ -119,8 +119,7 @@ def _names(name: str, channels: Iterable[Channel]) -> str:
 
 def _constants(found: Marched) -> Mapping[str, int]:
     system, firsts = found.march.system, {x.name: x.first for x in (*found.inputs, *found.outputs)}
-    ends = np.cumsum([0, *(int(np.prod(x)) for x in record_shapes(system).values())])
-    at = dict(zip(record_shapes(system), ends.tolist(), strict=False))
+    at = record_places(system)
     used = found.matrix != 0
     tool, quaternion, velocity = (firsts.get(name, 0) for name in list(OF_PAYLOAD)[1:])
     return {
@@ -128,7 +127,7 @@ def _constants(found: Marched) -> Mapping[str, int]:
         "PORT_COUNT": system.ports.size, "BRISTLE_COUNT": system.kernel.shapes.bristles,
         "PIECES": len(found.series), "TERMS": NODES, "COMMANDED": int(found.commanded), "PARTS": int(used.sum()),
         "FIRST_FORCE": firsts["control_input"], "FIRST_WRENCH": firsts.get("wrench", 0),
-        "POSE_AT": at["pose"], "TURN_AT": at["v"] + system.size - 3,
+        "POSE_AT": at["pose"].start, "TURN_AT": at["v"].stop - 3,
         "TOOL_AT": tool, "QUATERNION_AT": quaternion, "VELOCITY_AT": velocity,
     }  # fmt: skip
 

@@ -13,12 +13,12 @@ from flexapod.results.leg_results import drive_forms, leg_results
 from flexapod.results.legs import per_turn
 from flexapod.results.names import VARIABLES
 from flexapod.results.path import RigidPath
-from flexapod.results.record import Record
+from flexapod.results.record import Record, kept
 from flexapod.solve.statics.drive_forces import force_ports, push_ports
 from flexapod.solve.system import Flow
 from flexapod.solve.time.chebyshev import Series
 from flexapod.solve.time.march import first_record
-from flexapod.solve.time.recording import record_shapes, unpack
+from flexapod.solve.time.recording import record_places, unpack
 from flexapod.solve.time.robot_march import RobotMarch, prepare
 from flexapod.solve.time.tables import Law
 
@@ -166,7 +166,7 @@ def _inputs(study: model.Study, march: RobotMarch, parts: dict[str, Array], comm
 
 def _outputs(study: model.Study, march: RobotMarch, row: Array) -> tuple[Array, Array, tuple[Channel, ...]]:
     """Outputs that are linear in a row, and their names; those of the payload that are not have no part of it."""
-    system, robot, at = march.system, study.robot, _places(march)
+    system, robot, at = march.system, study.robot, record_places(march.system)
     path = RigidPath(study, np.zeros(1))
 
     def of_legs(rows: Array) -> dict[str, Array]:
@@ -174,7 +174,8 @@ def _outputs(study: model.Study, march: RobotMarch, row: Array) -> tuple[Array, 
         made = leg_results(robot, system, path, record)
         return {name: np.asarray(x() if callable(x := made[name]) else x) for name in OF_LEGS}
 
-    moved = np.concatenate([np.arange(*at[name]) for name in ("q", "lam", "drive")])
+    each = np.arange(len(row))
+    moved = np.concatenate([each[at[name]] for name in ("q", "lam", "drive")])
     rows = np.repeat(row[None], len(moved) + 2, axis=0)
     rows[:, moved] = 0.0
     rows[np.arange(len(moved)) + 1, moved] += 1.0
@@ -196,7 +197,7 @@ def _outputs(study: model.Study, march: RobotMarch, row: Array) -> tuple[Array, 
     for name, size in OF_PAYLOAD.items() if system.hub else ():
         matrix = np.zeros((size, len(row)))
         if name == "com_position":
-            matrix[np.arange(3), at["pose"][0] + np.arange(3)] = 1.0
+            matrix[np.arange(3), each[at["pose"]][:3]] = 1.0
         add(name, (size,), matrix, np.zeros(size))
     for name, values in of_legs(rows).items():
         flat = values.reshape(len(rows), -1)
@@ -205,32 +206,20 @@ def _outputs(study: model.Study, march: RobotMarch, row: Array) -> tuple[Array, 
         offset = flat[0]
         if np.abs(rows[-1] @ matrix.T + offset - flat[-1]).max() < ROUNDING * max(1.0, np.abs(flat).max()):
             add(name, values.shape[1:], matrix, offset)
+    whole = np.concatenate([each[at["energy"]], each[at["sums"]][:3], each[at["closure"]]])
     for k, name in enumerate([*ENERGIES, "closure_residual"]):
-        place = [*(at["energy"][0] + np.arange(3)), *(at["sums"][0] + np.arange(3)), at["closure"][0]][k]
         matrix = np.zeros((1, len(row)))
-        matrix[0, place] = 1.0
+        matrix[0, whole[k]] = 1.0
         add(name, (), matrix, np.zeros(1))
     return np.concatenate(matrices), np.concatenate(offsets), tuple(channels)
 
 
-def _places(march: RobotMarch) -> dict[str, tuple[int, int]]:
-    found, end = {}, 0
-    for name, shape in record_shapes(march.system).items():
-        begin, end = end, end + int(np.prod(shape))
-        found[name] = (begin, end)
-    return found
-
-
 def _record(march: RobotMarch, rows: Array) -> Record:
     """Rows of numbers as a record."""
-    r = unpack(march.system, np.zeros(len(rows)), rows)
-    legs, n = r.q.shape[1:]
+    parts = kept(unpack(march.system, np.zeros(len(rows)), rows), ())
     return Record(
-        time=r.time, q=r.q, rate=r.v[:, : legs * n].reshape(-1, legs, n)[:, :, :0], turn=r.v[:, -3:], lam=r.lam,
-        drive=r.drive, pose=r.pose, reaction=r.reaction, energy=r.energy, sums=r.sums, closure=r.closure,
-        friction=r.friction, control=r.control, smallest_step=0.0, largest_error=0.0, force_error=None, wall_time=0.0,
-        failure=None, interrupted=False,
-    )  # fmt: skip
+        **parts, smallest_step=0.0, largest_error=0.0, force_error=None, wall_time=0.0, failure=None, interrupted=False
+    )
 
 
 def _left_out(study: model.Study, march: RobotMarch, commanded: bool) -> tuple[str, ...]:

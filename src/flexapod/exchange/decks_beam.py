@@ -17,15 +17,13 @@ ELEMENTS = {
 }
 
 
-def clamped_frequencies(
-    mesh: SolidMesh, *, E: float, density: float, poisson: float = 0.0, reduced: bool = False, count: int = 6
-) -> str:
-    """Deck for the lowest `count` frequencies of a solid whose end x = 0 is clamped at all nodes.
+def clamped_frequencies(mesh: SolidMesh, *, E: float, density: float, poisson: float, reduced: bool) -> str:
+    """Deck for the lowest six frequencies of a solid whose end x = 0 is clamped at all nodes.
 
     `mesh` is of the whole section; `E` [Pa], `density` [kg/m^3]; `reduced`: reduced integration, of quadratic elements.
     """
     deck, _ = _clamped(mesh, E, density, poisson, reduced)
-    deck.write("*STEP", "*FREQUENCY", str(count), "*END STEP")
+    deck.write("*STEP", "*FREQUENCY", "6", "*END STEP")
     return deck.text
 
 

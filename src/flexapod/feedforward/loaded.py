@@ -18,9 +18,10 @@ from flexapod.solve.batch import RestStates, residual
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.statics.arrow import arrow_solve
+from flexapod.solve.statics.locked import LockedPoses
 from flexapod.solve.system import System
 
-__all__ = ["LoadedPath", "apart", "inertia_forces"]
+__all__ = ["LoadedPath", "apart", "inertia_forces", "refuse_missing"]
 
 WORST = 1e8  # condition of what the tool does by what is commanded
 STEP = 1e-6  # m, rad: of differences, exact to its square
@@ -107,12 +108,7 @@ class LoadedPath:
         """Poses (T, 7) of the payload under one load."""
         study = self.study
         locked = locked_poses(study.robot, study.simulation, path, study.load, float(t[0]))
-        if len(locked.at) < len(t):
-            k = int(np.flatnonzero(locked.equilibria.code)[0])
-            raise ComputationError(
-                f"{locked.equilibria.one(k).reason}, at t = {t[k]:.6g} s of the path",
-                next_step="Reduce the motion or the load: there is nothing to bring onto the path there",
-            )
+        refuse_missing(locked, t)
         if not self.inertia:
             return locked.equilibria.states.pose
         states = locked.equilibria.states
@@ -120,6 +116,16 @@ class LoadedPath:
         nothing = np.zeros((len(t), *states.q.shape[1:]))
         step = arrow_solve(locked.system, locked.m, r, payload, np.zeros_like(states.lam), nothing)
         return states.moved(step.dq, step.dy).pose
+
+
+def refuse_missing(locked: LockedPoses, t: Array) -> None:
+    """Raise ComputationError if there is no equilibrium at one of the instants (T,) of a path."""
+    if len(locked.at) < len(t):
+        k = int(np.flatnonzero(locked.equilibria.code)[0])
+        raise ComputationError(
+            f"{locked.equilibria.one(k).reason}, at t = {t[k]:.6g} s of the path",
+            next_step="Reduce the motion or the load",
+        )
 
 
 def inertia_forces(system: System, robot: Robot, states: RestStates, path: Poses, wrench: Array) -> tuple[Array, Array]:

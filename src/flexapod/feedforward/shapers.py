@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.arrays import Array
-from flexapod.errors import InputError, closest
+from flexapod.errors import InputError, check_known
 
-__all__ = ["KINDS", "Shaper", "check_kind", "insensitivity", "shaper"]
+__all__ = ["KINDS", "Shaper", "insensitivity", "shaper"]
 
 TOLERATED = 0.05  # vibration left, over that of one impulse, which EI and 2HEI allow at the frequency they are made for
 WIDE = 4.0  # times that frequency: how far insensitivity is looked for
@@ -73,14 +73,6 @@ def _two_humps(K: float) -> tuple[list[float], list[float]]:
 KINDS = {"zv": _zv, "mzv": _mzv, "zvd": _zvd, "ei": _ei, "2hei": _two_humps}
 
 
-def check_kind(kind: object) -> None:
-    """Refuse a kind of impulses that is not known."""
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise InputError(
-            "is not known", key="kind", value=kind, allowed=", ".join(KINDS), next_step=closest(str(kind), KINDS)
-        )
-
-
 def shaper(kind: str, frequency: ArrayLike, ratio: ArrayLike = 0.0) -> Shaper:
     """The impulses of a kind for modes of these frequencies [Hz] and damping ratios, one after the other.
 
@@ -89,7 +81,7 @@ def shaper(kind: str, frequency: ArrayLike, ratio: ArrayLike = 0.0) -> Shaper:
     InputError
         An unknown kind, no frequency, or a mode that does not oscillate.
     """
-    check_kind(kind)
+    check_known(kind, KINDS, "kind")
     modes = np.broadcast_arrays(np.atleast_1d(np.asarray(frequency, dtype=float)), np.asarray(ratio, dtype=float))
     for f, z in zip(*modes, strict=True):
         if not (np.isfinite(f) and f > 0 and 0 <= z < 1):
@@ -109,24 +101,19 @@ def _of(kind: str, frequency: float, ratio: float) -> Shaper:
     return Shaper(times=np.array(places) / (frequency * damped), amplitudes=amplitudes)
 
 
-def insensitivity(kind: str, below: float = TOLERATED) -> float:
-    """Width over the frequency of the band around it in which no more is left, undamped, Eq. (T22.11)."""
+def insensitivity(kind: str) -> float:
+    """Width over the frequency of the band around it in which no more than `TOLERATED` is left, undamped, (T22.11)."""
     made = shaper(kind, 1.0)
-    ends = [_edge(made, way, below) for way in (1.0, -1.0)]
-    return ends[0] + ends[1]
+    return sum(_edge(made, way) for way in (1.0, -1.0))
 
 
-def _edge(made: Shaper, way: float, below: float) -> float:
-    """How far from 1 Hz on one side the vibration first rises above a level."""
+def _edge(made: Shaper, way: float) -> float:
+    """How far from 1 Hz on one side the vibration first rises above what is tolerated."""
     from scipy.optimize import brentq
 
+    def over(step: ArrayLike) -> Array:
+        return made.left(1.0 + way * np.asarray(step)) - TOLERATED - 1e-9  # the hump in the middle touches it
+
     steps = np.linspace(0.0, WIDE if way > 0 else 1.0, 4001)
-    over = np.asarray(made.left(1.0 + way * steps) > below + 1e-9)  # the hump in the middle touches it
-    if not over.any():
-        return float(steps[-1])
-    k = int(np.argmax(over))
-    if k == 0:
-        return 0.0
-    low, high = float(steps[k - 1]), float(steps[k])
-    found = brentq(lambda x: float(made.left(1.0 + way * x)) - below - 1e-9, low, high)
-    return float(found)  # type: ignore[arg-type]
+    k = int(np.argmax(over(steps) > 0))
+    return float(brentq(lambda x: float(over(x)), steps[k - 1], steps[k]))  # type: ignore[arg-type]

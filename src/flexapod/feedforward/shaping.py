@@ -11,8 +11,8 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.arrays import Array, Mask
-from flexapod.errors import InputError
-from flexapod.feedforward.shapers import Shaper, check_kind, shaper
+from flexapod.errors import InputError, check_known
+from flexapod.feedforward.shapers import KINDS, Shaper, shaper
 from flexapod.feedforward.table import check_out, saved, tabled
 from flexapod.feedforward.vibration import PERIODS, POSES, vibration_along
 from flexapod.kinematics import Law
@@ -139,7 +139,7 @@ def shape(
     >>> print(f"{1e3 * (shaped.end_time - study.motion.end_time):.1f} ms longer")  # a period
     20.0 ms longer
     """
-    check_kind(kind)
+    check_known(kind, KINDS, "kind")
     subject = load(motion) if isinstance(motion, str | Path) else motion
     if isinstance(subject, ActuatorStudy):
         raise InputError(

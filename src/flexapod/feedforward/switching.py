@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from flexapod.arrays import Array
 from flexapod.control import StateSpace, arguments
+from flexapod.control.reduction import apart
 from flexapod.errors import ComputationError, InputError
 from flexapod.words import number, text
 
@@ -124,13 +125,10 @@ def _chain(system: StateSpace, end: Array, robust: bool) -> tuple[Array, Array, 
 
 def _rigid(A: Array, B: Array, target: Array) -> tuple[Array, Array, Array]:
     """The part of a system that does not oscillate."""
-    from scipy.linalg import schur, solve_sylvester
-
     scale = OSCILLATES * max(1.0, float(np.abs(A).max()))
-    T, Z, count = schur(A, output="real", sort=lambda re, im: abs(im) <= 1e3 * scale)  # type: ignore[call-overload]
-    X = solve_sylvester(T[:count, :count], -T[count:, count:], -T[:count, count:])
-    to = Z.T[:count] - X @ Z.T[count:]
-    return T[:count, :count], to @ B, to @ target
+    both = np.column_stack([B, target])
+    still, _ = apart(A, both, np.zeros((0, len(A))), lambda pole: abs(pole.imag) <= 1e3 * scale)
+    return still.A, still.B[:, 0], still.B[:, 1]
 
 
 def _least(A: Array, B: Array, target: Array) -> tuple[Array, int, float]:

@@ -9,8 +9,8 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.arrays import Array
-from flexapod.errors import ComputationError, InputError
-from flexapod.feedforward.loaded import inertia_forces
+from flexapod.errors import InputError
+from flexapod.feedforward.loaded import inertia_forces, refuse_missing
 from flexapod.model import Study
 from flexapod.solve.batch import RestStates
 from flexapod.solve.linear.motions import on_motions
@@ -80,9 +80,7 @@ def linear_path(study: Study, t: Array, path: kinematics.Poses | None = None) ->
     path = kinematics.poses(study.robot, study.motion, t) if path is None else path
     _refuse_loops(study)
     locked = locked_poses(study.robot, study.simulation, path, study.load)
-    if len(locked.at) < len(t):
-        k = int(np.flatnonzero(locked.equilibria.code)[0])
-        raise ComputationError(f"{locked.equilibria.one(k).reason}, at t = {t[k]:.6g} s of the path")
+    refuse_missing(locked, t)
     about = locked.shaken
     each = np.broadcast_to(np.eye(about.motions.columns.size), (len(t),) + (about.motions.columns.size,) * 2)
     flat = about.motions.flat(about.system, each)

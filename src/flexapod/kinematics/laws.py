@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flexapod.errors import InputError, closest
+from flexapod.errors import check_known
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline
@@ -128,14 +128,7 @@ def step(profile: str, tau: ArrayLike) -> Law:
     InputError
         If the profile is unknown.
     """
-    if profile not in PROFILES:
-        raise InputError(
-            "unknown profile",
-            key="profile",
-            value=profile,
-            allowed=", ".join(PROFILES),
-            next_step=closest(profile, PROFILES),
-        )
+    check_known(profile, PROFILES, "profile", "unknown profile")
     tau = np.asarray(tau, dtype=float)
     moving = (tau >= 0) & (tau < 1)
     s, s_1, s_2 = PROFILES[profile](np.clip(tau, 0.0, 1.0))

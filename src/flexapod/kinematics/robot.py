@@ -222,7 +222,7 @@ def _mobility(robot: Robot) -> Mobility:
 
 
 def inverse_kinematics(robot: Robot, path: Poses) -> LegState:
-    """Legs with two derivatives, arrays (T, n); see `kinematics.leg_state`, of legs other than UPS `mechanism`."""
+    """Legs with two derivatives, arrays (T, n); see `inverse.leg_state`, of others than UPS `mechanism.leg_state`."""
     if rigid_limbs(robot).plain:
         return inverse.state_of(_leg_map(robot), path)
     return mechanism.leg_state(rigid_limbs(robot), path)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
-from flexapod.errors import InputError, closest
+from flexapod.errors import InputError, check_known
 from flexapod.schema.base import Key, Quantity
 from flexapod.schema.table import Table
 from flexapod.words import number, text
@@ -209,14 +209,7 @@ def own_fidelity(basis: object) -> str | None:
 
 def check_fidelity(fidelity: str) -> None:
     """Refuse a fidelity that does not exist."""
-    if fidelity not in FIDELITIES:
-        raise InputError(
-            "is not known",
-            key="fidelity",
-            value=fidelity,
-            allowed=", ".join(FIDELITIES),
-            next_step=closest(fidelity, FIDELITIES),
-        )
+    check_known(fidelity, FIDELITIES, "fidelity")
 
 
 def read_simulation(section: Section | None, *, basis: str, bases: tuple[str, ...]) -> Simulation:

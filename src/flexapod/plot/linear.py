@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from flexapod.arrays import Array
 from flexapod.control.channels import Names, chosen
-from flexapod.control.datasets import complex_of, per
+from flexapod.control.datasets import complex_of, moved, per, units_in
 from flexapod.errors import InputError, names_of
 from flexapod.plot.style import LINE_STYLES, NOTE, PAGE, figure, needs, styled
 from flexapod.scene.colours import AXIS_COLORS, colors_of_legs
@@ -26,7 +26,6 @@ Several = xr.Dataset | Mapping[str, xr.Dataset]
 MOST = 12  # curves that a reader tells apart
 WIDTHS = (3.2, 1.3, 1.3)  # of lines: the second often lies upon the first
 FLOOR = 1e-12  # of the largest: what is smaller is rounding
-ROUNDING = 1e-9  # of outputs alike by the same input: what symmetry makes zero comes out at 1e-11 and less
 
 
 @styled
@@ -127,7 +126,7 @@ def cumulative(data: Several, outputs: Names = None) -> Figure:
     names = [shared[i] for i in chosen(outputs, shared, "outputs")]
     if not names:
         raise InputError("are in none of the results, or not in all", key="outputs", value=outputs)
-    unit_of = dict(zip(first.output.values.tolist(), first.output_units.values.tolist(), strict=True))
+    unit_of = units_in(first, "output")
     units = list(dict.fromkeys(unit_of[name] for name in names))
     fig = figure(PAGE, 1.2 + 2.1 * len(units))
     panels = np.atleast_1d(fig.subplots(len(units), 1, sharex=True))
@@ -172,10 +171,9 @@ def _pairs(results: Mapping[str, xr.Dataset], inputs: Names, outputs: Names) -> 
 
 def _moved(results: Mapping[str, xr.Dataset], pairs: list[tuple[str, str]]) -> tuple[list[tuple[str, str]], int]:
     """Pairs that are more than rounding beside outputs alike by the same input, and how many are not."""
-    size = {pair: max(_largest(data, *pair) for data in results.values()) for pair in pairs}
-    alike = {(output, by): (_kind(results, output), by) for output, by in pairs}
-    most = {of: max(size[pair] for pair in pairs if alike[pair] == of) for of in alike.values()}
-    kept = [pair for pair in pairs if not size[pair] < ROUNDING * most[alike[pair]]]
+    sizes = {pair: max(_largest(data, *pair) for data in results.values()) for pair in pairs}
+    units = {name: unit for data in results.values() for name, unit in units_in(data, "output").items()}
+    kept = moved(sizes, units) or pairs
     if len(kept) > MOST:
         raise InputError(
             f"are {len(kept)} pairs of channels", key="outputs, inputs", allowed=f"{MOST} curves in a figure",
@@ -186,12 +184,6 @@ def _moved(results: Mapping[str, xr.Dataset], pairs: list[tuple[str, str]]) -> t
 
 def _largest(data: xr.Dataset, output: str, input: str) -> float:
     return float(np.abs(_curve(data, output, input)[1]).max(initial=0.0)) if _there(data, output, input) else 0.0
-
-
-def _kind(results: Mapping[str, xr.Dataset], output: str) -> str:
-    """Unit of an output where a turn by one radian counts as a metre, and a moment of 1 N m as 1 N."""
-    found = (data.output_units.sel(output=output).item() for data in results.values() if output in data.output)
-    return str(next(found, "")).replace("rad", "m").replace("N m", "N")
 
 
 def _some(given: Names, among: Sequence[str], key: str, must: bool) -> Iterator[str]:

@@ -18,7 +18,6 @@ from flexapod.results.names import dataset
 from flexapod.review.checks import path_remarks
 from flexapod.runtime.threads import one_thread
 from flexapod.solve.linear.random_vibration import Source, random_vibration, sources_of
-from flexapod.solve.linear.robot import LinearRobot, linear_robot
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.modal.frequencies import count_real
 from flexapod.solve.modal.modes import the_modes
@@ -28,6 +27,8 @@ from flexapod.words import along_axes, cleared
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+    from flexapod.solve.linear.robot import LinearRobot
 
 __all__ = ["vibration", "vibration_rows", "vibration_words", "words_of"]
 
@@ -110,6 +111,8 @@ def _locked(study: Study, path: Poses) -> LockedPoses:
 
 
 def _linear(study: Study, locked: LockedPoses) -> tuple[LinearRobot, list[Source]]:
+    from flexapod.solve.linear.robot import linear_robot  # what checks do not load
+
     model = linear_robot(locked)
     return model, sources_of(study.disturbance or Disturbance(), model)
 

@@ -1,4 +1,4 @@
-"""Many poses at once: from the forms that users give to `rigid.Poses`, and back to coordinates."""
+"""Many poses at once: from the forms that users give to `kinematics.Poses`, and back to coordinates."""
 
 from __future__ import annotations
 

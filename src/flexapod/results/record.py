@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
     from flexapod.solve.time.problem import Chunk
+    from flexapod.solve.time.recording import Recording
 
 #: Called with the simulated time reached and the whole simulated time [s].
 Progress = Callable[[float, float], None]
@@ -88,7 +89,7 @@ def collect(chunks: Iterable[Chunk], rates: Sequence[int], duration: float, prog
     failure, interrupted, of_force = None, False, None
     try:
         for chunk in chunks:
-            parts.append(_kept(chunk, rates))  # whole or not at all, whenever the user interrupts
+            parts.append(kept(chunk.recording, rates))  # whole or not at all, whenever the user interrupts
             steps.append(chunk.step)
             errors.append(chunk.error)
             of_force = chunk.force_error
@@ -111,14 +112,13 @@ def collect(chunks: Iterable[Chunk], rates: Sequence[int], duration: float, prog
     )
 
 
-def _kept(chunk: Chunk, of: Sequence[int]) -> dict[str, Array]:
-    r = chunk.recording
+def kept(r: Recording, of: Sequence[int]) -> dict[str, Array]:
+    """What a `Record` has of a recording, with the rates of some coordinates of the legs."""
     legs, n = r.q.shape[1:]
     rates = r.v[:, : legs * n].reshape(len(r.time), legs, n)
-    kept = {name: getattr(r, name) for name in _KEPT}
-    kept["rate"] = rates[:, :, list(of)]
-    kept["turn"] = r.v[:, legs * n + 3 : legs * n + 6]
-    return {name: np.array(array) for name, array in kept.items()}  # copies: views would keep the whole chunk
+    parts = {name: getattr(r, name) for name in _KEPT}
+    parts |= {"rate": rates[:, :, list(of)], "turn": r.v[:, legs * n + 3 : legs * n + 6]}
+    return {name: np.array(array) for name, array in parts.items()}  # copies: views would keep the whole chunk
 
 
 def finished(made: Callable[[], Dataset], record: Record) -> Dataset:

@@ -49,8 +49,8 @@ ABANDONED = 3600.0
 """Age of a file that is being written [s] from which on its writer counts as gone, where nothing else tells."""
 
 
-def check_regular(path: str | Path, most: float = float("inf")) -> None:
-    """Refuse what is not a regular file of at most `most` bytes: a pipe or a device would never end.
+def check_regular(path: str | Path) -> None:
+    """Refuse what is not a regular file: a pipe or a device would never end.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def check_regular(path: str | Path, most: float = float("inf")) -> None:
         Its `strerror` says why in words that fit behind "cannot be read:".
     """
     try:
-        _refuse(os.stat(path), most)
+        _refuse(os.stat(path), float("inf"))
     except ValueError:
         raise _zero_byte() from None
 

@@ -32,7 +32,7 @@ def robot_system(
 ) -> System:
     """System of a robot as built, in the fidelity and shapes of ``simulation``.
 
-    ``per_loss`` [s]: viscous damping over stiffness of a spring of loss factor 1, see `losses.per_loss`.
+    ``per_loss`` [s]: viscous damping over stiffness of a spring of loss factor 1, see `loss_factor.per_loss`.
     ``at_rest``: loops that sum their errors have left none, Eq. (T23.16).
     """
     legs = kinematics.built_limbs(robot, kinematics.robot_limbs(robot))

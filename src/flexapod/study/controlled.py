@@ -197,7 +197,7 @@ def _period(controller: AnyController, sample: float | str | None) -> float:
 
 def _law(controller: AnyController, period: float, robot: model.Robot) -> StateSpace | Function:
     """What is computed at each sample."""
-    from flexapod.control import AdaptiveDamping, Controller, Function, StateSpace
+    from flexapod.control import AdaptiveDamping, Controller, Function, Scheduled, StateSpace
     from flexapod.solve.linear.channels import asked
 
     if isinstance(controller, StateSpace):
@@ -214,7 +214,7 @@ def _law(controller: AnyController, period: float, robot: model.Robot) -> StateS
             key="controller",
             value=type(controller).__name__,
             allowed="one of flexapod.control, a StateSpace, or a flexapod.control.Function",
-            next_step="Of a Scheduled: its .following(...) a path" if hasattr(controller, "following") else None,
+            next_step="Of a Scheduled: its .following(...) a path" if isinstance(controller, Scheduled) else None,
         )
     return controller
 

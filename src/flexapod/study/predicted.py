@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["Predicted", "control_words", "predicted_damping", "static_stiffness"]
 
 NONE = 1e-6  # of the stiffness without a controller
+MOST = 12  # modes
 SWINGS = 1e-6  # imaginary part over the size of a pole that oscillates
 
 
@@ -37,7 +38,7 @@ class Predicted:
     growing: int
 
 
-def predicted_damping(study: model.Study, count: int = 12) -> Predicted | None:
+def predicted_damping(study: model.Study) -> Predicted | None:
     """Damping of the slowest modes at home, without and with the controller of the study; None without one.
 
     Modes faster than half the samples are left out: between samples they look slower.
@@ -53,7 +54,7 @@ def predicted_damping(study: model.Study, count: int = 12) -> Predicted | None:
     loop = plant.close(law, sample=sampled.period, delay=sampled.delay_samples * sampled.period)
     before, after = plant.damp(), loop.damp()
     s, z = _pole(before), _pole(after)
-    first = np.flatnonzero((np.imag(s) > SWINGS * np.abs(s)) & (np.imag(s) < np.pi / sampled.period))[:count]
+    first = np.flatnonzero((np.imag(s) > SWINGS * np.abs(s)) & (np.imag(s) < np.pi / sampled.period))[:MOST]
     later = np.flatnonzero(np.isfinite(z))
     away = np.abs(s[first][:, None] - z[later])
     rows, columns = linear_sum_assignment(away)

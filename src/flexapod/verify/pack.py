@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 
-from flexapod.errors import FlexapodError, InputError, closest
+from flexapod.errors import FlexapodError, check_known
 from flexapod.results.record import Report
 from flexapod.verify.case import Case, Check
 from flexapod.verify.cases import CASES
@@ -98,10 +98,7 @@ def verify(
 def _chosen(only: Sequence[str], slow: bool) -> list[Case]:
     names = [case.name for case in CASES]
     for name in only:
-        if name not in names:
-            raise InputError(
-                "is not a case", key="--only", value=name, allowed=", ".join(names), next_step=closest(name, names)
-            )
+        check_known(name, names, "--only", "is not a case")
     return [case for case in CASES if case.name in only or (not only and (slow or not case.slow))]
 
 

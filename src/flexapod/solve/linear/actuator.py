@@ -9,14 +9,13 @@ import numpy as np
 
 from flexapod.arrays import Array
 from flexapod.errors import ComputationError, InputError, closest, names_of
-from flexapod.mechanics.layout import COMMAND_SIZE, LOAD_SIZE, Shapes
+from flexapod.mechanics.layout import Shapes
 from flexapod.model import Actuator, Simulation
 from flexapod.solve.kernel import Function
 from flexapod.solve.linear.first_order import FirstOrder, first_order, with_mass
 from flexapod.solve.linear.states import States
-from flexapod.solve.modal.actuator_modes import functions
-from flexapod.solve.parameters import actuator_parameters
-from flexapod.solve.shapes import actuator_shapes, home, places
+from flexapod.solve.modal.actuator_modes import functions, straight
+from flexapod.solve.shapes import actuator_shapes, places
 
 __all__ = ["actuator_states"]
 
@@ -129,14 +128,8 @@ def _rows(
 
 def _matrices(actuator: Actuator, shapes: Shapes, rate: float) -> tuple[Array, Array, Array, Array]:
     """M, D, K of all coordinates about the equilibrium, and the tip's motion by them in the hub's axes (3, n)."""
-    residual, matrices, tangents = functions(shapes)
-    p, at, none = actuator_parameters(actuator, shapes)[0], places(shapes), np.zeros(0)
-    load = [np.zeros(LOAD_SIZE)] * shapes.loaded
-    (q, v), still = np.zeros((2, shapes.size)), np.zeros(shapes.size)
-    for name, value in home(actuator).items():
-        q[at[name]] = value
-    v[at["rotation"]] = rate
-    arguments = (v, still, none, np.zeros(COMMAND_SIZE), p, *load)
+    (residual, matrices, tangents), at = functions(shapes), places(shapes)
+    q, arguments, at_rest = straight(actuator, shapes, rate)
     beam = [k for k in range(shapes.size) if k not in at.values()]
     for _ in range(ITERATIONS if beam else 0):
         step = np.linalg.solve(tangents(q, *arguments)[0][np.ix_(beam, beam)], residual(q, *arguments)[0][beam])
@@ -144,13 +137,13 @@ def _matrices(actuator: Actuator, shapes: Shapes, rate: float) -> tuple[Array, A
         if np.abs(step).max() <= SETTLED * actuator.length:
             break
     K, D = tangents(q, *arguments)
-    M = matrices(q, none, p, *load)[0]
+    M = matrices(q, *at_rest)[0]
     if beam and (np.abs(q[beam]).max() > actuator.length or np.linalg.eigvals(K[np.ix_(beam, beam)]).real.min() <= 0):
         raise ComputationError(
             f"a beam of {actuator.free_length:g} m has no stable equilibrium: its own load buckles it",
             next_step="Shorten actuator.free_length, or reduce gravity or tip_mass.",
         )
-    J = np.asarray(_tip(shapes)(q, p)[0])
+    J = np.asarray(_tip(shapes)(q, at_rest[1])[0])
     turn, lift = (q[at[name]] if name in at else 0.0 for name in ("rotation", "elevation"))
     if actuator.space:
         along = np.array([np.cos(lift) * np.cos(turn), np.cos(lift) * np.sin(turn), np.sin(lift)])

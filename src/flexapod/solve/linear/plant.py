@@ -78,9 +78,7 @@ class Plant:
         return gravity_forces(self.system, self.x, self.command, self.locked.acts.wrench)
 
 
-def plant_at(
-    robot: Robot, simulation: Simulation, path: kinematics.Poses, load: Load | None = None, drives: Drives = "given"
-) -> Plant:
+def plant_at(robot: Robot, simulation: Simulation, path: kinematics.Poses, load: Load, drives: Drives) -> Plant:
     """A robot about its equilibria at P poses.
 
     Raises

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +12,13 @@ from numpy.typing import NDArray
 from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.model import Disturbance, Floor, Spectrum
-from flexapod.solve.linear.robot import Complex, LinearRobot
+
+if TYPE_CHECKING:
+    from flexapod.solve.linear.robot import LinearRobot
 
 __all__ = ["RandomVibration", "Source", "density_at", "random_vibration", "sources_of"]
+
+Complex = NDArray[np.complex128]
 
 NODES, WEIGHTS = (0.5 * x for x in np.polynomial.legendre.leggauss(4))
 PER_DECADE = 12  # panels where nothing resonates

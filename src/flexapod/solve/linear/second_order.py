@@ -49,19 +49,17 @@ class SecondOrder:
     about: Array
 
 
-def second_order(
-    plant: Plant, inputs: Sequence[PlantChannel], *, tilt: bool = True, about: Array | None = None
-) -> SecondOrder:
+def second_order(plant: Plant, inputs: Sequence[PlantChannel], *, about: Array, tilt: bool = True) -> SecondOrder:
     """The equations on motions.
 
     Parameters
     ----------
     plant : Plant
     inputs : sequence of PlantChannel
+    about : ndarray, shape (3,)
+        Point about which the floor turns, world axes.
     tilt : bool
         Whether gravity turns in the axes of a floor that turns.
-    about : ndarray, shape (3,), optional
-        Point about which the floor turns, world axes; default where the study's base motion does, or the origin.
 
     Raises
     ------
@@ -71,7 +69,7 @@ def second_order(
         Masses that no body can have.
     """
     system, motions = plant.system, plant.motions
-    P, d, about = len(plant.x), motions.columns.size, np.zeros(3) if about is None else about
+    P, d = len(plant.x), motions.columns.size
     commands = [c for c in inputs if c.group == "command"]
     turns = [c for c in inputs if c.group == "floor" and c.axis >= 3] if tilt and plant.robot.gravity.any() else []
     extra = len(commands) + len(turns)

@@ -70,15 +70,15 @@ class Descriptor:
     held: Mask
 
 
-def condensed(second: SecondOrder, k: int = 0) -> FirstOrder:
-    """One of the poses as a first-order system."""
+def condensed(second: SecondOrder) -> FirstOrder:
+    """The first of the poses as a first-order system."""
     free, d = second.free, len(second.names)
     more = np.arange(free, d)
-    own, rest, T = with_mass(second.U[k])
+    own, rest, T = with_mass(second.U[0])
     T = np.concatenate([T, np.zeros((more.size, rest.size))])
     mass = np.concatenate([own, more]).astype(np.intp), rest, T
     loops = np.concatenate([second.sums, second.lags]).astype(np.intp)
-    return first_order(second.M[k], second.D[k], second.K[k], second.F[k], mass=mass, loops=loops)
+    return first_order(second.M[0], second.D[0], second.K[0], second.F[0], mass=mass, loops=loops)
 
 
 def states_of(
@@ -86,12 +86,12 @@ def states_of(
     inputs: Sequence[PlantChannel],
     outputs: Sequence[PlantChannel],
     *,
+    about: Array,
     tilt: bool = True,
-    about: Array | None = None,
 ) -> States:
     """The linear model at the one pose of a plant.
 
-    ``tilt``, ``about``: as of `second_order`.
+    ``about``, ``tilt``: as of `second_order`.
     """
     second = second_order(plant, inputs, tilt=tilt, about=about)
     first = condensed(second)
@@ -162,7 +162,7 @@ def _turns(robot: Robot, leg: int) -> bool:
 
 
 def descriptor_of(
-    plant: Plant, inputs: Sequence[PlantChannel], outputs: Sequence[PlantChannel], about: Array | None = None
+    plant: Plant, inputs: Sequence[PlantChannel], outputs: Sequence[PlantChannel], about: Array
 ) -> Descriptor:
     """The equations in flat coordinates at the one pose of a plant; ``about``: as of `second_order`."""
     system = plant.system

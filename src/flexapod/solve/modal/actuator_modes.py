@@ -107,20 +107,28 @@ def turning_matrices(actuator: Actuator, simulation: Simulation, rate: float) ->
     """M, D, K (k, k) of the amplitudes of the beam in steady rotation, Eq. (T9.6); in space at its steady stretch."""
     shapes = actuator_shapes(actuator, simulation, rate)
     residual, matrices, tangents = functions(shapes)
+    q, arguments, at_rest = straight(actuator, shapes, rate)
+    c = columns(shapes.layout, "c")
+    for _ in range(STEPS if shapes.beam.axial.count else 0):
+        q[c] -= np.linalg.solve(tangents(q, *arguments)[0][c, c], residual(q, *arguments)[0][c])
+    M = matrices(q, *at_rest)[0]
+    K, D = tangents(q, *arguments)  # (T9.6)
+    moving = slice(len(places(shapes)), None)
+    return M[moving, moving], D[moving, moving], 0.5 * (K + K.T)[moving, moving]
+
+
+def straight(actuator: Actuator, shapes: Shapes, rate: float) -> tuple[Array, tuple[Array, ...], tuple[Array, ...]]:
+    """Coordinates of the straight beam on a hub that turns, and what else `functions` ask for: in motion, and at rest.
+
+    In motion rates, accelerations, no forces of a closure, commands, parameters and loads; at rest no rates.
+    """
     p, at, none = actuator_parameters(actuator, shapes)[0], places(shapes), np.zeros(0)
-    load = [np.zeros(LOAD_SIZE)] * shapes.loaded
     (q, v), still = np.zeros((2, shapes.size)), np.zeros(shapes.size)
     for name, value in home(actuator).items():
         q[at[name]] = value
     v[at["rotation"]] = rate
-    arguments = (v, still, none, np.zeros(COMMAND_SIZE), p, *load)
-    c = columns(shapes.layout, "c")
-    for _ in range(STEPS if shapes.beam.axial.count else 0):
-        q[c] -= np.linalg.solve(tangents(q, *arguments)[0][c, c], residual(q, *arguments)[0][c])
-    M = matrices(q, none, p, *load)[0]
-    K, D = tangents(q, *arguments)  # (T9.6)
-    moving = slice(len(at), None)
-    return M[moving, moving], D[moving, moving], 0.5 * (K + K.T)[moving, moving]
+    constant = p, *[np.zeros(LOAD_SIZE)] * shapes.loaded
+    return q, (v, still, none, np.zeros(COMMAND_SIZE), *constant), (none, *constant)
 
 
 def stretching_lag(actuator: Actuator, simulation: Simulation, rate: float) -> Array:

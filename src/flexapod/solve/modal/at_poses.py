@@ -15,7 +15,7 @@ def locked_poses(
 ) -> LockedPoses:
     """Static equilibria with the drives locked at the lengths of each of P rigid poses.
 
-    The drives' forces and the wrench of ``load`` are those of `rest.rest_load` at ``time`` [s].
+    The drives' forces and the wrench of ``load`` are those of `static_loads.rest_load` at ``time`` [s].
 
     Raises
     ------

@@ -55,7 +55,7 @@ def arrow_solve(system: System, m: RestMatrices, r: Array, r_payload: Array, g: 
     system : System
     m : RestMatrices
     r, r_payload, g : ndarray, shapes (P, legs, n), (P, 6), (P, legs, rows)
-        From `many.residual_at_rest`.
+        From `batch.residual_at_rest`.
     gap : ndarray, shape (P, legs, n)
         Of the held coordinates [m], [rad]; 0 for the others.
 

@@ -140,8 +140,8 @@ def lock(
 ) -> LockedPoses:
     """Static equilibria with the drives locked at the lengths of each of P rigid poses.
 
-    The drives' forces and the wrench of ``load`` are those of `rest.rest_load` at ``time`` [s]; ``per_loss``: as of
-    `robot_system`.
+    The drives' forces and the wrench of ``load`` are those of `static_loads.rest_load` at ``time`` [s]; ``per_loss``:
+    as of `robot_system`.
 
     Raises
     ------

@@ -1,5 +1,6 @@
 """What a time integration writes at its output instants, and what it costs."""
 
+import itertools
 import math
 from dataclasses import dataclass, fields, replace
 
@@ -8,7 +9,7 @@ import numpy as np
 from flexapod.arrays import Array
 from flexapod.solve.system import System
 
-__all__ = ["Counters", "Recording", "record_width", "unpack"]
+__all__ = ["Counters", "Recording", "record_places", "record_width", "unpack"]
 
 
 @dataclass(kw_only=True)
@@ -74,6 +75,13 @@ def record_shapes(system: System) -> dict[str, tuple[int, ...]]:
     }
 
 
+def record_places(system: System) -> dict[str, slice]:
+    """Where they stand in it."""
+    shapes = record_shapes(system)
+    ends = [0, *itertools.accumulate(map(math.prod, shapes.values()))]
+    return {name: slice(*both) for name, both in zip(shapes, itertools.pairwise(ends), strict=True)}
+
+
 def record_width(system: System) -> int:
     """Numbers in one output row."""
     return sum(map(math.prod, record_shapes(system).values()))
@@ -81,8 +89,6 @@ def record_width(system: System) -> int:
 
 def unpack(system: System, time: Array, rows: Array, control: Array | None = None) -> Recording:
     """Name the columns of output rows (T, record_width); `control`: rows of a controller's record."""
-    parts, end = {}, 0
-    for name, shape in record_shapes(system).items():
-        begin, end = end, end + math.prod(shape)
-        parts[name] = rows[:, begin:end].reshape(len(rows), *shape)
+    shapes = record_shapes(system)
+    parts = {name: rows[:, at].reshape(len(rows), *shapes[name]) for name, at in record_places(system).items()}
     return Recording(time=time, control=np.zeros((len(rows), 0)) if control is None else control, **parts)

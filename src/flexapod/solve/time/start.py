@@ -85,13 +85,13 @@ def accelerations(system: System, x: State, table: Array, wrench: Array, h: floa
     return replace(found, drive=np.where(system.enforced, own, 0.0)[:, system.ports])
 
 
-def _constraint_curvature(system: System, x: State, step: float = 1e-4) -> Array:
+def _constraint_curvature(system: System, x: State) -> Array:
     """- d(G)/dt v of the closures, (legs * rows,), by a fourth-order central difference of the exact Jacobian."""
     if not x.v.any() or not system.rows:
         return np.zeros(x.lam.size)
 
-    t, legs = step * np.array([1.0, -1.0, 2.0, -2.0]), system.by_leg(x.v)
-    payload = x.v[legs.size :]
+    step, legs = 1e-4, system.by_leg(x.v)
+    t, payload = step * np.array([1.0, -1.0, 2.0, -2.0]), x.v[legs.size :]
     here = RestStates(**{name: np.repeat(getattr(x, name)[None], 4, axis=0) for name in ("q", "pose", "lam", "drive")})
     m = matrices_at_rest(system, here.moved(t[:, None, None] * legs, t[:, None] * payload), np.zeros(6))
     rate = ((m.J @ legs[..., None])[..., 0] - m.P @ payload).reshape(4, -1)

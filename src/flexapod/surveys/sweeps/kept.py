@@ -11,7 +11,7 @@ import numpy as np
 
 from flexapod import version
 from flexapod.arrays import Array
-from flexapod.errors import InputError, closest
+from flexapod.errors import InputError, check_known
 from flexapod.model import ActuatorStudy, Study
 from flexapod.results.attributes import attributes
 from flexapod.results.causes import cause_names
@@ -92,10 +92,10 @@ def kept(keep: Keep, study: Study | ActuatorStudy, resolved: Resolved) -> Kept:
     usual = ROBOT_DEFAULTS if isinstance(study, Study) else tuple(table)
     names = keep.scalars or (() if keep.records else usual)
     for name in names:
-        _known(name, table, "keep.scalars")
+        check_known(name, table, "keep.scalars")
     whole = _records(study)
     for name in keep.records:
-        _known(name, whole, "keep.records")
+        check_known(name, whole, "keep.records")
     variables = {name: Variable(*table[name][:3]) for name in names} | {name: whole[name] for name in keep.records}
     if isinstance(study, Study):
         _refuse_other_causes(keep, names, variables, {*resolved.causes, cause_names(study.robot)})
@@ -142,11 +142,6 @@ def _refuse_other_causes(
                 allowed="points whose robots are made of the same parts",
                 next_step="Write what varies into the study file, at a value that changes nothing: heat.piston = 20",
             )
-
-
-def _known(name: str, table: Mapping[str, object], key: str) -> None:
-    if name not in table:
-        raise InputError("is not known", key=key, value=name, allowed=", ".join(table), next_step=closest(name, table))
 
 
 def _records(study: Study | ActuatorStudy) -> dict[str, Variable]:

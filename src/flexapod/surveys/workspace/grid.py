@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from flexapod import kinematics, model
 from flexapod.arrays import Array
-from flexapod.errors import InputError, closest
+from flexapod.errors import InputError, check_known
 from flexapod.model import AXES
 from flexapod.results.poses import from_home
 from flexapod.review.reach import REACHED, rigid_codes
@@ -130,10 +130,7 @@ def _check_names(given: object, key: str, example: str) -> None:
             "is not a set of coordinates by name", key=key, value=given, next_step=f"For example {example}"
         )
     for name in given:
-        if name not in AXES:
-            raise InputError(
-                "is not a coordinate", key=key, value=name, allowed=", ".join(AXES), next_step=closest(str(name), AXES)
-            )
+        check_known(name, AXES, key, "is not a coordinate")
 
 
 def _values(
