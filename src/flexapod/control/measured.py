@@ -48,8 +48,9 @@ def read_frf(path: str | Path) -> Dataset:
     ----------
     path : path
         ``.uff``, ``.unv``, ``.58``: ASCII datasets 58 whose function is a frequency response. ``.csv``: a line of
-        names, then frequency [Hz], or in the unit of its name, ``f [kHz]``, and for each response two columns, ``real`` and ``imag`` or ``magnitude`` (``[dB]``)
-        and ``phase [deg]``; names before them say which, as ``tool:z/wrench:fz real``. ``.mat``: ``frequency`` [Hz] and
+        names, then frequency [Hz], or in the unit of its name, ``f [kHz]``, and for each response two columns, ``real``
+        and ``imag`` or ``magnitude`` (``[dB]``) and ``phase [deg]``; names before them say which, as
+        ``tool:z/wrench:fz real``. ``.mat``: ``frequency`` [Hz] and
         ``frf`` (outputs, inputs, f), (outputs, f) or (f,), complex, with ``outputs``, ``inputs``, ``output_units``,
         ``input_units`` or without.
 
@@ -267,10 +268,10 @@ def _mat(content: bytes) -> list[Response]:
 
     try:
         data = loadmat(BytesIO(content))
-    except NotImplementedError:
-        raise InputError("is of MATLAB 7.3", allowed="versions 4 and 5", next_step='Save it with "-v7"') from None
     except Exception as error:  # scipy lets errors of any kind out of files that are damaged
-        raise InputError(f"cannot be read: {error}") from None
+        newer = "v7.3" in str(error)
+        words = "is of MATLAB 7.3" if newer else f"cannot be read: {error}"
+        raise InputError(words, allowed="versions 4 and 5", next_step='Save it with "-v7"' if newer else None) from None
     names = {key: next((k for k in data if k.lower() in words), None) for key, words in WORDS.items()}
     if names["frequency"] is None or names["frf"] is None:
         raise InputError("lacks a variable", allowed="frequency and frf, with outputs, inputs, or without")
