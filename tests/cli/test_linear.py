@@ -54,6 +54,8 @@ def test_poles_that_grow_are_warned_of(flexapod, study):
         (("frf", "--input", "wrenc"), "Did you mean 'wrench'?"),
         (("frf", "--from", "10Hz", "--to", "1Hz"), "0 < --from < --to"),
         (("frf", "--mat", "a.txt"), "FILE.mat"),
+        (("frf", "--to", "1e300 Hz"), "beyond every machine"),
+        (("frf", "--from", "1e-300 Hz"), "beyond every machine"),
         (("damp", "--drives", "held"), '"given", "force"'),
         (("damp", "--friction", "none"), "sliding, stuck"),
     ],

@@ -104,11 +104,15 @@ def _model(file: Path, pose: str | None, drives: str, friction: str | None, inpu
 def _frequencies(lowest: str, highest: str, points: int) -> Array:
     import numpy as np
 
-    from flexapod.units import to_si
+    from flexapod.units import DIMENSIONS, to_si
 
     low, high = (to_si(text, "frequency", key=key) for text, key in ((lowest, "--from"), (highest, "--to")))
+    least, most = DIMENSIONS["frequency"].least, DIMENSIONS["frequency"].most
     if not 0 < low < high:
         raise InputError("are no range", key="--from, --to", value=f"{lowest}, {highest}", allowed="0 < --from < --to")
+    if low < least or high > most:
+        words, allowed = "are beyond every machine", f"{least:g} to {most:g} Hz"
+        raise InputError(words, key="--from, --to", value=f"{lowest}, {highest}", allowed=allowed)
     return np.geomspace(low, high, points)
 
 
