@@ -1,6 +1,7 @@
 """`frf` and `damp` as a user types them: words, files, JSON, refusals."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +9,8 @@ from scipy.io import loadmat
 from tests.cli.conftest import SHORT
 
 import flexapod as fx
+
+MECHANISMS = Path(__file__).parents[2] / "examples" / "mechanisms"
 
 
 def test_responses_are_said_written_and_read_again(flexapod, study, folder):
@@ -64,3 +67,10 @@ def test_wrong_arguments_are_refused(flexapod, study, arguments, words):
     said = flexapod(arguments[0], study(*SHORT), *arguments[1:])
     assert said.exit_code == 2
     assert words in said.stderr.replace("\n", " ")
+
+
+def test_a_robot_whose_platform_is_fixed_has_poles_too(flexapod):
+    """It once was told that --input, which the command has not, has no meaning."""
+    said = flexapod("damp", MECHANISMS / "strut.toml", "--count", "2")
+    assert said.exit_code == 0, said.stderr
+    assert "The slowest 2 of" in said.stdout

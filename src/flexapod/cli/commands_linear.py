@@ -70,7 +70,7 @@ def frf(
         if path is not None:
             _check_file(path, key, force)
     hz = _frequencies(lowest, highest, points)
-    model = _model(file, pose, drives, friction, input, output)
+    model = _model(file, pose, drives, friction, (input, output))
     data = model.frequency_response(hz)
     files = _write(model, data, out, uff, mat, figure=not no_figures)
     items = chain(frf_items(data, pose, drives), map("Written: {}".format, files))
@@ -85,20 +85,25 @@ def damp(
     """Poles about the static equilibrium at a pose: frequencies, damping, and whether they grow."""
     from flexapod.document.linear import damp_as_dict, damp_items
 
-    data = _model(file, pose, drives, friction, "wrench", "tool").damp()
+    data = _model(file, pose, drives, friction).damp()
     tell(damp_items(data, pose, drives, count), lambda: damp_as_dict(data), json=json)
 
 
-def _model(file: Path, pose: str | None, drives: str, friction: str | None, inputs: str, outputs: str) -> LinearModel:
+def _model(
+    file: Path, pose: str | None, drives: str, friction: str | None, channels: tuple[str, str] | None = None
+) -> LinearModel:
+    """The model with these channels; without any such that every robot has."""
     from flexapod.cli.map_options import parse_pose
     from flexapod.study.linear import linearize
 
     with as_options(**OPTIONS):
         if friction not in (None, "sliding", "stuck"):
             raise InputError("is not known", key="friction", value=friction, allowed="sliding, stuck")
-        names = [[name.strip() for name in COMMA.split(text)] for text in (inputs, outputs)]
+        study = robot_study(file)
+        own = ("floor", "stroke") if study.robot.platform_fixed else ("wrench", "tool")
+        names = [[name.strip() for name in COMMA.split(text)] for text in channels or own]
         kinds: Any = {"drives": drives, "friction": friction}  # whatever was typed
-        return linearize(robot_study(file), parse_pose(pose), inputs=names[0], outputs=names[1], **kinds)
+        return linearize(study, parse_pose(pose), inputs=names[0], outputs=names[1], **kinds)
 
 
 def _frequencies(lowest: str, highest: str, points: int) -> Array:

@@ -92,6 +92,10 @@ def _written(study: model.Study, pose: PoseLike, elements: int, modes: int, titl
     robot = study.robot
     refuse_tables(robot.legs, "decks")
     _refuse_mounts(robot)
+    if robot.platform_fixed:
+        raise InputError(
+            "has a platform that is fixed: decks are of what it carries", key="robot.platform.fixed", value=True
+        )
     path = as_pose(robot, pose)
     locked = locked_poses(robot, model.Simulation(), path, study.load)
     the_equilibrium(locked)

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod.control.arguments import flag, frequencies
 from flexapod.control.state_space import StateSpace
+from flexapod.errors import InputError
 from flexapod.kinematics.rotations import matrix
 from flexapod.results.arguments import LoadLike, PoseLike, RobotLike
 from flexapod.runtime.threads import one_thread
@@ -111,6 +112,15 @@ def transmissibility(
     """
     flag(tilt, "tilt")
     found, plant = plant_of(study, pose, load, drives, friction)
+    if plant.robot.plane is not None:
+        words = "is of a robot whose floor cannot turn"
+        raise InputError(
+            words,
+            key="robot.plane",
+            value=plant.robot.plane,
+            allowed="robots in space",
+            next_step='fx.linearize(..., inputs="floor", outputs="tool") has the floor\'s translations',
+        )
     inputs, outputs = asked("floor", plant.robot, "inputs"), asked("tool", plant.robot, "outputs")
     (point, *_) = asked(f"accelerometer:{at}", plant.robot, "outputs")
     R = matrix(plant.x.pose[:, 3:])[0]
