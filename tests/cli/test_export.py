@@ -93,6 +93,8 @@ def test_options_of_formats_reach_them(flexapod, study, folder):
         assert (read["B"].shape[1], read["C"].shape[0]) == (8, 1)
     unknown = flexapod("export", file, "--format", "mat", "--inputs", "wrnch")
     assert unknown.exit_code == 2 and "--inputs" in unknown.stderr and "wrench" in unknown.stderr
+    step = flexapod("export", file, "--format", "fmu", "--step", "1")
+    assert step.exit_code == 2 and "--step = 1: has no unit" in step.stderr
     for wrong, option in ((("--format", "gltf", "--elements", 4), "--elements"), (("--step", "1ms"), "--step")):
         run = flexapod("export", file, *wrong)
         assert run.exit_code == 2 and option in run.stderr and "is not an option of" in run.stderr

@@ -73,3 +73,16 @@ def test_a_part_of_the_page_is_as_in_the_whole():
 def test_the_page_is_written(tmp_path):
     assert RUN.invoke(app, ["keys", "--markdown", str(tmp_path / "page.md")]).exit_code == 0
     assert (tmp_path / "page.md").read_text(encoding="utf-8") == markdown()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--markdown", "a.md", "--schema", "a.md"], "is that of --markdown, too"),
+        (["control", "--markdown", "a.md"], "which has all tables"),
+    ],
+)
+def test_files_have_all_tables_and_are_two(flexapod, folder, arguments, words):
+    said = flexapod("keys", *arguments)
+    assert said.exit_code == 2 and words in said.stderr
+    assert not list(folder.iterdir())

@@ -1,6 +1,7 @@
 """`frf` and `damp` as a user types them: words, files, JSON, refusals."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +9,8 @@ from scipy.io import loadmat
 from tests.cli.conftest import SHORT
 
 import flexapod as fx
+
+MECHANISMS = Path(__file__).parents[2] / "examples" / "mechanisms"
 
 
 def test_responses_are_said_written_and_read_again(flexapod, study, folder):
@@ -54,6 +57,8 @@ def test_poles_that_grow_are_warned_of(flexapod, study):
         (("frf", "--input", "wrenc"), "Did you mean 'wrench'?"),
         (("frf", "--from", "10Hz", "--to", "1Hz"), "0 < --from < --to"),
         (("frf", "--mat", "a.txt"), "FILE.mat"),
+        (("frf", "--to", "1e300 Hz"), "beyond every machine"),
+        (("frf", "--from", "1e-300 Hz"), "beyond every machine"),
         (("damp", "--drives", "held"), '"given", "force"'),
         (("damp", "--friction", "none"), "sliding, stuck"),
     ],
@@ -74,3 +79,10 @@ def test_check_says_what_a_controller_leaves_of_static_stiffness(flexapod, folde
     assert len(json.loads(flexapod("check", file, "--json").stdout)["control"]) == 1
     file.write_text(text)
     assert "control" not in json.loads(flexapod("check", file, "--json").stdout)
+
+
+def test_a_robot_whose_platform_is_fixed_has_poles_too(flexapod):
+    """It once was told that --input, which the command has not, has no meaning."""
+    said = flexapod("damp", MECHANISMS / "strut.toml", "--count", "2")
+    assert said.exit_code == 0, said.stderr
+    assert "The slowest 2 of" in said.stdout

@@ -30,6 +30,12 @@ def test_list_names_presets_examples_and_notebooks(flexapod):
     [
         (["--example", "sag"], "sag_by_hand"),
         (["--example", "delta", "--preset", "tripod"], "together"),
+        (["--example", "delta", "--ideal"], "together"),
+        (["robot.toml", "--example", "delta"], "FILE.py"),
+        (["first.ipynb", "--notebook", "first_robot"], "FILE.py"),
+        ([".", "--example", "delta"], "is a folder"),
+        (["--list", "robot.toml"], "together with --list"),
+        (["--list", "--preset", "tripod"], "together with --list"),
         ([], "NAME.toml"),
     ],
 )

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.io import savemat
 
 import flexapod as fx
 import flexapod.control as fc
@@ -82,8 +83,6 @@ def test_tables_are_read(tmp_path):
 
 
 def test_matlab_files_are_read(tmp_path):
-    from scipy.io import savemat
-
     H = np.arange(12.0).reshape(2, 1, 6) * (1 + 2j)
     named = {"outputs": np.array(["a", "b"], dtype=object), "inputs": np.array(["u"], dtype=object)}
     savemat(tmp_path / "a.mat", {"f": np.arange(6.0), "H": H, **named})
@@ -100,7 +99,7 @@ def test_matlab_files_are_read(tmp_path):
         ("a.uff", ANALYSER.replace("    58", "   58b"), "binary dataset 58"),
         ("a.uff", ANALYSER.replace("         5         4", "         5         9"), "has 4 of 9 values"),
         ("a.csv", "f,a,b,c\n1,2,3,4\n", "has 4 columns"),
-        ("a.csv", "f,a,b\n1,2,x\n", "cannot be understood"),
+        ("a.csv", "f,a,b\n1,2,x\n", "is no number"),
     ],
 )
 def test_other_files_are_refused(tmp_path, name, text, words):
@@ -112,3 +111,73 @@ def test_other_files_are_refused(tmp_path, name, text, words):
 def test_a_missing_file_is_refused(tmp_path):
     with pytest.raises(InputError, match="cannot be read"):
         fx.read_frf(tmp_path / "none.uff")
+
+
+def test_a_universal_file_that_is_cut_off_or_tells_a_wrong_count_is_refused(tmp_path):
+    """The last number was read as far as it went; room for a billion values was asked for."""
+    whole = uff(mode().frequency_response(np.arange(1.0, 9.0)))
+    for text in (whole[:-10], whole[:-30], "\n".join(whole.split("\n")[:5])):
+        (tmp_path / "a.uff").write_text(text)
+        with pytest.raises(InputError, match="ends within a dataset 58"):
+            fx.read_frf(tmp_path / "a.uff")
+    for count in (0, -1, 9, 999_999_999):
+        (tmp_path / "a.uff").write_text(whole.replace(f"{8:10d}", f"{count:10d}"))
+        with pytest.raises(InputError, match=f"has . of {count} values"):
+            fx.read_frf(tmp_path / "a.uff")
+
+
+def test_ends_of_lines_of_all_systems_are_read(tmp_path):
+    data = mode().frequency_response(np.arange(1.0, 9.0))
+    for end in ("\r\n", "\r"):
+        (tmp_path / "a.uff").write_bytes(uff(data).replace("\n", end).encode())
+        np.testing.assert_allclose(complex_values(fx.read_frf(tmp_path / "a.uff")), complex_values(data), rtol=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"", "is empty"),
+        (b"f;a/b real;a/b imag\n1,5;1;2\n", "semicolons"),
+        (b"f\ta/b real\ta/b imag\n1\t1\t2\n", "tabs"),
+        (b"f,a/b real,a/b imag\n1,1,2\n2,1\n", "line 3: has 2 cells"),
+        (b"f,a/b real,c/d imag\n1,1,2\n", "two columns of each response"),
+        (b"f,a/b mag,a/b time\n1,1,2\n", "real, imag, or magnitude"),
+        (b"f,a/b real,a/b imag\n1,inf,2\n", "infinite"),
+        (b"omega [rad/s],a/b real,a/b imag\n1,1,2\n", "is not a frequency"),
+        ("f,Größe/b real,Größe/b imag\n1,1,2\n".encode("latin-1"), "UTF-8"),
+    ],
+)
+def test_tables_of_other_kinds_are_refused(tmp_path, content, words):
+    (tmp_path / "a.csv").write_bytes(content)
+    with pytest.raises(InputError, match=words) as error:
+        fx.read_frf(tmp_path / "a.csv")
+    assert error.value.file == str(tmp_path / "a.csv")
+
+
+def test_units_of_frequencies_and_names_with_commas_count(tmp_path):
+    head = 'f [kHz],"tool:z/force:(0,0,1):z real","tool:z/force:(0,0,1):z imag"'
+    (tmp_path / "Ä b.csv").write_text(f"{head}\n2,1,-3\n", encoding="utf-8")
+    found = fx.read_frf(tmp_path / "Ä b.csv")
+    assert found.frequency.values.tolist() == [2000.0] and found.input.values.tolist() == ["force:(0,0,1):z"]
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"frequency": [1.0, 2.0], "frf": np.ones((2, 1, 2)), "outputs": np.array(["a"], dtype=object)}, "has 1 names"),
+        ({"frequency": "text", "frf": [1.0, 2.0]}, "no array of numbers"),
+        ({"frequency": [], "frf": []}, "has no frequency"),
+    ],
+)
+def test_matrices_that_do_not_fit_are_refused(tmp_path, given, words):
+    savemat(tmp_path / "a.mat", given)
+    with pytest.raises(InputError, match=words):
+        fx.read_frf(tmp_path / "a.mat")
+
+
+def test_another_version_of_matlab_is_told(tmp_path):
+    head = b"MATLAB 7.3 MAT-file".ljust(116) + b"\0" * 8 + b"\x00\x02IM"
+    (tmp_path / "a.mat").write_bytes(head + b"\x89HDF" + b"\0" * 500)
+    with pytest.raises(InputError, match=r"MATLAB 7\.3") as error:
+        fx.read_frf(tmp_path / "a.mat")
+    assert "-v7" in (error.value.next_step or "")

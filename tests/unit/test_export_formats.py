@@ -4,6 +4,7 @@ import pytest
 
 import flexapod as fx
 from flexapod.errors import InputError
+from flexapod.exchange import formats
 from flexapod.exchange.export import abaqus_deck
 from flexapod.exchange.formats import FORMATS
 
@@ -51,3 +52,13 @@ def test_single_actuators_are_refused(tmp_path):
 def test_each_format_says_how_its_file_is_named():
     for kind in FORMATS.values():
         assert all(ending in kind.named for ending in kind.endings)
+
+
+def test_what_names_other_files_is_written_last(tmp_path, monkeypatch):
+    """Stopped in the middle, a time series for ParaView once named files that were not there."""
+    order, replacing = [], formats.replacing
+    monkeypatch.setattr(formats, "replacing", lambda path: order.append(path.name) or replacing(path))
+    study = fx.preset("small-hexapod")
+    data = fx.simulate(study, fidelity="rigid", duration=0.002, output_step=0.001)
+    made = fx.export(study, "vtk", tmp_path / "a.pvd", data=data)
+    assert len(order) == 4 and order[-1] == made.path.name == "a.pvd"

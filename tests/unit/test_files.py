@@ -182,3 +182,12 @@ def test_folders_of_killed_processes_in_the_temporary_one(tmp_path, gone, monkey
         assert sorted(tmp_path.iterdir()) == sorted([*kept, folder])
         raise KeyboardInterrupt
     assert sorted(tmp_path.iterdir()) == sorted(kept)
+
+
+def test_only_files_are_replaced(tmp_path, pipe):
+    """Whoever may write to a folder of devices once got a file in place of the device."""
+    place = pipe
+    for path, words in ((place, "not a regular file"), (tmp_path, "Is a directory"), (Path("."), "Is a directory")):
+        with pytest.raises(InputError, match=words), replacing(path):
+            pytest.fail("it is written")
+    assert stat.S_ISFIFO(place.stat().st_mode)

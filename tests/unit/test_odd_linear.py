@@ -1,5 +1,7 @@
 """What a linear model, a loop about it, a simulation with a controller must not be given: refused in words, by key."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,7 @@ from flexapod import control
 from flexapod.exchange.uff import uff
 
 NAN = float("nan")
+MECHANISMS = Path(__file__).parents[2] / "examples" / "mechanisms"
 
 
 @pytest.fixture(scope="module")
@@ -63,6 +66,26 @@ def test_many_poses_of_which_none_is_in_reach(robot, pose):
     found = fx.linearize(robot, pose, inputs="drive", outputs="tool")
     assert found.sizes["pose"] == len(pose["heave"])
     assert np.isnan(found.mass.values).all()
+
+
+@pytest.mark.parametrize(
+    ("name", "call", "key"),
+    [
+        ("planar", lambda x: fx.transmissibility(x, [1.0]), "robot.plane"),
+        ("planar", lambda x: fx.linearize(x, inputs="drive", outputs="force-sensor:base", drives="force"), "outputs"),
+        ("strut", lambda x: fx.export(x, "abaqus", "a.inp"), "robot.platform.fixed"),
+    ],
+)
+def test_robots_in_a_plane_and_without_a_platform(name, call, key):
+    """Once an error of shapes, a base_motion that nobody had asked for, and an attribute of nothing."""
+    refused(lambda: call(fx.load(MECHANISMS / f"{name}.toml")), key)
+
+
+def test_what_nothing_can_move_in_is_told_by_its_drives():
+    strut = fx.model.override(fx.load(MECHANISMS / "strut.toml"), fidelity="rigid")
+    with pytest.raises(fx.InputError, match="with the drives released") as error:
+        fx.linearize(strut, inputs="drive", outputs="stroke", drives="force")
+    assert "releases" not in (error.value.next_step or "")
 
 
 @pytest.mark.parametrize(

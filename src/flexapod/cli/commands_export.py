@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.cli.failures import guarded
-from flexapod.cli.options import Force, Json, Pose, StudyFile, as_options, refuse_existing, robot_study
+from flexapod.cli.options import Force, Json, Pose, StudyFile, as_options, check_writable, refuse_existing, robot_study
 from flexapod.document.parts import Bullets
 from flexapod.document.terminal import tell
 from flexapod.errors import InputError
@@ -90,7 +90,7 @@ def export(
         "fidelity": fidelity,
         "magnify": magnify,
         "commands": commands,
-        "step": None if step is None else to_si(step, "time", key="step"),
+        "step": None if step is None else to_si(step, "time", key="--step"),
     }
     channels = {"inputs": inputs, "outputs": outputs}
     given |= {name: [x.strip() for x in COMMA.split(text)] for name, text in channels.items() if text is not None}
@@ -104,6 +104,7 @@ def export(
         if format == "abaqus":
             _check_name(path)
         refuse_existing(path, force)
+        check_writable(path.parent if kind.endings else path)
         if "title" in FORMATS[format].options:
             given["title"] = f"{file.stem}: robot with locked drives"
         found = written(study, format, path, given)

@@ -70,7 +70,7 @@ def frf(
         if path is not None:
             _check_file(path, key, force)
     hz = _frequencies(lowest, highest, points)
-    model = _model(file, pose, drives, friction, input, output)
+    model = _model(file, pose, drives, friction, (input, output))
     data = model.frequency_response(hz)
     files = _write(model, data, out, uff, mat, figure=not no_figures)
     items = chain(frf_items(data, pose, drives), map("Written: {}".format, files))
@@ -85,30 +85,39 @@ def damp(
     """Poles about the static equilibrium at a pose: frequencies, damping, and whether they grow."""
     from flexapod.document.linear import damp_as_dict, damp_items
 
-    data = _model(file, pose, drives, friction, "wrench", "tool").damp()
+    data = _model(file, pose, drives, friction).damp()
     tell(damp_items(data, pose, drives, count), lambda: damp_as_dict(data), json=json)
 
 
-def _model(file: Path, pose: str | None, drives: str, friction: str | None, inputs: str, outputs: str) -> LinearModel:
+def _model(
+    file: Path, pose: str | None, drives: str, friction: str | None, channels: tuple[str, str] | None = None
+) -> LinearModel:
+    """The model with these channels; without any such that every robot has."""
     from flexapod.cli.map_options import parse_pose
     from flexapod.study.linear import linearize
 
     with as_options(**OPTIONS):
         if friction not in (None, "sliding", "stuck"):
             raise InputError("is not known", key="friction", value=friction, allowed="sliding, stuck")
-        names = [[name.strip() for name in COMMA.split(text)] for text in (inputs, outputs)]
+        study = robot_study(file)
+        own = ("floor", "stroke") if study.robot.platform_fixed else ("wrench", "tool")
+        names = [[name.strip() for name in COMMA.split(text)] for text in channels or own]
         kinds: Any = {"drives": drives, "friction": friction}  # whatever was typed
-        return linearize(robot_study(file), parse_pose(pose), inputs=names[0], outputs=names[1], **kinds)
+        return linearize(study, parse_pose(pose), inputs=names[0], outputs=names[1], **kinds)
 
 
 def _frequencies(lowest: str, highest: str, points: int) -> Array:
     import numpy as np
 
-    from flexapod.units import to_si
+    from flexapod.units import DIMENSIONS, to_si
 
     low, high = (to_si(text, "frequency", key=key) for text, key in ((lowest, "--from"), (highest, "--to")))
+    least, most = DIMENSIONS["frequency"].least, DIMENSIONS["frequency"].most
     if not 0 < low < high:
         raise InputError("are no range", key="--from, --to", value=f"{lowest}, {highest}", allowed="0 < --from < --to")
+    if low < least or high > most:
+        words, allowed = "are beyond every machine", f"{least:g} to {most:g} Hz"
+        raise InputError(words, key="--from, --to", value=f"{lowest}, {highest}", allowed=allowed)
     return np.geomspace(low, high, points)
 
 

@@ -60,11 +60,17 @@ def new(
 ) -> None:  # fmt: skip
     """Write a commented study file to edit, or an example in Python; --list names what there is."""
     if listed:
+        told = {"NAME": name, "--preset": preset, "--from": request, "--ideal": ideal, "--example": example}
+        told |= {"--notebook": notebook, "--force": force}
+        for option, value in told.items():
+            if value:
+                raise InputError("is given together with --list", key=option, value=value, allowed="one of the two")
         return _list(json=json)
     given = {"--preset": preset, "--from": request, "--example": example, "--notebook": notebook}
     chosen = [option for option in ("--example", "--notebook") if given[option] is not None]
     if chosen:
         others = [option for option in given if given[option] is not None and option != chosen[0]]
+        others += ["--ideal"] if ideal else []
         if others:
             raise InputError(f"is given together with {others[0]}", key=chosen[0], allowed="one of the two")
         return _example(chosen[0], given[chosen[0]] or "", name, force=force, json=json)
@@ -148,6 +154,12 @@ def keys(table: Table = None, markdown: Markdown = None, schema: Schema = None, 
 
     if table is not None:
         check_table(table)
+    files = [str(path) for path in (markdown, schema) if path is not None]
+    if table is not None and files:
+        words = "is given together with a file, which has all tables"
+        raise InputError(words, key="TABLE", value=table, allowed="one of the two")
+    if len(set(files)) < len(files):
+        raise InputError("is that of --markdown, too", key="--schema", value=files[0], allowed="another file")
     from flexapod.model import page
 
     if markdown is not None:
@@ -157,8 +169,7 @@ def keys(table: Table = None, markdown: Markdown = None, schema: Schema = None, 
 
         write_text(schema, json_schema())
     found = page.listed(table)
-    files = " and ".join(str(file) for file in (markdown, schema) if file is not None)
-    written = [f"{files} written."] if files else None
+    written = [f"{' and '.join(files)} written."] if files else None
     told = (_key_chapter(item, page.HEAD, alone=table is not None) for item in found)
     tell(written or told, lambda: [asdict(item) for item in found], json=json)
 

@@ -33,7 +33,10 @@ def text(option: str, name: str) -> str:
 
 def place(option: str, name: str, given: Path | None) -> Path:
     """Where an example is written: NAME.py here, unless another place is given."""
-    return given if given is not None and given.suffix else (given or Path(name)).with_suffix(".py")
+    if given is not None and (given.is_dir() or given.suffix not in ("", ".py")):
+        words = "is a folder" if given.is_dir() else "is no name of a Python file"
+        raise InputError(words, file=given, allowed="FILE.py", next_step=f"{option} {name} alone writes {name}.py")
+    return (given or Path(name)).with_suffix(".py")
 
 
 def _title(written: str) -> str:

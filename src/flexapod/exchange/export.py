@@ -96,6 +96,10 @@ def _written(study: model.Study, pose: PoseLike, elements: int, modes: int, titl
     _check_count("modes", modes, 1, _MOST)
     if not isinstance(title, str) or len(title.splitlines()) > 1:
         raise InputError("is no line of text", key="title", value=title)
+    if robot.platform_fixed:
+        raise InputError(
+            "has a platform that is fixed: decks are of what it carries", key="robot.platform.fixed", value=True
+        )
     path = as_pose(robot, pose)
     locked = locked_poses(robot, model.Simulation(), path, study.load)
     the_equilibrium(locked)

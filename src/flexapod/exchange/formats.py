@@ -164,7 +164,7 @@ def written(study: model.Study, format: str, path: Path, given: Mapping[str, obj
     found: Content = getattr(loaded(f"flexapod.exchange.{module}"), function)(study, **named, **given)
     beside = path.parent if kind.endings else path
     places = {beside / name if name else path: content for name, content in found.files.items()}
-    for place, content in places.items():
+    for place, content in sorted(places.items(), key=lambda each: each[0] == path):  # last what names the others
         with replacing(place) as temporary:
             temporary.write_bytes(content if isinstance(content, bytes) else content.encode())
     return Exported(path=path, files=tuple(places), left_out=found.left_out, remarks=found.remarks)

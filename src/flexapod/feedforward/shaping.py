@@ -149,25 +149,8 @@ def shape(
         return shaping(subject, kind, modes=modes, pose=pose, out=out).study
     if not isinstance(subject, AxisMotion | CombinedMotion | WaypointMotion | CsvMotion):
         raise InputError("is neither a study nor a motion", key="motion", value=subject)
-    for key, value, usual in (("out", out, None), ("pose", pose, "path")):
-        if value is not usual and not (isinstance(value, str) and value == usual):
-            raise InputError("is for studies", key=key, value=value, next_step="Give the whole study, not its motion")
-    return _delayed(subject, shaper(kind, *_frequencies(modes)), np.ones(6, dtype=bool), 1.0)
-
-
-def _frequencies(modes: Modes) -> tuple[Array, Array]:
-    """Frequencies [Hz] and damping ratios of modes that are named by them."""
-    given = [] if isinstance(modes, int) else [_frequency(mode) for mode in _named(modes)]
-    if not given or any(mode is None for mode in given):
-        raise InputError(
-            "are numbers of modes, and a motion alone has none",
-            key="modes",
-            value=modes,
-            allowed="frequencies: [12.5, ...] in Hz",
-            next_step="Give the whole study in place of its motion",
-        )
-    frequency, ratio = np.array(given, dtype=float).T
-    return frequency, ratio
+    frequency, ratio = np.array(_of_motion(modes, pose, out), dtype=float).T
+    return _delayed(subject, shaper(kind, frequency, ratio), np.ones(6, dtype=bool), 1.0)
 
 
 def shaping(
@@ -201,6 +184,23 @@ def shaping(
     )  # fmt: skip
     told = replace(found, study=shaped.replace(notes=(*study.notes, found.sentence)))
     return told if out is None else replace(told, study=saved(told.study, out))
+
+
+def _of_motion(modes: Modes, pose: object, out: object) -> list[tuple[float, float] | None]:
+    """Frequencies and damping ratios for a motion alone; InputError of what needs a study."""
+    for key, value, usual in (("out", out, None), ("pose", pose, "path")):
+        if value is not usual and not (isinstance(value, str) and value == usual):
+            raise InputError("is for studies", key=key, value=value, next_step="Give the whole study, not its motion")
+    given = [] if isinstance(modes, int) else [_frequency(mode) for mode in _named(modes)]
+    if not given or any(mode is None for mode in given):
+        raise InputError(
+            "are numbers of modes, and a motion alone has none",
+            key="modes",
+            value=modes,
+            allowed="frequencies: [12.5, ...] in Hz",
+            next_step="Give the whole study in place of its motion",
+        )
+    return given
 
 
 def _frequency(mode: object) -> tuple[float, float] | None:

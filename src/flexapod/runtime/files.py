@@ -181,6 +181,8 @@ def whole(path: str | Path, *, mode: int = 0o666) -> Iterator[Path]:
     OSError
     """
     path = Path(path)
+    with suppress(FileNotFoundError):  # a device would be replaced by a file where its folder may be written to
+        check_regular(path)
     temporary = path.with_name(f"{_name('.')}{path.suffix}")
     made = [folder for folder in path.parents if not folder.exists()]
     try:

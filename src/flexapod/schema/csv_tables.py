@@ -71,7 +71,7 @@ def read_table(
 def _read(
     path: Path, text: str, allowed: tuple[tuple[str, str], ...], *, needed: bool, jumps: bool, along: str
 ) -> dict[str, Array]:
-    lines, columns = _lines(path, text), dict(allowed)
+    lines, columns = table_lines(path, text), dict(allowed)
     if not lines:
         raise InputError("is empty", file=path, next_step=f"First line: {header(columns, along)}")
     number, cells = lines[0]
@@ -90,7 +90,8 @@ def _read(
     return table
 
 
-def _lines(path: Path, text: str) -> list[tuple[int, list[str]]]:
+def table_lines(path: Path, text: str) -> list[tuple[int, list[str]]]:
+    """Cells of the lines that are neither empty nor comments, with their numbers."""
     try:
         rows = list(enumerate(csv.reader(io.StringIO(text, newline="")), start=1))
     except csv.Error:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from flexapod.arrays import Array
 from flexapod.control.arguments import flag, frequencies
 from flexapod.control.state_space import StateSpace
+from flexapod.errors import InputError
 from flexapod.kinematics.rotations import matrix
 from flexapod.results.arguments import LoadLike, PoseLike, RobotLike
 from flexapod.runtime.threads import one_thread
@@ -112,6 +113,14 @@ def transmissibility(
     """
     flag(tilt, "tilt")
     hz, found = frequencies(hz), study_of(study, load, drives, friction)
+    if found.robot.plane is not None:
+        raise InputError(
+            "is of a robot whose floor cannot turn",
+            key="robot.plane",
+            value=found.robot.plane,
+            allowed="robots in space",
+            next_step='fx.linearize(..., inputs="floor", outputs="tool") has the floor\'s translations',
+        )
     inputs, outputs = asked("floor", found.robot, "inputs"), asked("tool", found.robot, "outputs")
     (point, *_) = asked(f"accelerometer:{at}", found.robot, "at")
     plant = plant_of(found, pose, drives)

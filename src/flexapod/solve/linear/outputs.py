@@ -10,6 +10,7 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.arrays import Array
+from flexapod.errors import InputError
 from flexapod.kinematics.rotations import exponential, matrix
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.solve.batch import matrices_at_rest
@@ -214,6 +215,11 @@ class Seen:
 
     @cached_property
     def _carried(self) -> tuple[Array, Array]:
+        if self.plant.robot.plane is not None:
+            raise InputError(
+                "is known of robots in space", key="outputs", value="force-sensor:base",
+                allowed="of robots in a plane force-sensor:drive, force-sensor:platform, joint-force",
+            )  # fmt: skip
         return carried_masses(self.plant, self.second.about)
 
     @cached_property

@@ -75,8 +75,9 @@ def second_order(plant: Plant, inputs: Sequence[PlantChannel], *, about: Array, 
     extra = len(commands) + len(turns)
     if not d and not extra:
         raise InputError(
-            "leaves nothing that could move with the drives locked", key="simulation.fidelity",
-            value=plant.locked.simulation.fidelity, next_step='drives = "force" releases them',
+            f"leaves nothing that could move with the drives {'locked' if plant.drives == 'given' else 'released'}",
+            key="simulation.fidelity", value=plant.locked.simulation.fidelity,
+            next_step='drives = "force" releases them' if plant.drives == "given" else "Choose one that gives way",
         )  # fmt: skip
     flat = np.zeros((P, system.size, d + extra))
     flat[:, :, :d] = motions.flat(system, np.broadcast_to(np.eye(d), (P, d, d)))
