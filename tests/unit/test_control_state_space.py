@@ -230,11 +230,11 @@ def test_at_rest_only_channels_with_integrators_have_no_response():
 
 
 def test_responses_over_all_frequencies_of_a_robot_are_those_of_solving(monkeypatch):
-    """From far below its poles to far above: 9 decades, each part by poles that are known well there. Against
+    """From far below its poles to three times the fastest: 7 decades, each part by poles that are known well there. Against
     solving at fifty points: what is checked to 1e-9 at some of them has ten times that between them at most. Channels
     that are 0 by symmetry hold rounding of the others."""
     plant = fx.linearize(fx.preset("nano-hexapod"), inputs="drive", outputs=["force-sensor:drive", "stroke"])
-    hz, solved = np.geomspace(0.01, 1e7, 2000), []
+    hz, solved = np.geomspace(0.01, 2e5, 2000), []
     solving = frequency._solved
     monkeypatch.setattr(frequency, "_solved", lambda *a: (solved.append(a[3].size), solving(*a))[1])
     found = plant.at(hz)
