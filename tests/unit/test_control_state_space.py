@@ -230,9 +230,9 @@ def test_at_rest_only_channels_with_integrators_have_no_response():
 
 
 def test_responses_over_all_frequencies_of_a_robot_are_those_of_solving(monkeypatch):
-    """From far below its poles to three times the fastest: 7 decades, each part by poles that are known well there. Against
-    solving at fifty points: what is checked to 1e-9 at some of them has ten times that between them at most. Channels
-    that are 0 by symmetry hold rounding of the others."""
+    """From far below its poles to three times the fastest: 7 decades, each part by poles that are known well there.
+    Against solving at fifty points: what is checked to 1e-9 at some of them has ten times that between them at most.
+    Channels that are 0 by symmetry hold rounding of the others."""
     plant = fx.linearize(fx.preset("nano-hexapod"), inputs="drive", outputs=["force-sensor:drive", "stroke"])
     hz, solved = np.geomspace(0.01, 2e5, 2000), []
     solving = frequency._solved
