@@ -100,6 +100,25 @@ def test_a_robot_in_heave_takes_what_a_mass_takes_and_leaves_no_vibration() -> N
     assert np.abs(bend).max() * sine < 1.01 * limit
 
 
+def test_forces_of_a_robot_that_gives_way_keep_their_limits_too() -> None:
+    """A mass on springs that is pushed in heave: what the springs carry, m (z'' of the tool), by places of the tool in
+    a march within 1e-6, differences over 1/400 of a period: 1e-4 of it. Shares of limits are found within 1.002."""
+    study, frequency, sine = heaving()
+    limit = 4 * 1e-3 * frequency**2 / 1.3**2 * study.robot.payload.mass / (6 * sine)
+    found = fastest(study, force=limit, residual="1 um")
+    assert found.duration > found.stiff > found.unbounded and "rigid robot would hold" in found.sentence
+    exact = found.study.simulation.replace(tolerance=1e-6, output_step=1 / (400 * frequency), duration=None)
+    data = fx.simulate(found.study.replace(simulation=exact))
+    z, h = data.tool_position.values[:, 2], float(data.time[1] - data.time[0])
+    carried = study.robot.payload.mass * np.diff(z, 2) / h**2 / (6 * sine)
+    assert 0.9 * limit < np.abs(carried).max() < 1.004 * limit
+    assert np.abs(data.drive_force.values).max() == pytest.approx(np.abs(carried).max(), rel=1e-3)
+    # the march of what a rigid robot would take asks for more
+    rigid = fastest(study, acceleration=limit * 6 * sine**2 / study.robot.payload.mass, residual="1 um")
+    assert rigid.marched == 0 and rigid.duration == pytest.approx(found.stiff, rel=0.01)
+    assert np.abs(fx.simulate(rigid.study).drive_force.values).max() > 1.1 * limit
+
+
 def test_the_way_as_a_file(tmp_path: Path) -> None:
     study, frequency, _ = heaving()
     given = {"acceleration": 1e-3 * frequency**2, "residual": "1 mm"}

@@ -1,5 +1,7 @@
 """The linear model as a whole: beside spectra in modes, by symmetry, released drives, many poses, what is refused."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from tests.consistency import test_motor_loops as motors
@@ -9,7 +11,7 @@ from tests.consistency.test_vibration import TILTED, lumped
 from tests.machines import SCREW, machine, study
 
 import flexapod as fx
-from flexapod import model
+from flexapod import kinematics, model
 from flexapod.kinematics import inverse_kinematics, poses_from_home
 from flexapod.kinematics.rotations import exponential
 from flexapod.results.arguments import as_pose
@@ -265,16 +267,28 @@ class TestManyPoses:
 
     @pytest.mark.parametrize("name", list(MOTIONS))
     def test_matrices_are_smooth_from_pose_to_pose(self, name):
+        """Along each motion of a sample, and along that of its file: neighbours half as far apart differ by half."""
         given = fx.load(f"examples/mechanisms/{name}.toml")
-        names = {"inputs": "wrench", "outputs": "tool"}
+        moving = given.motion.end_time - given.motion.hold
+        ways = [lambda n: kinematics.coordinates(given.motion, np.linspace(0.0, moving, n))[0]]
         for axis in MOTIONS[name]:
             far = (0.005 if axis in model.AXES[:3] else 0.05) * (0.02 if name == "flexures" else 1.0)
+            ways.append(lambda n, axis=axis, far=far: {axis: np.linspace(-far, far, n)})
+        for way in ways:
             steps = []
-            for count in (51, 101):
-                data = fx.linearize(given, {axis: np.linspace(-far, far, count)}, **names)
+            for count in (101, 201):
+                data = fx.linearize(given, way(count), inputs="wrench", outputs="tool")
                 K, M = data.stiffness.values, data.mass.values
                 steps.append([np.abs(np.diff(x, axis=0)).max() / np.abs(x).max() for x in (K, M)])
             assert steps[0] == pytest.approx(2 * np.array(steps[1]), rel=0.1, abs=1e-12)
+
+    def test_the_sample_that_is_left_out_has_one_pose(self):
+        samples = {path.stem for path in Path("examples/mechanisms").glob("*.toml")}
+        assert samples - set(MOTIONS) == {"strut"}
+        strut = fx.load("examples/mechanisms/strut.toml")
+        assert strut.robot.platform_fixed
+        with pytest.raises(fx.InputError, match="0 motions"):
+            fx.linearize(strut, {"heave": [0.0, 0.001]}, inputs="drive", outputs="stroke")
 
 
 class TestRefused:

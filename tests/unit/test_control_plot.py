@@ -78,6 +78,21 @@ def test_poles_stand_in_their_plane_with_lines_of_damping():
     assert "Hz" in axes.get_xlabel()
 
 
+def test_poles_of_systems_themselves():
+    open_, damped = mode(), mode(30.0)
+    told = plot.pole_map({"1": open_.damp(), "2": damped.damp()}).axes[0]
+    for given in ([open_, damped], {"1": open_, "2": damped.damp()}):
+        found = plot.pole_map(given).axes[0]
+        assert labels(found) == ["1", "2"]
+        for line, other in zip(found.lines, told.lines, strict=True):
+            np.testing.assert_array_equal(line.get_xydata(), other.get_xydata())
+    pole = damped.poles()[1] / (2 * np.pi)
+    np.testing.assert_allclose(plot.pole_map(damped).axes[0].lines[0].get_xydata()[0], [pole.real, pole.imag])
+    for none in ([], "damp", [3]):
+        with pytest.raises(InputError, match="pole_map: cannot be drawn"):
+            plot.pole_map(none)
+
+
 def test_a_root_locus_shows_branches_and_damping():
     data = fc.root_locus(mode(0.0), fc.IFF(1.0, sensor="force-sensor:base"), np.geomspace(0.01, 100, 50))
     fig = plot.root_locus(data)

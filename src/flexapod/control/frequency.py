@@ -20,13 +20,14 @@ AGREES = 1e-9  # of the response, or a tenth of
 CANCELS = 0.1  # what its poles could add up to
 SHIFTED = 2**0.5  # from the middle of the points, which may lie upon a pole
 BLOCK = 64  # frequencies solved for side by side
+BAND, MANY = 4.0, 100  # span, and number of frequencies, with less of which they are solved for and not taken in halves
 
 
 def response(A: Array, B: Array, C: Array, D: Array, s: Complex) -> Complex:
     """C (s - A)^-1 B + D at points s (f,): (outputs, inputs, f), Eq. (T21.1).
 
     Of the states that inputs move and outputs show. By poles and residues where that agrees with solving at some of
-    the points, else by solving at all of them.
+    the points, else of slower and faster ones by themselves, at last by solving.
 
     Raises
     ------
@@ -51,7 +52,7 @@ def _regular(A: Array, B: Array, C: Array, s: Complex) -> Complex:
     _refuse_poles(values, s)
     sizes = np.linalg.norm(shapes, axis=1, keepdims=True)  # of states: their units are no matter
     if np.linalg.cond(shapes / np.where(sizes > 0, sizes, 1.0)) > ALIKE:
-        return _solved(A, B, C, s)
+        return _in_halves(A, B, C, s)
     left, right = np.linalg.solve(shapes, B.astype(complex)).astype(complex), (C @ shapes).astype(complex)
     some = _where_it_matters(values, s)
     known = _solved(A, B, C, s[some])
@@ -59,7 +60,19 @@ def _regular(A: Array, B: Array, C: Array, s: Complex) -> Complex:
     most = _most(values, left, right, s[some])
     if (np.abs(by_poles - known) <= AGREES * np.maximum(np.abs(known), CANCELS * most)).all():
         return _by_residues(values, left, right, s)
-    return _solved(A, B, C, s)
+    return _in_halves(A, B, C, s)
+
+
+def _in_halves(A: Array, B: Array, C: Array, s: Complex) -> Complex:
+    """The slower and the faster points by themselves, amid which poles are known better; few or close ones solved."""
+    size = np.abs(s)
+    low, high = float(size[size > 0].min(initial=np.inf)), float(size.max())
+    if s.size < MANY or high < BAND * low:
+        return _solved(A, B, C, s)
+    slow, found = size < np.sqrt(low * high), np.empty((len(C), B.shape[1], s.size), dtype=complex)
+    for part in (slow, ~slow):
+        found[..., part] = _regular(A, B, C, s[part])
+    return found
 
 
 def _most(values: Complex, left: Complex, right: Complex, s: Complex) -> Array:

@@ -31,13 +31,20 @@ class DriveLimits:
     acceleration: float | None
     force: float | None
 
-    def shares(self, path: RigidPath) -> tuple[Array, Array]:
-        """Speeds (T, any), and what grows with accelerations (T, any), each over its limit, with sign."""
+    def forces(self, robot: Robot) -> bool:
+        """Whether they bound forces or torques of the drives."""
+        return self.force is not None or _motors(robot)
+
+    def shares(self, path: RigidPath, force: Array | None = None) -> tuple[Array, Array]:
+        """Speeds (T, any), and what grows with accelerations (T, any), each over its limit, with sign.
+
+        `force`, (T, legs) [N]: of the drives where these are not those of the rigid robot.
+        """
         robot = path.robot
         driven = kinematics.rigid_limbs(robot).state == DRIVEN
         values = np.stack([np.stack(path.legs.coordinate(name), axis=0) for name in COORDINATES], axis=-1)
         rate, bend = values[1][:, driven], values[2][:, driven]
-        force = path.forces.drive_force
+        force = path.forces.drive_force if force is None else force
         fast = [rate / self.speed] if self.speed is not None else []
         strong = [bend / self.acceleration] if self.acceleration is not None else []
         strong += [force / self.force] if self.force is not None else []
@@ -70,7 +77,7 @@ def limits_of(study: Study, speed: Given, acceleration: Given, force: Given) -> 
         if found[name] is not None and not found[name] > 0:  # type: ignore[operator]
             raise InputError("is not a limit", key=name, value=value, allowed="above 0")
     limits = DriveLimits(**found)
-    if limits.acceleration is None and limits.force is None and not _motors(study.robot):
+    if limits.acceleration is None and not limits.forces(study.robot):
         raise InputError(
             "says nowhere what its drives may do: the least time would be 0",
             file=study.path,

@@ -38,7 +38,9 @@ class Fastest:
     """A study that goes from pose to pose in the least time, and what that costs.
 
     ``duration``, ``unbounded`` [s]: with and without the bound for vibration; ``residual`` [m]: what is left by the
-    linear model, with it and without; ``used``: largest share of the limits of drives, by the rigid robot.
+    linear model, with it and without; ``used``: largest share of the limits of drives, by the rigid robot;
+    ``marched``: of those of forces, in the march of the flexible one; ``stiff`` [s]: the time in which the rigid robot
+    keeps bound and limits.
     """
 
     study: Study
@@ -47,14 +49,21 @@ class Fastest:
     residual: tuple[float, float]
     bound: float
     used: float
+    marched: float
+    stiff: float
 
     @property
     def sentence(self) -> str:
         """Benefit, cost and effect in words."""
+        flexible = f" and {100 * self.marched:.0f} % of forces by the flexible one" if self.marched else ""
+        longer = (
+            f"; drives of a rigid robot would hold {text(self.stiff, 's', 4)}" if self.duration > self.stiff else ""
+        )
         return (
             f"the way takes {text(self.duration, 's', 4)}, the least in which drives use {100 * self.used:.0f} % of "
-            f"their limits at most, by the rigid robot, and the tool vibrates by at most {text(self.bound, 'm')} "
-            f"afterwards: by {text(self.residual[0], 'm')}, by the linear model with all modes. Without that bound it "
+            f"their limits at most, by the rigid robot{flexible}, and the tool vibrates by at most "
+            f"{text(self.bound, 'm')} afterwards: by {text(self.residual[0], 'm')}, by the linear model with all "
+            f"modes{longer}. Without that bound it "
             f"would take {text(self.unbounded, 's', 4)} and leave {text(self.residual[1], 'm')}"
         )
 
@@ -160,14 +169,15 @@ def fastest(
     way = StraightWay(study, limits, *_ends(study, start, end))
     low, place = way.without_vibration()
     rough = way.study(low, place)
-    duration, place = way.bounded(low, place, bound)
+    stiff, place = way.bounded(low, place, bound)
+    duration, place, marched = way.held(stiff, place, bound)
     own = way.study(duration, place)
     check_path(own)
     period = PERIODS / way.first
     left = [vibration_along(x, t, t + period).after(t) for x, t in ((own, duration), (rough, low))]
     told = Fastest(
         study=own, duration=duration, unbounded=low, residual=(left[0], left[1]), bound=bound,
-        used=way.used(duration, place),
+        used=way.used(duration, place), marched=marched, stiff=stiff,
     )  # fmt: skip
     told = replace(told, study=own.replace(notes=(*study.notes, told.sentence)))
     return told if out is None else replace(told, study=saved(told.study, Path(out)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -14,7 +15,9 @@ from flexapod.feedforward.table import named
 from flexapod.feedforward.vibration import LinearPath, followed, forces, linear_path
 from flexapod.kinematics import Law
 from flexapod.model import CsvMotion, Study
+from flexapod.results.leg_results import drive_forces
 from flexapod.results.path import RigidPath
+from flexapod.study.simulation import simulated
 
 __all__ = ["StraightWay"]
 
@@ -25,6 +28,8 @@ SIDES = 16  # of the polygon in which the amplitude of a mode stays
 ROUNDS = 4  # in which limits follow the way
 WITHIN, HOPELESS = 1.002, 1.1  # of a limit
 FINE = 5e-3  # of the time
+LESS, MORE, FAR = 1.05, 1.5, 20.0  # how much longer a way is taken where flexible drives do not hold; given up beyond
+HELD = 2e-2  # of the time in which they do
 SHARE = 0.9  # of the bound for vibration that the way is made for: linear in its places
 
 
@@ -187,6 +192,44 @@ class StraightWay:
             found = self.quiet(T, best[1], bound)
             low, high = (T, high) if found is None else (low, T)
             best = best if found is None else (T, found)
+        return best
+
+    def marched(self, T: float, c: Array) -> float:
+        """Largest share of the limits of forces and torques in the march of the flexible robot; 0 without such."""
+        robot = self.origin.robot
+        if not self.limits.forces(robot):
+            return 0.0
+        found = simulated(self.study(T, c))
+        if found.record.failure is not None:
+            raise ComputationError(f"the way cannot be marched through: {found.record.failure}")
+        forces, path = drive_forces(robot, found.march.system, found.record), found.path.at(found.record.time)
+        most = replace(self.limits, speed=None, acceleration=None)
+        used = [most.shares(path, forces)[1]]
+        for i, leg in enumerate(robot.legs):
+            if leg.screw is not None and leg.gives and (torque := leg.screw.limits.torque) is not None:
+                given = found.values()["drive_force"][:, [i]]  # of a rotor that has its own accelerations
+                used.append(given / leg.screw.rotor.ratio / torque)
+        return float(max(np.abs(x).max() for x in used))
+
+    def held(self, T: float, c: Array, bound: float) -> tuple[float, Array, float]:
+        """The least time, not below another one, in which flexible drives keep limits, its way and their share."""
+        best = (T, c, self.marched(T, c))
+        low, high = T, T
+        while best[2] > WITHIN:
+            low, high = high, high * min(MORE, max(LESS, best[2] ** 0.5))
+            if high > FAR * T:
+                raise ComputationError(
+                    f"drives of the flexible robot use {100 * best[2]:.0f} % of their limits in {high:.3g} s as well",
+                    next_step="Raise the limits, or take weight off.",
+                )
+            found = self.quiet(high, best[1], bound)
+            best = best if found is None else (high, found, self.marched(high, found))
+        while high - low > HELD * high:
+            between = 0.5 * (low + high)
+            found = self.quiet(between, best[1], bound)
+            used = np.inf if found is None else self.marched(between, found)
+            low, high = (low, between) if used <= WITHIN else (between, high)
+            best = (between, found, used) if found is not None and used <= WITHIN else best
         return best
 
     def quiet(self, T: float, c: Array, bound: float) -> Array | None:

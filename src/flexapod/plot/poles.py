@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from flexapod.arrays import Array
 from flexapod.control.arguments import number
 from flexapod.control.datasets import complex_of
+from flexapod.control.state_space import StateSpace
 from flexapod.errors import InputError
 from flexapod.plot.style import PAGE, SMALL, figure, needs, styled
 from flexapod.scene.colours import colors_of_legs
@@ -24,19 +25,29 @@ MARKS = ("x", "+", "o", "s", "^", "v")
 SWINGS = 1e-6  # imaginary part over the size of a pole that oscillates
 
 
-@styled
-@needs("pole", "damping_ratio")
-def pole_map(data: xr.Dataset | Mapping[str, xr.Dataset], below: float | None = None) -> Figure:
+Poles = xr.Dataset | StateSpace
+
+
+def pole_map(data: Poles | Sequence[Poles] | Mapping[str, Poles], below: float | None = None) -> Figure:
     """Poles with an imaginary part of 0 or more, with lines of equal damping ratio.
 
     Parameters
     ----------
-    data : xarray.Dataset or mapping of these
-        From `.damp`; several under the words that the legend shows.
+    data : StateSpace or xarray.Dataset, sequence or mapping of these
+        Linear systems, or what their `.damp` gives; several under the words that the legend shows, or under numbers.
     below : float, optional
         Frequency [Hz] up to which poles are shown; by itself all that oscillate.
     """
-    results = {"": data} if isinstance(data, xr.Dataset) else data
+    if isinstance(data, Sequence) and not isinstance(data, str):
+        data = {str(k): one for k, one in enumerate(data, start=1)}
+    several = isinstance(data, Mapping) and not isinstance(data, xr.Dataset)
+    given: Mapping[str, Any] = data if several else {"": data}  # type: ignore[assignment]
+    return _pole_map({name: one.damp() if isinstance(one, StateSpace) else one for name, one in given.items()}, below)
+
+
+@styled
+@needs("pole", "damping_ratio")
+def _pole_map(results: Mapping[str, xr.Dataset], below: float | None) -> Figure:
     fig = figure(PAGE, 4.2)
     axes = fig.subplots()
     edge = _edge([complex_of(one.pole).values for one in results.values()], below)

@@ -95,7 +95,7 @@ def needs(*names: str) -> Callable[[Callable[P, Figure]], Callable[P, Figure]]:
                 if missing:
                     raise InputError(
                         f"cannot be drawn: the result has no {missing[0]!r}",
-                        key=draw.__name__,
+                        key=draw.__name__.lstrip("_"),
                         allowed=f"a result with {', '.join(names)}",
                     )
             return draw(*args, **kwargs)
