@@ -54,4 +54,6 @@ figure, axes = plt.subplots()
 for name, numbers in RUNGS.items():
     axes.loglog(numbers, error[name], "o-", label=name)
 axes.set(xlabel="segments, or shapes", ylabel="error of the first frequency", title="Error against effort")
-axes.legend()
+axes.set_xticks([1, 2, 3, 4, 6, 8], ["1", "2", "3", "4", "6", "8"])
+axes.minorticks_off()
+axes.legend(loc="lower right")

@@ -32,4 +32,6 @@ figure, axes = plt.subplots()
 for cause, values in found.items():
     axes.loglog(weights, 1e9 * np.array(values), "o-", label=f"{cause}, order {order[cause]:.2f}")
 axes.set(xlabel="gravity over 9.81 m/s^2", ylabel="payload lower by [nm]", title="Stretch and bending at rest")
+axes.set_xticks(weights, weights)
+axes.minorticks_off()
 axes.legend()
