@@ -89,6 +89,8 @@ def _page(name: str) -> str:
 
 {text}
 
+`flexapod new --example {name}` writes this file.
+
 ![Figure of the example: {title}]({name}.png)
 
 ```python
@@ -100,8 +102,6 @@ It prints
 ```text
 {run(name)[1].rstrip()}
 ```
-
-`flexapod new --example {name}` writes this file.
 """
 
 

@@ -1,4 +1,4 @@
-"""The study file: a page for each of its first tables, from the rows that `flexapod keys` shows."""
+"""The study file: a page for each of its tables, from the rows that `flexapod keys` shows."""
 
 from __future__ import annotations
 
@@ -9,24 +9,21 @@ from pathlib import Path
 from flexapod.model import page
 
 FOLDER = Path("reference/study-file")
-KINDS = {"robot": "A robot", "actuator": "A single actuator"}
+#: First tables that are a page for each table in them.
+LONG = ("leg",)
 
 
 def pages() -> dict[Path, str]:
     """Pages by place."""
     made, contents = {}, {}
-    for study in KINDS:
-        for item in page.listed():
-            if item.entry.study != study:
-                continue
-            name = item.entry.table.split(".")[0]
-            made.setdefault((study, name), []).append("\n\n".join(page.entry_text(item)))
-    for (study, name), parts in made.items():
-        place = FOLDER / (
-            f"{name}.md" if study == "robot" else f"actuator-{name}.md".replace("actuator-actuator", "actuator")
-        )
+    for item in page.listed():
+        made.setdefault((item.entry.study, _of(item.entry.table)), []).append(item)
+    for (study, name), items in made.items():
         of = "" if study == "robot" or name == "actuator" else " of a single actuator"
-        contents[place] = "\n\n".join([f"# `[{name}]`{of}", *map(_levelled, parts)]) + "\n"
+        items.sort(key=lambda item: item.entry.table != name)  # its own first
+        parts = [_levelled("\n\n".join(page.entry_text(item)), name) for item in items]
+        contents[_place(study, name)] = "\n\n".join([f"# `[{name}]`{of}", *parts]) + "\n"
+    contents[FOLDER / "keys.md"] = _keys(made)
     contents[FOLDER / "choices.md"] = _part("What the choices mean")
     contents[FOLDER / "units.md"] = _part("Numbers and units")
     contents[FOLDER / "tables-over-time.md"] = _part("Tables over time")
@@ -34,18 +31,51 @@ def pages() -> dict[Path, str]:
     return contents
 
 
+def _of(table: str) -> str:
+    """The table whose page has one: its first, or the first two where that would be too long a page."""
+    names = table.split(".")
+    return ".".join(names[:2] if names[0] in LONG else names[:1])
+
+
+def _place(study: str, name: str) -> Path:
+    before = "" if study == "robot" or name == "actuator" else "actuator-"
+    return FOLDER / f"{before}{name.replace('.', '-')}.md"
+
+
+def _keys(made: dict[tuple[str, str], list[page.Listed]]) -> str:
+    """All keys: whoever has one, as of a message, finds its table."""
+    rows = {
+        (f"{item.entry.table}.{row.key}", study): f"{row.what} | [`{name}`]({_place(study, name).name})"
+        for (study, name), items in made.items()
+        for item in items
+        for row in item.rows
+    }
+    lines = "\n".join(f"| `{key}` | {words} |" for (key, _), words in sorted(rows.items()))
+    return f"""# All keys
+
+What a message refuses is named by its key: here is its table. Legs in a list are counted from 1 in a message,
+`leg[2].drive.stiffness`; here they have no number.
+
+| Key | What it is | Table |
+| --- | --- | --- |
+{lines}
+"""
+
+
 @cache
 def _long() -> str:
     return page.markdown()
 
 
-def _levelled(text: str) -> str:
-    """Headings under the page's own; a table's name is its anchor."""
+def _levelled(text: str, name: str) -> str:
+    """Headings under the page's own, which the first of a table needs no second time."""
     found = re.match(r"#+ `\[?([\w.]+)\]?`(.*)", text)
     if found is None:
         return text
-    level = "##" if "." not in found[1] else "###"
-    return f"{level} `{found[1]}`{found[2]}\n{text.split(chr(10), 1)[1]}"
+    rest = text.split("\n", 1)[1]
+    if found[1] == name and not found[2]:
+        return rest.strip()
+    return f"## `{found[1]}`{found[2]}\n{rest}"
 
 
 def _part(title: str) -> str:
@@ -63,7 +93,8 @@ def _index(places: list[Path]) -> str:
     return f"""{introduction}
 
 `flexapod keys leg.drive` shows a part of this in the terminal. All examples load. What a key of a message means is on
-the page of its table: `leg.drive.stiffness` on that of [`[leg]`](leg.md).
+the page of its table: `leg.drive.stiffness` on that of [`[leg.drive]`](leg-drive.md); [all keys](keys.md) are
+in one list, with their tables.
 
 ```{{toctree}}
 :maxdepth: 2

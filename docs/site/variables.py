@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 
-from flexapod.results.names import COORDINATES, GROUPS
+import numpy as np
+from xarray import Dataset
+
+import flexapod as fx
+from flexapod.control import IFF, best_gain, impedance, margins, root_locus
+from flexapod.results.names import COORDINATES, GROUPS, Variable
 
 FOLDER = Path("reference/variables")
+HEAD = "| Name | Dimensions | Unit | What it is |\n| --- | --- | --- | --- |"
 #: Which calls give the variables of a group.
 OF = {
     "Paths and deviations": "Of `fx.simulate`: the payload, rigid and flexible, and what the legs do to it.",
@@ -22,35 +30,6 @@ OF = {
     "Single actuator": "Of `fx.simulate_actuator` and `fx.simulate_solid`, besides energies and deflection.",
 }
 
-#: Of Datasets whose labels are channels of a linear system: name, dimensions, unit, what it is, and what gives it.
-LINEAR = """
-compliance | output, input, frequency, part | output per input | motion of the tool by a wrench: `fx.compliance`
-compliance_norm | frequency | mixed | its Frobenius norm
-transmissibility | output, input, frequency, part | mixed | of the platform by the floor: `fx.transmissibility`
-transmissibility_norm | frequency | mixed | its Frobenius norm
-frequency_response | output, input, frequency, part | output per input | `.frequency_response`, `fx.read_frf`
-pole | mode, part | s-1 | of a system, `.damp`; of a locus `gain, branch, part`
-damping_ratio | mode | 1 | of its poles
-open_zero | zero, part | s-1 | where branches of `fx.control.root_locus` end
-h2_norm | output, input | mixed | of a system, `.h2`, with `reason` where it is infinite
-hinf_norm | a number | mixed | largest singular value over frequency, `.hinf`
-psd | spectrum_frequency, output | output squared per Hz | of outputs of a system that is shaken, `.psd`
-cumulative_rms | spectrum_frequency, output | output | rms from here up
-rms | output | output | of all frequencies
-covariance | output, output_b | mixed | of outputs
-rms_by_source | source, output | output | of each source, `.by_source`
-step_response | output, input, time | output per input | of a system, `.step`; `impulse_response`, `.impulse`
-gain_margin | actuator, side | 1 | factor at which a loop is at its limit: `fx.control.margins`
-phase_margin | actuator | rad | lag that it bears
-delay_margin | actuator | s | further delay that it bears
-modulus_margin | actuator | 1 | least distance of the loop gain from -1
-mass | pose, motion, motion_by | mixed | of `fx.linearize` at many poses
-damping | pose, motion, motion_by | mixed | of the same
-stiffness | pose, motion, motion_by | mixed | of the same
-input_matrix | pose, motion, input | mixed | of the same
-output_matrix | pose, output, motion | mixed | of the same
-"""
-
 
 def pages() -> dict[Path, str]:
     """Pages by place."""
@@ -60,26 +39,65 @@ def pages() -> dict[Path, str]:
             f"| `{name}` | {', '.join(f'`{dim}`' for dim in v.dims) or 'a number'} | {v.units} | {_cell(v.long_name)} |"
             for name, v in found.items()
         )
-        head = "| Name | Dimensions | Unit | What it is |\n| --- | --- | --- | --- |"
-        made[FOLDER / f"{title.lower().replace(' ', '-')}.md"] = f"# {title}\n\n{OF[title]}\n\n{head}\n{rows}\n"
+        made[FOLDER / f"{title.lower().replace(' ', '-')}.md"] = (
+            f"# {title}\n\n{OF[title]}{_labels(found)}\n\n{HEAD}\n{rows}\n"
+        )
     made[FOLDER / "linear-systems.md"] = _linear()
     made[FOLDER / "index.md"] = _index([place.stem for place in made])
     return made
 
 
+@cache
+def linear() -> dict[str, Dataset]:
+    """What calls about linear systems return, of one small plant: names, units and words are those of the results."""
+    study = fx.preset("nano-hexapod")
+    plant = fx.linearize(study, inputs=["drive", "wrench"], outputs=["tool", "stroke", "force-sensor:drive"])
+    plant = plant.reduce(below="2 kHz").select(outputs=["tool", "stroke:1", "force-sensor:drive"])
+    law, hz = IFF(100.0, high_pass="5 Hz"), np.array([10.0, 100.0])
+    shaken = {"wrench:fz": ([1.0, 100.0], [1e-4, 1e-4])}
+    return {
+        "`fx.compliance`": fx.compliance(study, hz),
+        "`fx.transmissibility`": fx.transmissibility(study, hz),
+        "`.frequency_response` of a system, `fx.read_frf`": plant.frequency_response(hz),
+        "`.damp`": plant.damp(),
+        "`.rga`": plant.rga(hz, "drive", "force-sensor:drive"),
+        "`.h2`": plant.h2(),
+        "`.hinf`": plant.hinf(),
+        "`.psd`": plant.psd(shaken),
+        "`.by_source`": plant.by_source(shaken),
+        "`.step`": plant.step(0.01),
+        "`.impulse`": plant.impulse(0.01),
+        "`fx.control.root_locus`": root_locus(plant, law, [1.0, 2.0]),
+        "`fx.control.best_gain`": best_gain(plant, law),
+        "`fx.control.margins`": margins(plant, law),
+        "`fx.control.impedance`": impedance(plant, hz, force="drive:1", place="stroke:1"),
+        "`fx.linearize` at several poses": fx.linearize(study, {"surge": [0.0, 1e-5]}, inputs="wrench", outputs="tool"),
+    }
+
+
 def _linear() -> str:
     """Variables over channels: their names are those of the caller's inputs and outputs."""
-    cells = [line.split(" | ") for line in LINEAR.strip().splitlines()]
-    rows = "\n".join(f"| `{name}` | {dims} | {unit} | {words} |" for name, dims, unit, words in cells)
-    return f"""# Linear systems
+    parts = [
+        "# Linear systems",
+        "Labels of `input` and `output` are [channels](../../linear-model.md), with their units beside them as\n"
+        "`input_units` and `output_units`; `part` is real or imaginary.",
+    ]
+    for call, data in linear().items():
+        rows = "\n".join(
+            f"| `{name}` | {', '.join(f'`{dim}`' for dim in x.dims) or 'a number'} | {x.attrs.get('units', '')} "
+            f"| {_cell(x.attrs.get('long_name', ''))} |"
+            for name, x in data.data_vars.items()
+        )
+        parts += [f"## {call}", f"{HEAD}\n{rows}"]
+    return "\n\n".join(parts) + "\n"
 
-Labels of `input` and `output` are [channels](../../linear-model.md), with their units beside them as `input_units` and
-`output_units`; `part` is real or imaginary.
 
-| Name | Dimensions | Unit | What it is |
-| --- | --- | --- | --- |
-{rows}
-"""
+def _labels(found: Mapping[str, Variable]) -> str:
+    """What the labels of the dimensions of these variables are, in a sentence each."""
+    used = [dim for dim in COORDINATES if any(dim in v.dims for v in found.values())]
+    return "".join(
+        f" `{dim}`: {', '.join(f'`{x}`' for x in COORDINATES[dim][0])}, {COORDINATES[dim][1]}." for dim in used
+    )
 
 
 def _cell(text: str) -> str:

@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 from markdown_it import MarkdownIt
 
+from flexapod.version import __version__
+
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([*(ROOT / "docs").rglob("*.md"), *ROOT.glob("*.md")])
 LINK = re.compile(r"\]\((?!https?://|mailto:|#)([^)#\s]+)")
@@ -79,6 +81,16 @@ def test_formulas_show_on_github(page):
 
 def test_the_readme_is_read_in_a_minute():
     assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 100
+
+
+def test_the_recipe_cites_what_the_repository_says():
+    said = (ROOT / "docs" / "how-to" / "cite.md").read_text(encoding="utf-8")
+    stated = dict(
+        re.findall(r'^([\w-]+): "?(.*?)"?$', (ROOT / "CITATION.cff").read_text(encoding="utf-8"), re.MULTILINE)
+    )
+    assert stated["version"] == __version__
+    for name in ("title", "version", "license"):
+        assert f"{name} = {{{stated[name]}}}" in said
 
 
 def test_every_source_package_is_in_the_folder_map():

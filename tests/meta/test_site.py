@@ -4,12 +4,16 @@ import re
 
 import pytest
 from docs.site import commands, gallery, python, stage, studyfile, variables
+from tests.golden.refusals import READERS, rows, samples, unpacked
 
 import flexapod as fx
 from flexapod.cli.cli import _ALL
 from flexapod.cli.examples import titles
+from flexapod.errors import InputError
 from flexapod.results.names import VARIABLES
-from flexapod.schema.reference import reference
+from flexapod.schema.reference import plain_path, reference
+
+NO_KEY = ("unknown key", "lies too deep", "has too many digits")
 
 
 @pytest.fixture(scope="module")
@@ -42,6 +46,35 @@ def test_every_variable_is_on_one_page():
         for row in re.findall(r"^\| `(\w+)` \|.*\| .* \|", page, re.MULTILINE)
     ]
     assert set(VARIABLES) <= set(rows)
+
+
+def test_every_result_of_a_linear_system_says_what_it_is():
+    words = {
+        f"{call} {name}": x.attrs.get("long_name") for call, d in variables.linear().items() for name, x in d.items()
+    }
+    assert len(words) > 30 and not [name for name, said in words.items() if not said]
+
+
+def test_the_key_of_every_refusal_leads_to_a_page():
+    """A key that there is, on the page of its table; a name of the user's own by the table that it stands in."""
+    listed = studyfile.pages()[studyfile.FOLDER / "keys.md"]
+    keys = set(re.findall(r"^\| `([\w.]+)` \|", listed, re.MULTILINE))
+    tables = {key.rpartition(".")[0] for key in keys}
+    tables |= {table.partition(".")[0] for table in tables}
+    places = {place.name for place in studyfile.pages()}
+    assert set(re.findall(r"\]\(([\w-]+\.md)\) \|$", listed, re.MULTILINE)) <= places
+    lost = []
+    for row in rows()[::12]:
+        try:
+            READERS[row["reader"]](unpacked(row, samples()))
+        except InputError as error:
+            key = plain_path(str(error.key or "")).strip("[]")
+            if key.partition(".")[0] not in tables or error.what in NO_KEY:
+                continue  # no study file has it: the message lists what there is
+            above = [key, key.rpartition(".")[0], "leg.springs" if key.startswith("leg.springs.") else ""]
+            if not any(name in keys or name in tables for name in above):
+                lost.append(row["message"])
+    assert not lost
 
 
 def test_links_between_pages_lead_somewhere(sources):

@@ -41,7 +41,8 @@ arm, L, g = study.actuator, 1.7, 9.81
 by_hand = (2 * L**3 / 3 + arm.rhoA * L**4 / 8) * g / arm.EI
 print(f"at rest the tip hangs {1e3 * found:.4f} mm below the line of the hub, by hand {1e3 * by_hand:.4f} mm")
 
-# Of second order are the arm's shortening and its slope, whose square is 1e-4.
-np.testing.assert_allclose(found, by_hand, rtol=1e-3)
+# Left out is the square of the slope at the tip, (m g L^2 / 2 EI + rho A g L^3 / 6 EI)^2 = 8e-5; the time integration
+# has a tolerance of 1e-4.
+np.testing.assert_allclose(found, by_hand, rtol=2e-4)
 
 figure = fx.plot.actuator_response(data)

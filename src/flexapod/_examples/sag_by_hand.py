@@ -47,11 +47,15 @@ for diameter in diameters:
 by_hand = 6 * E * np.pi / 4 * (1e-3 * diameters) ** 2 / L_PISTON * (H / length) ** 2
 print(f"27 mm: {60 * 9.81 / found[2] * 1e6:.3f} um of sag, by hand {60 * 9.81 / by_hand[2] * 1e6:.3f} um")
 
-# Pistons that stretch only. Weight turns stiffness by force over length, 100 N / 0.9 m beside 1e8 N/m: 1e-6.
-np.testing.assert_allclose(found, by_hand, rtol=1e-5)
+# Left out: force over length, at most 200 N / 0.9 m beside 5e7 N/m, and sag over height, 2 um / 0.9 m, both times the
+# lean of the legs, 1 - (h / l)^2 = 0.03: below 1e-6.
+np.testing.assert_allclose(found, by_hand, rtol=1e-6)
 
 figure, axes = plt.subplots()
 axes.loglog(diameters, 60 * 9.81 / by_hand * 1e6, label="by hand")
 axes.loglog(diameters, 60 * 9.81 / np.array(found) * 1e6, "o", label="flexapod")
 axes.set(xlabel="diameter of the pistons [mm]", ylabel="sag [um]", title="Sag of 60 kg on six pistons")
+axes.set_xticks(diameters, diameters)
+axes.set_yticks([0.3, 0.5, 1, 2], ["0.3", "0.5", "1", "2"])
+axes.minorticks_off()
 axes.legend()

@@ -207,8 +207,9 @@ def impedance_dataset(
         "impedance": (("frequency", "part"), in_parts(values), {"units": "N s/m", "long_name": "force over velocity"})
     }
     for name, (stiffness, damping) in {"parallel": parallel, "series": series}.items():
-        found[f"{name}_stiffness"] = ("frequency", stiffness, {"units": "N/m"})
-        found[f"{name}_damping"] = ("frequency", damping, {"units": "N s/m"})
+        pair = f"spring and damper in {name}"
+        found[f"{name}_stiffness"] = ("frequency", stiffness, {"units": "N/m", "long_name": f"spring of a {pair}"})
+        found[f"{name}_damping"] = ("frequency", damping, {"units": "N s/m", "long_name": f"damper of a {pair}"})
     return xr.Dataset(found, {"frequency": ("frequency", frequency, {"units": "Hz"}), "part": PARTS})
 
 
@@ -261,15 +262,15 @@ def margins_dataset(
         "delay_margin": ("s", "delay", "further delay that the loop bears"),
         "modulus_margin": ("1", "modulus", "least distance of the loop gain from -1"),
     }
-    found = {}
+    found, at = {}, {"units": "Hz", "long_name": "frequency at which it is so"}
     for name, (unit, keys, words) in both.items():
         values = np.array([[one[key] for key in keys] for one in each])
         found[name] = (("actuator", "side"), values[..., 0], {"units": unit, "long_name": words})
-        found[f"{name}_frequency"] = (("actuator", "side"), values[..., 1], {"units": "Hz"})
+        found[f"{name}_frequency"] = (("actuator", "side"), values[..., 1], at)
     for name, (unit, key, words) in single.items():
         values = np.array([one[key] for one in each])
         found[name] = ("actuator", values[:, 0], {"units": unit, "long_name": words})
-        found[f"{name}_frequency"] = ("actuator", values[:, 1], {"units": "Hz"})
+        found[f"{name}_frequency"] = ("actuator", values[:, 1], at)
     labels = {"actuator": list(actuators), "side": ["below", "above"]}
     return xr.Dataset(found, labels, {"unstable_poles": unstable})
 

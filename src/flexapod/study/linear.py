@@ -235,7 +235,7 @@ def _grid(
         fell = fallen(locked.system, locked.robot, locked.start[locked.at], locked.equilibria.states[locked.at])
         reason[chosen] = equilibrium_codes(locked.equilibria.code)
         reason[at[fell]] = FALLS_THROUGH
-        for name, (of, _) in MATRICES.items():
+        for name, (of, _, _) in MATRICES.items():
             value = getattr(grid, of)
             parts.setdefault(name, np.full((len(path), *value.shape[1:]), np.nan))
             parts[name][at[~fell]] = value[~fell]
@@ -243,9 +243,9 @@ def _grid(
     labels = {"pose": np.arange(len(path)), "coordinate": list(model.AXES), "motion": list(motions)}
     labels |= {"motion_by": list(motions), "input": [c.name for c in given], "output": [c.name for c in seen]}
     data = xr.Dataset(
-        {name: (MATRICES[name][1], value) for name, value in parts.items()}
-        | {"pose_from_home": (("pose", "coordinate"), coordinates_of(found.robot, path))}
-        | {"reason": ("pose", reason, flags())},
+        {name: (MATRICES[name][1], value, {"long_name": MATRICES[name][2]}) for name, value in parts.items()}
+        | {"pose_from_home": (("pose", "coordinate"), coordinates_of(found.robot, path), {"long_name": FROM_HOME})}
+        | {"reason": ("pose", reason, {"long_name": "why a pose has none", **flags()})},
         labels,
         {"study": _name(found), "drives": drives, "friction": found.simulation.friction, "free_motions": free},
     )
@@ -254,14 +254,15 @@ def _grid(
     )
 
 
-#: Matrices of a grid: their field of `PoseMatrices`, and dimensions.
+#: Matrices of a grid: their field of `PoseMatrices`, dimensions, words.
 MATRICES = {
-    "mass": ("M", ("pose", "motion", "motion_by")),
-    "damping": ("D", ("pose", "motion", "motion_by")),
-    "stiffness": ("K", ("pose", "motion", "motion_by")),
-    "input_matrix": ("B", ("pose", "motion", "input")),
-    "output_matrix": ("C", ("pose", "output", "motion")),
+    "mass": ("M", ("pose", "motion", "motion_by"), "mass matrix"),
+    "damping": ("D", ("pose", "motion", "motion_by"), "damping matrix"),
+    "stiffness": ("K", ("pose", "motion", "motion_by"), "stiffness matrix"),
+    "input_matrix": ("B", ("pose", "motion", "input"), "force on each motion by an input"),
+    "output_matrix": ("C", ("pose", "output", "motion"), "output by each motion"),
 }
+FROM_HOME = "pose from home: lengths [m], angles [rad]"
 
 
 def _about(study: model.Study) -> Array:
