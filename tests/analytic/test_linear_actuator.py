@@ -88,3 +88,19 @@ def test_channels_are_refused_with_the_nearest():
         fx.linearize(beam(), inputs="command:rotatoin", outputs="tip")
     with pytest.raises(fx.InputError, match="rate"):
         fx.linearize(beam(), {"heave": 1.0}, inputs="force", outputs="tip")
+
+
+@pytest.mark.parametrize("turned", [{}, {"angle": 0.7}, {"space": True, "angle": -0.4, "elevation": 0.3}])
+def test_a_force_along_the_beam_stretches_nothing_that_is_held_and_bends_nothing(turned):
+    """Wherever it points: along it the tip moves as the motor extends, across as a cantilever, by L^3 / 3 EI."""
+    lin = fx.linearize(beam(**turned), inputs=["command:extension", "force:tip:along", "force:tip:rotation"],
+                       outputs=["tip", "drive-force"])  # fmt: skip
+    H = dict(zip(lin.outputs, lin.at([1e-2])[:, :, 0].real, strict=True))
+    stretch = 2.0 / 2e6 if "space" in turned else 0.0  # by the force along
+    bent = 2.0**3 / (3 * 200.0)
+    assert H["tip:along"][1:] == pytest.approx([stretch, 0.0], abs=1e-6 * bent)
+    assert -((2 * np.pi * 1e-2) ** 2) * H["tip:along"][0] == pytest.approx(1.0, rel=1e-6)
+    # (f / 3 Hz)^2 = 1e-5 of the first bending mode; shapes of six polynomials hold a force at the tip exactly
+    assert H["tip:rotation"] == pytest.approx([0.0, 0.0, bent], abs=3e-5 * bent)
+    assert H["drive-force:extension"] == pytest.approx([1.2 * 2.0, -1.0, 0.0], abs=1e-4)
+    assert H["drive-force:rotation"][2] == pytest.approx(-2.0 * np.cos(turned.get("elevation", 0.0)), rel=1e-4)
