@@ -104,3 +104,16 @@ def test_a_force_along_the_beam_stretches_nothing_that_is_held_and_bends_nothing
     assert H["tip:rotation"] == pytest.approx([0.0, 0.0, bent], abs=3e-5 * bent)
     assert H["drive-force:extension"] == pytest.approx([1.2 * 2.0, -1.0, 0.0], abs=1e-4)
     assert H["drive-force:rotation"][2] == pytest.approx(-2.0 * np.cos(turned.get("elevation", 0.0)), rel=1e-4)
+
+
+def test_a_beam_that_turns_has_no_weight():
+    """In steady rotation weight would come and go with each turn: heavy or not, poles are the same."""
+    heavy = beam(hub=0.5)
+    heavy = heavy.replace(actuator=heavy.actuator.replace(gravity=9.81, angle=0.3))
+    found, light = (
+        np.sort_complex(fx.linearize(x, {"rate": 12.0}, inputs="force:tip", outputs="tip").poles())
+        for x in (heavy, beam())
+    )
+    assert found == pytest.approx(light, rel=1e-9)
+    still = np.sort(np.abs(fx.linearize(heavy, inputs="force:tip", outputs="tip").poles()))
+    assert np.abs(still / np.sort(np.abs(light)) - 1).max() > 1e-3

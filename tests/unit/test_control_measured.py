@@ -174,7 +174,7 @@ def test_phases_in_radians_and_matrices_of_one_input(tmp_path):
 
 
 def test_axes_say_what_is_measured(tmp_path):
-    """Specific data types of the format: 8 displacement, 11 velocity, 12 acceleration, 9 reaction, 13 excitation force."""
+    """Data types of the format: 8 displacement, 11 velocity, 12 acceleration, 9 reaction, 13 excitation force."""
     units = {
         "tool:z": "m",
         "geophone:tool:z": "m/s",
@@ -193,5 +193,8 @@ def test_axes_say_what_is_measured(tmp_path):
     for at in starts:
         output, into = lines[at].split(" / ")
         top, bottom = lines[at + 8], lines[at + 9]
-        assert (int(top[:10]), top[42:62].strip()) == (kinds[units[output]], units[output])
+        assert (int(top[:10]), top[47:67].strip()) == (kinds[units[output]], units[output])
         assert int(bottom[:10]) == (13 if into.startswith("force") else 12)
+    (tmp_path / "a.uff").write_text("\n".join(lines), encoding="ascii")
+    found = fx.read_frf(tmp_path / "a.uff")  # labels of twenty characters stand before units
+    assert found.output_units.values.tolist() == list(units.values())[:5]

@@ -137,7 +137,7 @@ def _dataset_58(lines: list[str]) -> Response | None:
     start, step = float(lines[6][30:43]), float(lines[6][43:56])
     width = 20 if kind in (4, 6) else 13
     numbers = _numbers(lines[11:], width, kind, bool(even))
-    units = tuple(line[42:62].strip() or "1" for line in (lines[8], lines[9]))
+    units = tuple(line[47:67].strip() or "1" for line in (lines[8], lines[9]))
     if kind in COMPLEX:
         rows = numbers.reshape(-1, 2 if even else 3)[:count]
         frequency = np.asarray(start + step * np.arange(count) if even else rows[:, 0], dtype=float)
