@@ -88,3 +88,32 @@ def test_channels_are_refused_with_the_nearest():
         fx.linearize(beam(), inputs="command:rotatoin", outputs="tip")
     with pytest.raises(fx.InputError, match="rate"):
         fx.linearize(beam(), {"heave": 1.0}, inputs="force", outputs="tip")
+
+
+@pytest.mark.parametrize("turned", [{}, {"angle": 0.7}, {"space": True, "angle": -0.4, "elevation": 0.3}])
+def test_a_force_along_the_beam_stretches_nothing_that_is_held_and_bends_nothing(turned):
+    """Wherever it points: along it the tip moves as the motor extends, across as a cantilever, by L^3 / 3 EI."""
+    lin = fx.linearize(beam(**turned), inputs=["command:extension", "force:tip:along", "force:tip:rotation"],
+                       outputs=["tip", "drive-force"])  # fmt: skip
+    H = dict(zip(lin.outputs, lin.at([1e-2])[:, :, 0].real, strict=True))
+    stretch = 2.0 / 2e6 if "space" in turned else 0.0  # by the force along
+    bent = 2.0**3 / (3 * 200.0)
+    assert H["tip:along"][1:] == pytest.approx([stretch, 0.0], abs=1e-6 * bent)
+    assert -((2 * np.pi * 1e-2) ** 2) * H["tip:along"][0] == pytest.approx(1.0, rel=1e-6)
+    # (f / 3 Hz)^2 = 1e-5 of the first bending mode; shapes of six polynomials hold a force at the tip exactly
+    assert H["tip:rotation"] == pytest.approx([0.0, 0.0, bent], abs=3e-5 * bent)
+    assert H["drive-force:extension"] == pytest.approx([1.2 * 2.0, -1.0, 0.0], abs=1e-4)
+    assert H["drive-force:rotation"][2] == pytest.approx(-2.0 * np.cos(turned.get("elevation", 0.0)), rel=1e-4)
+
+
+def test_a_beam_that_turns_has_no_weight():
+    """In steady rotation weight would come and go with each turn: heavy or not, poles are the same."""
+    heavy = beam(hub=0.5)
+    heavy = heavy.replace(actuator=heavy.actuator.replace(gravity=9.81, angle=0.3))
+    found, light = (
+        np.sort_complex(fx.linearize(x, {"rate": 12.0}, inputs="force:tip", outputs="tip").poles())
+        for x in (heavy, beam())
+    )
+    assert found == pytest.approx(light, rel=1e-9)
+    still = np.sort(np.abs(fx.linearize(heavy, inputs="force:tip", outputs="tip").poles()))
+    assert np.abs(still / np.sort(np.abs(light)) - 1).max() > 1e-3

@@ -7,11 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.consistency.test_mounts import BASE, TOP
+from tests.machines import study as machine_study
+from tests.mechanisms import ROBOTS as KINDS
 from tests.readers import GlbReader, z_up
+from tests.stepped import section
 
 import flexapod as fx
-from flexapod.kinematics.rotations import matrix
-from flexapod.model import Guide, override
+from flexapod.kinematics.rotations import exponential, matrix
+from flexapod.model import Guide, Piston, override
 from flexapod.results.names import VARIABLES
 from flexapod.scene.geometry import RobotMotion
 
@@ -157,3 +160,47 @@ def test_khronos_validator_finds_nothing(motion, tmp_path):
         pytest.skip("gltf-validator is not installed: npm install gltf-validator, and NODE_PATH")
     issues = json.loads(run.stdout)
     assert (issues["numErrors"], issues["numWarnings"]) == (0, 0), issues["messages"]
+
+
+@pytest.mark.parametrize("name", ["hexaglide", "6-RUS"])
+def test_carriages_slide_and_cranks_turn_by_what_drives_do(tmp_path, name):
+    """Base joints by hand: along the rail by the drive's way, about the shaft by its angle, where the rod ends."""
+    study = machine_study(KINDS[name](), fidelity="rigid", output_step=0.02) if name in KINDS else study_of(name)
+    data = fx.simulate(study, fidelity="rigid")
+    file = GlbReader(fx.export(study, "gltf", tmp_path / "robot.glb", data=data).path)
+    robot, lost = study.robot, 1e-6
+    moved = data.drive_position.values  # from the foot of the rail, from the arm as it is given
+    for i, leg in enumerate(robot.legs):
+        way, home = leg.carriage, robot.base_joints[i]
+        for k in instants(data):
+            cylinder = z_up(file.transform(file.nodes[f"cylinder_{i + 1}"], k)[None, :3, 3])[0]
+            rod = rings(z_up(file.vertices(f"carriage_{i + 1}", k)))
+            axis = way.axis / np.linalg.norm(way.axis)
+            if way.kind == "slider":
+                assert cylinder == pytest.approx(home + moved[k, i] * axis, abs=lost)
+                assert rod.mean(axis=0) == pytest.approx(cylinder, abs=lost)
+                assert np.abs(np.cross(rod[-1] - rod[0], axis)).max() < lost
+            else:
+                turned = exponential(axis * moved[k, i]) @ way.arm
+                assert cylinder == pytest.approx(home + turned, abs=lost)
+                assert rod[0] == pytest.approx(home, abs=lost)
+                assert rod[-1] == pytest.approx(cylinder, abs=lost)
+    assert np.ptp(moved, axis=0).max() > 1e-3
+
+
+def test_rods_are_as_thick_as_their_pistons(tmp_path):
+    """A stepped piston has at each station the radius of its section, its tube half as much again as at the mouth."""
+    study = override(fx.preset("paper-robot"), fidelity="rigid", output_step=0.5)
+    stepped = Piston.stepped([section(0.5, 0.04), section(0.25, 0.02)])  # from the drive to the tip
+    robot = study.robot.replace(legs=tuple(leg.replace(piston=stepped) for leg in study.robot.legs))
+    study = study.replace(robot=robot)
+    file = GlbReader(fx.export(study, "gltf", tmp_path / "robot.glb", data=fx.simulate(study)).path)
+    free = robot.home_lengths[0] - robot.legs[0].cylinder.mouth
+    ring = file.local("piston_1", 0).reshape(-1, SIDES, 3)
+    from_tip = free * (1 - ring[:, 0, 2] / ring[:, 0, 2].max())
+    assert free > 0.3
+    sure = np.abs(from_tip - 0.25) > free / STATIONS
+    expected = np.where(from_tip < 0.25, 0.01, 0.02)[sure, None] * np.ones(SIDES)
+    assert np.linalg.norm(ring[..., :2], axis=-1)[sure] == pytest.approx(expected, rel=1e-6)
+    tube = file.local("cylinder_1", 0).reshape(-1, SIDES, 3)
+    assert np.linalg.norm(tube[..., :2], axis=-1) == pytest.approx(np.full(tube.shape[:2], 0.03), rel=1e-6)

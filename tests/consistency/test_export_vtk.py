@@ -89,3 +89,31 @@ def test_radii_are_those_of_the_pistons_and_no_path_is_told(series):
     assert radius[piston] == pytest.approx(study.robot.legs[0].piston.diameter / 2)
     for path in found.files:
         assert str(found.path.parent) not in path.read_text(encoding="ascii")
+
+
+def test_plates_turn_with_their_platform_and_lines_belong_to_their_legs(series):
+    """In platform axes corners stand still; cylinders go from base joints to mouths, rails through their own joints."""
+    study, data, found = series
+    robot = study.robot
+    seen = []
+    for k, (_, grid) in enumerate(files_of(found)):
+        points, radius = grid.arrays["Points", "points"], grid.arrays["PointData", "radius"]
+        legs = grid.arrays["CellData", "leg"].astype(int).ravel()
+        corners = sorted({int(i) for kind, cell in grid.cells if kind == TRIANGLE for i in cell})
+        R = matrix(data.platform_quaternion_rigid.values[k])
+        seen.append((points[corners] - data.com_position_rigid.values[k]) @ R)
+        lines = [(leg, cell) for leg, (kind, cell) in zip(legs, grid.cells, strict=True) if kind == LINE]
+        pistons = {leg: cell for leg, cell in lines if len(cell) == STATIONS}
+        tubes = {leg: cell for leg, cell in lines[: robot.count]}
+        assert set(pistons) == set(tubes) == set(range(1, robot.count + 1))
+        for leg, cell in tubes.items():
+            foot, mouth = points[cell]
+            assert mouth == pytest.approx(points[pistons[leg][0]], abs=1e-12)
+            assert radius[cell] == pytest.approx(1.5 * radius[pistons[leg][0]])
+            for rail in (other for of, other in lines[2 * robot.count :] if of == leg):
+                start, end = points[rail]
+                along = (end - start) / np.linalg.norm(end - start)
+                assert np.linalg.norm(np.cross(foot - start, along)) < 1e-12
+        rails = [leg for leg, _ in lines[2 * robot.count :]]
+        assert rails == [i + 1 for i, leg in enumerate(robot.legs) if leg.carriage is not None]
+    assert np.ptp(seen, axis=0).max() < 1e-12

@@ -181,3 +181,89 @@ def test_another_version_of_matlab_is_told(tmp_path):
     with pytest.raises(InputError, match=r"MATLAB 7\.3") as error:
         fx.read_frf(tmp_path / "a.mat")
     assert "-v7" in (error.value.next_step or "")
+
+
+#: One response as the format has it: of real numbers and complex ones, single and double, evenly spaced and not.
+FORM = """\
+    -1
+    58
+{title}
+NONE
+NONE
+NONE
+NONE
+    4         0    0         0       NONE         4  -2       NONE         1   0
+{kind:10d}{count:10d}{even:10d}{start:13.5E}{step:13.5E}{zero:13.5E}
+        18    0    0    0 NONE                 NONE
+         8    0    0    0 NONE                 {top}
+        13    0    0    0 NONE                 {bottom}
+         0    0    0    0 NONE                 NONE
+{rows}
+    -1
+"""
+UNEVEN, REAL = np.array([2.0, 3.5, 7.0]), np.array([-1.25, 2.5, -3.75])
+
+
+def form(kind, even):
+    """Its text: E13.5 of single numbers and of abscissas, E20.12 of double ones, as many in a line as it has."""
+    wide = "{:20.12E}" if kind in (4, 6) else "{:13.5E}"
+    numbers = []
+    for f, x in zip(UNEVEN, REAL, strict=True):
+        parts = [] if even else [f"{f:13.5E}"]
+        numbers.append("".join([*parts, wide.format(x), *([wide.format(2 * x)] if kind in (5, 6) else [])]))
+    per_line = {(2, True): 6, (2, False): 3, (4, True): 4, (4, False): 2, (5, True): 3, (5, False): 2, (6, True): 2,
+                (6, False): 1}[kind, even]  # fmt: skip
+    rows = ["".join(numbers[k : k + per_line]) for k in range(0, 3, per_line)]
+    return FORM.format(title="NONE", kind=kind, count=3, even=int(even), start=2.0 if even else 0.0,
+                       step=0.25 if even else 0.0, zero=0.0, top="m", bottom="N", rows="\n".join(rows))  # fmt: skip
+
+
+@pytest.mark.parametrize("even", [True, False])
+@pytest.mark.parametrize("kind", [2, 4, 5, 6])
+def test_numbers_of_all_forms_are_read(tmp_path, kind, even):
+    (tmp_path / "a.58").write_text(form(kind, even))
+    found = fx.read_frf(tmp_path / "a.58")
+    assert found.output.item() == "node 4:-y" and found.input.item() == "node 1"
+    np.testing.assert_allclose(found.frequency, [2.0, 2.25, 2.5] if even else UNEVEN)
+    np.testing.assert_allclose(complex_values(found)[0, 0], REAL * (1 + 2j if kind in (5, 6) else 1))
+    assert found.output_units.item() == "m" and found.input_units.item() == "N"
+
+
+def test_phases_in_radians_and_matrices_of_one_input(tmp_path):
+    from scipy.io import savemat
+
+    (tmp_path / "a.csv").write_text(f"f,a/u magnitude,a/u phase [rad]\n1,2,{np.pi / 2!r}\n2,3,{np.pi!r}\n")
+    np.testing.assert_allclose(complex_values(fx.read_frf(tmp_path / "a.csv"))[0, 0], [2j, -3], atol=1e-14)
+    H = np.arange(12.0).reshape(3, 4) * (1 - 1j)
+    units = {"output_units": np.array(["m", "rad", "V"], dtype=object), "input_units": np.array(["N"], dtype=object)}
+    savemat(tmp_path / "a.mat", {"frequency": np.arange(4.0), "frf": H, **units})
+    found = fx.read_frf(tmp_path / "a.mat")
+    np.testing.assert_allclose(complex_values(found)[:, 0], H)
+    assert found.output_units.values.tolist() == ["m", "rad", "V"] and found.input_units.item() == "N"
+
+
+def test_axes_say_what_is_measured(tmp_path):
+    """Data types of the format: 8 displacement, 11 velocity, 12 acceleration, 9 reaction, 13 excitation force."""
+    units = {
+        "tool:z": "m",
+        "geophone:tool:z": "m/s",
+        "accelerometer:tool:z": "m/s^2",
+        "drive-force:1": "N",
+        "tool:rx": "rad",
+    }
+    kinds = {"m": 8, "m/s": 11, "m/s^2": 12, "N": 9, "rad": 1}
+    one = fc.StateSpace(
+        A=[[-1.0]], B=[[1.0, 0.0]], C=np.ones((5, 1)), D=np.zeros((5, 2)), inputs=("force:tool:z", "floor:z"),
+        outputs=tuple(units), states=("x",), units=units | {"force:tool:z": "N", "floor:z": "m/s^2"},
+    )  # fmt: skip
+    lines = uff(one.frequency_response([1.0, 2.0])).splitlines()
+    starts = [k + 1 for k, line in enumerate(lines) if line == "    58"]
+    assert len(starts) == 10
+    for at in starts:
+        output, into = lines[at].split(" / ")
+        top, bottom = lines[at + 8], lines[at + 9]
+        assert (int(top[:10]), top[47:67].strip()) == (kinds[units[output]], units[output])
+        assert int(bottom[:10]) == (13 if into.startswith("force") else 12)
+    (tmp_path / "a.uff").write_text("\n".join(lines), encoding="ascii")
+    found = fx.read_frf(tmp_path / "a.uff")  # labels of twenty characters stand before units
+    assert found.output_units.values.tolist() == list(units.values())[:5]

@@ -151,7 +151,7 @@ def _dataset_58(lines: list[str]) -> Response | None:
     start, step = float(lines[6][30:43]), float(lines[6][43:56])
     width = 20 if kind in (4, 6) else 13
     numbers = _numbers(lines[HEAD:], width, kind, bool(even))
-    units = tuple(line[42:62].strip() or "1" for line in (lines[8], lines[9]))
+    units = tuple(line[47:67].strip() or "1" for line in (lines[8], lines[9]))
     if kind not in (*COMPLEX, *REAL):
         raise InputError("has ordinates of an unknown type", key="58", value=kind, allowed="2, 4, 5, 6")
     columns = (2 if kind in COMPLEX else 1) + (0 if even else 1)
