@@ -27,7 +27,8 @@ from flexapod.errors import InputError
 from flexapod.plot.narrow import narrowed
 from flexapod.runtime.files import replacing
 
-P, T = ParamSpec("P"), TypeVar("T")
+P = ParamSpec("P")
+T = TypeVar("T")
 
 LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (3, 1)), (0, (1, 3)), (0, (7, 2)))
 GRID = "#DDDDDD"
