@@ -10,6 +10,8 @@ import xarray as xr
 
 import flexapod as fx
 from flexapod import kinematics
+from flexapod.description import rest
+from flexapod.description.robot import describe
 from flexapod.kinematics import robot as of_robot
 from flexapod.results.names import COORDINATES, VARIABLES, dataset
 
@@ -52,6 +54,29 @@ def test_the_hash_of_another_process_is_not_taken_over():
     robot = fx.preset("paper-robot").robot
     assert pickle.loads(sent) == robot
     assert hash(pickle.loads(sent)) == hash(robot)
+
+
+def test_a_study_without_other_settings_is_itself_and_results_say_whose_they_are():
+    study, stiff = fx.preset("paper-robot"), {"basis": "clamped-free"}
+    assert fx.model.override(study) is study
+    seen = [fx.stiffness(one, **more).study_hash for one, more in ((study, {}), (study, stiff), (study, {}))]
+    higher = study.replace(robot=study.robot.replace(home_height=0.95))
+    assert seen[0] == seen[2] != seen[1]
+    assert fx.stiffness(higher).study_hash not in seen
+    assert fx.stiffness(fx.preset("paper-robot")).study_hash == seen[0]
+
+
+def test_a_study_is_described_with_each_pose_solved_once_and_no_time_integration(monkeypatch):
+    poses, plain = [], rest.the_modes
+    monkeypatch.setattr(rest, "the_modes", lambda locked: poses.append(locked) or plain(locked))
+    assert describe(fx.preset("paper-robot")).vibration is not None
+    assert len(poses) == 2  # the start and the end, whose modes the vibration takes
+    code = (
+        "import sys, flexapod.description.robot; print([x for x in sys.modules if x.startswith('flexapod.solve.time')])"
+    )
+    assert (
+        subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.strip() == "[]"
+    )
 
 
 def test_a_dataset_is_the_one_that_xarray_would_make():

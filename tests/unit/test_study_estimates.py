@@ -19,6 +19,7 @@ from flexapod.model import AxisMotion, Feedback, ForceDrive, Payload, ServoDrive
 from flexapod.results.path import RigidPath
 from flexapod.review.estimates import (
     VibrationEstimate,
+    _rung_on,
     bending_moments,
     buckling_load,
     residual_vibration,
@@ -312,3 +313,14 @@ def test_the_moment_of_the_platform_joint_bends_its_leg():
     across = force - (force @ axis) * axis
     np.testing.assert_allclose(at_tip, length * across, atol=1e-9 * np.abs(moment).max())
     assert bending_moments(path)[:, 0, 3].max() == pytest.approx(np.linalg.norm(at_tip), rel=1e-12)
+
+
+@pytest.mark.parametrize("count", [2, 3, 90, 101, 2000])
+def test_impulses_ring_on_as_each_by_itself(count):
+    """Phases of up to 1e4 rad are right to 1e4 times the rounding of a number, 2e-16, in both sums."""
+    some = np.random.default_rng(count)
+    impulse, t = some.normal(size=(count + 1, 4)), np.linspace(0.0, 2.0, count)
+    rate = np.array([5000j - 1.0, 700j - 50.0, 3j, -2.0 + 0j])
+    at = [t[0], *(0.5 * (t[1:] + t[:-1])), t[-1]]
+    expected = sum(part * np.exp(rate * (t[-1] - instant)) for part, instant in zip(impulse, at, strict=True))
+    np.testing.assert_allclose(_rung_on(impulse, rate, t), expected, rtol=0, atol=1e-11 * np.abs(impulse).sum())

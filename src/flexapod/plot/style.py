@@ -9,7 +9,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from functools import wraps
+from functools import partial, wraps
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
@@ -27,7 +27,8 @@ from flexapod.errors import InputError
 from flexapod.plot.narrow import narrowed
 from flexapod.runtime.files import replacing
 
-P, T = ParamSpec("P"), TypeVar("T")
+P = ParamSpec("P")
+T = TypeVar("T")
 
 LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (3, 1)), (0, (1, 3)), (0, (7, 2)))
 GRID = "#DDDDDD"
@@ -38,7 +39,7 @@ TEXT, NOTE, SMALL = 8.5, 7.5, 7.0  # sizes of letters [points]
 CONTRAST = 4.6  # of words; a little above what is asked for, as colours are rounded
 INCH = 0.0254  # [m]
 # What files say of themselves: no dates, so that the same figure is the same file.
-_TICKS = ("_update_ticks", "_get_ticklabel_bboxes")  # of matplotlib's axes: nothing public is called as often
+_TICKS = ("_update_ticks", "_get_ticklabel_bboxes")  # of matplotlib's axes, where it has them: nothing public does this
 _METADATA: dict[str, dict[str, str | None]] = {
     "png": {"Software": "flexapod"},
     "svg": {"Date": None, "Creator": "flexapod"},
@@ -254,14 +255,14 @@ def _ticks_kept(fig: Figure) -> Iterator[None]:
     """
     axes = [axis for panel in fig.axes if panel.name == "rectilinear" for axis in (panel.xaxis, panel.yaxis)]
     for axis in axes:
-        for name in _TICKS:
+        for name in filter(partial(hasattr, axis), _TICKS):
             setattr(axis, name, _kept(axis, getattr(axis, name)))
     try:
         yield
     finally:
         for axis in axes:
             for name in _TICKS:
-                delattr(axis, name)
+                vars(axis).pop(name, None)
 
 
 def _kept(axis: Axis, find: Callable[..., T]) -> Callable[..., T]:

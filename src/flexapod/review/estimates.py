@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -264,7 +265,7 @@ def residual_vibration(
     )
 
 
-def _rung_on(impulse: Array, rate: NDArray[np.complex128], t: Array) -> NDArray[np.complex128]:
+def _rung_on(impulse: Array, rate: NDArray[Any], t: Array) -> NDArray[Any]:
     """Sum at the end of impulses (T + 1, m), at the start, between equally spaced instants, at the end: (T8.15).
 
     Between them exponentials of few times, of products of two, stand for those of all.

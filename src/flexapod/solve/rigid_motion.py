@@ -84,7 +84,10 @@ def _with_rates(motion: tuple[RestStates, Rates]) -> State:
 def _undeformed(system: System, robot: Robot, path: kinematics.Poses, found: kinematics.LegState) -> Array:
     """Coordinates of the undeformed legs on a path of T poses, rates and accelerations, (3, T, legs, n)."""
     legs, shapes = kinematics.built_limbs(robot, kinematics.robot_limbs(robot)), system.kernel.shapes
-    x = np.stack([np.stack(found.coordinate(name)) for name in COORDINATES], axis=-1)
+    x = np.empty((3, *found.length.shape, len(COORDINATES)))
+    for k, name in enumerate(COORDINATES):
+        for order, values in enumerate(found.coordinate(name)):
+            x[order, ..., k] = values
     held = legs.state == HELD  # welds, which the rigid path releases, too
     x[:, :, held] = 0.0
     x[0] += np.where(held, legs.home, 0.0)
