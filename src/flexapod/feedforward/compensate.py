@@ -8,7 +8,7 @@ from flexapod.errors import InputError
 from flexapod.feedforward.beam import tip_inversion
 from flexapod.feedforward.compensation import compensation
 from flexapod.feedforward.elastic_path import elastic_compensation
-from flexapod.feedforward.table import check_place
+from flexapod.feedforward.table import check_out
 from flexapod.model import ActuatorStudy, Study
 from flexapod.results.arguments import FileLike, RobotLike, read
 from flexapod.runtime.threads import one_thread
@@ -90,7 +90,7 @@ def compensate(
     >>> print(ahead.notes[0])
     commands make up for what weight and load do ...: the tool misses the wanted path by ... in place of 20.4 µm, ...
     """
-    check_place(out)
+    check_out(out)
     subject = read(study)
     if order not in get_args(Order):
         raise InputError("is not known", key="order", value=order, allowed='0, 2, "stable-inversion"')

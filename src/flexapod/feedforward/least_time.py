@@ -15,8 +15,8 @@ from flexapod.control import StateSpace
 from flexapod.errors import InputError
 from flexapod.feedforward.drive_loads import Given, limits_of
 from flexapod.feedforward.switching import Switched, switched
-from flexapod.feedforward.table import check_place, saved
-from flexapod.feedforward.vibration import vibration_along
+from flexapod.feedforward.table import check_out, saved
+from flexapod.feedforward.vibration import PERIODS, vibration_along
 from flexapod.feedforward.way import StraightWay
 from flexapod.model import Study
 from flexapod.results.arguments import FileLike, PoseLike, RobotLike, as_pose, as_study
@@ -27,8 +27,6 @@ from flexapod.units import to_si
 from flexapod.words import text
 
 __all__ = ["Fastest", "fastest", "time_optimal"]
-
-PERIODS = 6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,7 +122,7 @@ def time_optimal(
     >>> fx.time_optimal(double, end=1.0)  # a mass of 1 kg, 1 m away, a force of 1 N: full ahead, full back
     Switched(1, end 2: the input switches 1 times and is over after 2 s: ...)
     """
-    check_place(out)
+    check_out(out)
     if isinstance(subject, StateSpace):
         return switched(subject, np.asarray(end, dtype=float), limit, robust=robust)
     limits = {"speed": speed, "acceleration": acceleration, "force": force}

@@ -13,7 +13,7 @@ from flexapod import kinematics
 from flexapod.arrays import Array, Mask
 from flexapod.errors import InputError, check_known
 from flexapod.feedforward.shapers import KINDS, Shaper, shaper
-from flexapod.feedforward.table import check_place, saved, tabled
+from flexapod.feedforward.table import check_out, saved, tabled
 from flexapod.feedforward.vibration import PERIODS, POSES, vibration_along
 from flexapod.kinematics import Law
 from flexapod.model import ActuatorStudy, CsvMotion, Motion, Study, load
@@ -139,7 +139,7 @@ def shape(
     20.0 ms longer
     """
     check_known(kind, KINDS, "kind")
-    check_place(out)
+    check_out(out)
     subject = load(motion) if isinstance(motion, str | Path) else motion
     if isinstance(subject, ActuatorStudy):
         raise InputError(

@@ -18,7 +18,7 @@ from flexapod.results.arguments import FileLike
 from flexapod.runtime.files import write_text
 from flexapod.schema.csv_tables import POSE, header
 
-__all__ = ["Tabled", "check_place", "named", "saved", "tabled"]
+__all__ = ["Tabled", "check_out", "named", "saved", "tabled"]
 
 FEWEST, MOST = 100, 3200  # rows between first and last knot
 ENOUGH = 1e-5  # of the largest acceleration of each kind, by which that of the table may be off in the mean
@@ -139,7 +139,7 @@ def _graded(knots: Array, count: int, nearest: float) -> Array:
 S = TypeVar("S", bound=Study | ActuatorStudy)
 
 
-def check_place(out: FileLike | None) -> None:
+def check_out(out: FileLike | None) -> None:
     """Refuse a name that is none of a study file."""
     if out is not None and Path(out).suffix != ".toml":
         raise InputError("is no name of a study file", key="out", value=str(out), allowed="NAME.toml")
@@ -155,7 +155,7 @@ def saved(study: S, path: FileLike) -> S:
     path : path
         ``NAME.toml``; the table is ``NAME.csv``. In the folder of the study whose other tables it names.
     """
-    check_place(path)
+    check_out(path)
     place = Path(path)
     beside = place.with_suffix(".csv")
     written, first, columns = _named(study, beside.name)

@@ -11,6 +11,7 @@ from scipy.optimize import linear_sum_assignment
 
 from flexapod import model
 from flexapod.arrays import Array
+from flexapod.control.poles import SWINGS
 from flexapod.control.state_space import StateSpace
 from flexapod.study.controlled import sampled_controller
 from flexapod.study.linear import linearize
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 __all__ = ["Predicted", "predicted_damping"]
 
 MOST = 12  # modes
-SWINGS = 1e-6  # imaginary part over the size of a pole that oscillates
 
 
 @dataclass(frozen=True, kw_only=True)

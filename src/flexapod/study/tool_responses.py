@@ -16,7 +16,7 @@ from flexapod.runtime.threads import one_thread
 from flexapod.solve.linear.channels import asked
 from flexapod.solve.linear.plant import Drives
 from flexapod.solve.linear.states import states_of
-from flexapod.study.linear import Friction, linearize, model_of, plant_of, study_of
+from flexapod.study.linear import Friction, linearize, model_of, plant_of, study_about_rest
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -110,7 +110,7 @@ def transmissibility(
     >>> print(data.transmissibility.sel(output="tool:z", input="floor:z", part="real").round(2).values)
     [1.   1.02 0.02]
     """
-    hz, found = frequencies(hz), study_of(study, load, drives, friction)
+    hz, found = frequencies(hz), study_about_rest(study, load, drives, friction)
     inputs, outputs = asked("floor", found.robot, "inputs"), asked("tool", found.robot, "outputs")
     (point, *_) = asked(f"accelerometer:{at}", found.robot, "at")
     plant = plant_of(found, pose, drives)
