@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 __all__ = [
     "PARTS",
     "best_dataset",
+    "beyond_rounding",
     "channel_labels",
     "complex_of",
     "damping_dataset",
@@ -32,7 +33,6 @@ __all__ = [
     "in_parts",
     "locus_dataset",
     "margins_dataset",
-    "moved",
     "per",
     "response_dataset",
     "source_dataset",
@@ -80,7 +80,7 @@ def units_in(data: xr.Dataset, dim: str) -> dict[str, str]:
     return dict(zip(data[dim].values.tolist(), data[f"{dim}_units"].values.tolist(), strict=True))
 
 
-def moved(sizes: Mapping[tuple[str, str], float], units: Mapping[str, str]) -> list[tuple[str, str]]:
+def beyond_rounding(sizes: Mapping[tuple[str, str], float], units: Mapping[str, str]) -> list[tuple[str, str]]:
     """Pairs of output and input whose size is more than rounding beside outputs alike by the same input.
 
     `units` of the outputs: alike are those of one, where a radian counts as a metre, and 1 N m as 1 N. What symmetry

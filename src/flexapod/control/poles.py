@@ -8,12 +8,13 @@ from numpy.typing import NDArray
 
 from flexapod.arrays import Array
 
-__all__ = ["damping_of", "poles_of", "swings_of", "zeros_of"]
+__all__ = ["SWINGS", "damping_of", "poles_of", "swings_of", "zeros_of"]
 
 Complex = NDArray[np.complex128]
 
 RANK = 1e-11  # of the largest number of its row or column: less counts as none
 INTEGRATES = 1e-7  # of the largest pole: a double pole at 0 splits that far
+SWINGS = 1e-6  # imaginary part over the size of a pole that oscillates
 CANCELS = 1e-7  # distance of a zero from a pole over the pole's size at which both are of motions that nothing shows
 
 

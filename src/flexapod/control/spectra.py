@@ -14,7 +14,7 @@ from flexapod.control.channels import chosen
 from flexapod.control.integrators import moved_and_shown
 from flexapod.errors import InputError
 from flexapod.model.disturbance import Disturbance, Floor, Spectrum, check_density
-from flexapod.solve.linear.random_vibration import FLOOR_RATES, SOURCES, RandomVibration, Source, random_vibration
+from flexapod.solve.linear.random_vibration import FLOOR_RATES, SOURCES, RandomVibration, Source, with_error
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
@@ -71,10 +71,7 @@ def shaken(system: StateSpace, sources: Sources) -> tuple[RandomVibration, float
         )
         for one in every
     ]
-    model = OutputsAsModes(system=used)
-    found, coarse = random_vibration(model, every, refine=2), random_vibration(model, every)
-    error = np.divide(coarse.rms, found.rms, out=np.ones_like(found.rms), where=found.rms > 0) - 1.0
-    return found, float(np.abs(error).max(initial=0.0))
+    return with_error(OutputsAsModes(system=used), every)
 
 
 def _sources(system: StateSpace, given: Sources) -> list[Source]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.control.datasets import complex_of, moved, per, units_in
+from flexapod.control.datasets import beyond_rounding, complex_of, per, units_in
 from flexapod.document.parts import Item, TextTable
 from flexapod.words import column, number, sentence
 
@@ -29,7 +29,7 @@ def frf_items(data: Dataset, pose: str | None, drives: str) -> Iterator[Item]:
     out, into = (units_in(data, dim) for dim in ("output", "input"))
     curves = dict(zip(product(out, into), size.reshape(-1, len(f)), strict=True))
     rows = []
-    for output, input in moved({pair: float(curve.max()) for pair, curve in curves.items()}, out):
+    for output, input in beyond_rounding({pair: float(curve.max()) for pair, curve in curves.items()}, out):
         curve, unit = curves[output, input], per(out[output], into[input])
         at = int(curve.argmax())
         rows.append((output, input, f"{curve[0]:.4g}", f"{curve[at]:.4g}", f"{f[at]:.4g}", unit))

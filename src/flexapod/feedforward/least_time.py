@@ -17,7 +17,7 @@ from flexapod.errors import InputError
 from flexapod.feedforward.drive_loads import Given, limits_of
 from flexapod.feedforward.switching import Switched, switched
 from flexapod.feedforward.table import check_out, saved
-from flexapod.feedforward.vibration import vibration_along
+from flexapod.feedforward.vibration import PERIODS, vibration_along
 from flexapod.feedforward.way import StraightWay
 from flexapod.model import Study
 from flexapod.results.arguments import FileLike, PoseLike, RobotLike, as_pose, as_study
@@ -29,7 +29,6 @@ from flexapod.words import text
 
 __all__ = ["Fastest", "fastest", "time_optimal"]
 
-PERIODS = 6
 RESIDUAL = "1 um"  # how much vibration is left where nothing else is asked for
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from flexapod.arrays import Array
 from flexapod.control.channels import Names, chosen
-from flexapod.control.datasets import complex_of, moved, per, units_in
+from flexapod.control.datasets import beyond_rounding, complex_of, per, units_in
 from flexapod.errors import InputError, names_of
 from flexapod.plot.style import LINE_STYLES, NOTE, PAGE, figure, needs, styled
 from flexapod.scene.colours import AXIS_COLORS, colors_of_legs
@@ -173,7 +173,7 @@ def _moved(results: Mapping[str, xr.Dataset], pairs: list[tuple[str, str]]) -> t
     """Pairs that are more than rounding beside outputs alike by the same input, and how many are not."""
     sizes = {pair: max(_largest(data, *pair) for data in results.values()) for pair in pairs}
     units = {name: unit for data in results.values() for name, unit in units_in(data, "output").items()}
-    kept = moved(sizes, units) or pairs
+    kept = beyond_rounding(sizes, units) or pairs
     if len(kept) > MOST:
         raise InputError(
             f"are {len(kept)} pairs of channels", key="outputs, inputs", allowed=f"{MOST} curves in a figure",

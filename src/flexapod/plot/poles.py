@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from flexapod.arrays import Array
 from flexapod.control.arguments import number
 from flexapod.control.datasets import complex_of
+from flexapod.control.poles import SWINGS
 from flexapod.control.state_space import StateSpace
 from flexapod.errors import InputError
 from flexapod.plot.style import PAGE, SMALL, figure, needs, styled
@@ -22,7 +23,6 @@ __all__ = ["pole_map", "root_locus"]
 
 RATIOS = (0.01, 0.05, 0.1, 0.2, 0.4, 0.7)  # damping ratios with a line
 MARKS = ("x", "+", "o", "s", "^", "v")
-SWINGS = 1e-6  # imaginary part over the size of a pole that oscillates
 
 
 Poles = xr.Dataset | StateSpace

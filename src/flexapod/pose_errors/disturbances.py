@@ -17,7 +17,7 @@ from flexapod.results.mode_shapes import mode_values
 from flexapod.results.names import dataset
 from flexapod.review.checks import path_remarks
 from flexapod.runtime.threads import one_thread
-from flexapod.solve.linear.random_vibration import Source, random_vibration, sources_of
+from flexapod.solve.linear.random_vibration import Source, random_vibration, sources_of, with_error
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.modal.frequencies import count_real
 from flexapod.solve.modal.modes import the_modes
@@ -79,7 +79,7 @@ def vibration(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     path = as_pose(study.robot, pose)
     locked = _locked(study, path)
     model, sources = _linear(study, locked)
-    found, coarse = random_vibration(model, sources, refine=2), random_vibration(model, sources)
+    found, error = with_error(model, sources)
     count = count_real(model.omega[None])
     modes = mode_values(study.robot, the_modes(locked, loops=False), path)
     values = {
@@ -92,9 +92,8 @@ def vibration(robot: RobotLike, pose: PoseLike = None) -> Dataset:
         **{name: modes[name] for name in ("frequency", "damping_ratio", "kind")},
     }
     labels = {"spectrum_frequency": found.frequency, "source": list(found.sources), "mode": np.arange(1, count + 1)}
-    error = np.divide(coarse.rms, found.rms, out=np.ones(6), where=found.rms > 1e-9 * found.rms.max()) - 1.0
     remarks = [*study.warnings, *path_remarks(study.robot, np.zeros(1), path), *_beyond(study, modes["frequency"])]
-    return dataset(values, labels, attributes(study, remarks) | {"estimated_error": float(np.abs(error).max())})
+    return dataset(values, labels, attributes(study, remarks) | {"estimated_error": error})
 
 
 def _locked(study: Study, path: Poses) -> LockedPoses:

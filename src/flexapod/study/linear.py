@@ -32,7 +32,7 @@ from flexapod.units import DIMENSIONS, to_si
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["MATRICES", "LinearModel", "linearize", "model_of", "plant_of", "study_of"]
+__all__ = ["MATRICES", "LinearModel", "linearize", "model_of", "plant_of", "study_about_rest"]
 
 Friction = Literal["sliding", "stuck"]
 
@@ -142,13 +142,13 @@ def linearize(
         return cast("LinearModel", _of_actuator(study, pose, inputs, outputs, drives, friction=friction, load=load))
     if is_many(pose):
         return cast("LinearModel", _grid(study, pose, inputs, outputs, drives, friction, load))
-    found = study_of(study, load, drives, friction)
+    found = study_about_rest(study, load, drives, friction)
     given, seen = asked(inputs, found.robot, "inputs"), asked(outputs, found.robot, "outputs")
     plant = plant_of(found, pose, drives)
     return model_of(found, plant, states_of(plant, given, seen, about=_about(found)))
 
 
-def study_of(study: RobotLike, load: LoadLike, drives: Drives, friction: Friction | None) -> model.Study:
+def study_about_rest(study: RobotLike, load: LoadLike, drives: Drives, friction: Friction | None) -> model.Study:
     """The study with what a call gives in place of its own."""
     _check_drives(drives)
     return model.override(at_pose(study, load), friction=friction)
@@ -220,7 +220,7 @@ def _grid(
     """Matrices on motions at many poses."""
     import xarray as xr
 
-    found = study_of(study, load, drives, friction)
+    found = study_about_rest(study, load, drives, friction)
     path = as_many(found.robot, pose)
     given, seen = asked(inputs, found.robot, "inputs"), asked(outputs, found.robot, "outputs")
     parts: dict[str, Array] = {}

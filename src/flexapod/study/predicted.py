@@ -11,6 +11,7 @@ from scipy.optimize import linear_sum_assignment
 
 from flexapod import model
 from flexapod.arrays import Array
+from flexapod.control.poles import SWINGS
 from flexapod.control.state_space import StateSpace
 from flexapod.errors import FlexapodError
 from flexapod.study.controlled import control_remarks, sampled_controller
@@ -24,7 +25,6 @@ __all__ = ["Predicted", "control_words", "predicted_damping", "static_stiffness"
 
 NONE = 1e-6  # of the stiffness without a controller
 MOST = 12  # modes
-SWINGS = 1e-6  # imaginary part over the size of a pole that oscillates
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -17,7 +17,7 @@ from flexapod.runtime.threads import one_thread
 from flexapod.solve.linear.channels import asked
 from flexapod.solve.linear.plant import Drives
 from flexapod.solve.linear.states import states_of
-from flexapod.study.linear import Friction, linearize, model_of, plant_of, study_of
+from flexapod.study.linear import Friction, linearize, model_of, plant_of, study_about_rest
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -112,7 +112,7 @@ def transmissibility(
     [1.   1.02 0.02]
     """
     flag(tilt, "tilt")
-    hz, found = frequencies(hz), study_of(study, load, drives, friction)
+    hz, found = frequencies(hz), study_about_rest(study, load, drives, friction)
     if found.robot.plane is not None:
         raise InputError(
             "is of a robot whose floor cannot turn",

@@ -9,11 +9,11 @@ from scipy.linalg import cho_factor, cho_solve, qr, solve_triangular
 
 from flexapod.arrays import Array
 from flexapod.errors import ComputationError
+from flexapod.solve.modal.frequencies import LIGHTEST
 from flexapod.solve.system import Index
 
 __all__ = ["FirstOrder", "first_order", "with_mass"]
 
-LIGHTEST = 1e-10  # root of a mass over that of what moves with it: less is rounding, as in modes
 PLAIN = 1e-4  # smallest pivot of a mass matrix of unit diagonal at which nothing in it is without mass
 LEFT = 1e-9  # of a damper, over the largest, that acts on what has neither mass nor damper: less is rounding
 

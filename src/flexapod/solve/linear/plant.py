@@ -28,7 +28,7 @@ from flexapod.solve.statics.reduction import Motions, independent
 from flexapod.solve.statics.substitutes import with_substitutes
 from flexapod.solve.system import Index, System
 
-__all__ = ["Drives", "Plant", "at_rest", "plant_at"]
+__all__ = ["Drives", "Plant", "plant_at", "plant_at_rest"]
 
 Drives = Literal["given", "force"]
 #: Of a drive's spring and loop: what is not there where its force is given.
@@ -92,7 +92,7 @@ def plant_at(robot: Robot, simulation: Simulation, path: kinematics.Poses, load:
         robot = robot.replace(legs=tuple(leg.replace(drive=_holding(leg.drive)) for leg in robot.legs))
     locked = locked_poses(robot, simulation, path, load)
     shapes = locked.system.kernel.shapes
-    plant = at_rest(locked)
+    plant = plant_at_rest(locked)
     if drives == "force" or shapes.has("w") or shapes.has("j"):
         plant = _in_motion(locked, drives)
     if (more := pushes(plant.system, plant.x.q)) is not None:
@@ -107,7 +107,7 @@ def plant_at(robot: Robot, simulation: Simulation, path: kinematics.Poses, load:
     return plant
 
 
-def at_rest(locked: LockedPoses) -> Plant:
+def plant_at_rest(locked: LockedPoses) -> Plant:
     """The plant about equilibria with the equations of statics: drives as they are given."""
     return Plant(
         locked=locked, drives="given", system=locked.system, x=locked.equilibria.states[locked.at], m=locked.m,

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.solve.linear.channels import asked
-from flexapod.solve.linear.plant import at_rest
+from flexapod.solve.linear.plant import plant_at_rest
 from flexapod.solve.linear.second_order import input_forces
 from flexapod.solve.modal.damped import poles
 from flexapod.solve.modal.modal_loops import ModalLoops, growth, unstable_words
@@ -90,7 +90,7 @@ def linear_robot(locked: LockedPoses) -> LinearRobot:
 
 def _inputs(locked: LockedPoses, flat: Array) -> dict[str, Array]:
     """Modal forces of unit inputs of shapes (N, r): accelerations of the floor, wrench, forces of all drives."""
-    plant, robot = at_rest(locked), locked.robot
+    plant, robot = plant_at_rest(locked), locked.robot
     groups = {name: asked(name, robot, "inputs") for name in ("floor", "wrench", "drive")}
     groups["floor"] = groups["floor"][:3]
     every = [channel for group in groups.values() for channel in group]
