@@ -287,6 +287,26 @@ def test_settings_of_samples_that_are_none(given, key):
     refused(lambda: fx.simulate(study, controller=control.IFF(50.0), sample=2e-4, **given), key)
 
 
+def test_samples_that_no_step_could_end_on():
+    with pytest.raises(fx.InputError, match="shorter than steps within a tolerance") as error:
+        fx.simulate(fx.preset("nano-hexapod"), controller=control.IFF(50.0), sample=1e-9, duration=0.001)
+    assert error.value.key == "sample"
+
+
+def test_a_loop_that_grows_without_end_is_named_as_a_cause():
+    with pytest.raises(fx.ComputationError, match="t = ") as error:
+        fx.simulate(
+            fx.preset("nano-hexapod"), controller=control.DVF(1e12), sample=2e-4, duration=0.004, output_step=0.002
+        )
+    assert "reduce gain or delay" in (error.value.next_step or "")
+
+
+def test_matrices_do_not_have_the_loop_of_the_study(tmp_path):
+    text = fx.preset("nano-hexapod").source_text + '\n[control]\nlaw = "iff"\ngain = 50\nsample = "0.2 ms"\n'
+    made = fx.export(fx.loads(text), "mat", tmp_path / "a.npz", inputs="wrench", outputs="tool")
+    assert "[control]: the loop of a controller" in made.left_out
+
+
 def test_names_and_flags_of_linear_models():
     study = fx.preset("nano-hexapod")
     refused(lambda: fx.linearize(study, inputs="drive", outputs="tool", drives=np.ones((1, 2))), "drives")

@@ -18,6 +18,7 @@ from flexapod.model import Leg, Robot
 from flexapod.solve.linear.channels import PlantChannel, asked
 from flexapod.solve.statics.drive_forces import force_ports, push_ports
 from flexapod.solve.system import Flow, System
+from flexapod.solve.time.radau import SHORTEST
 from flexapod.solve.time.tables import Law
 
 __all__ = ["Asked", "Sampled", "SampledLoop"]
@@ -175,6 +176,11 @@ class SampledLoop:
 
     def refuse_off(self, step: float) -> None:
         """Raise InputError if the period is no multiple of a fixed step [s]; of steps of their own it is 0."""
+        if not step and self.sampled.period < SHORTEST:
+            raise InputError(
+                "is shorter than steps within a tolerance can be", key="sample", value=f"{self.sampled.period:.6g} s",
+                allowed=f"at least {SHORTEST:g} s, or fixed steps",
+            )  # fmt: skip
         many = self.sampled.period / step if step else 1.0
         if abs(many - round(many)) > NEAR_SAMPLE * max(many, 1.0) or round(many) < 1:
             raise InputError(
