@@ -293,6 +293,22 @@ def test_samples_that_no_step_could_end_on():
     assert error.value.key == "sample"
 
 
+@pytest.mark.parametrize("given", ["x", None, [1j], [1.0, 2.0], [NAN]])
+def test_functions_that_return_no_numbers(given):
+    """Some once ended in an error of the conversion."""
+    asked = control.Function(function=lambda t, y: given, inputs=("stroke:1",), outputs=("drive:1",))
+    with pytest.raises(fx.InputError, match="at t = 0 s") as error:
+        fx.simulate(fx.preset("nano-hexapod"), controller=asked, sample=2e-4, duration=0.001)
+    assert error.value.key == "controller" and error.value.allowed == "1 finite numbers"
+
+
+@pytest.mark.parametrize("given", ["3e-4", "1 kg", [1.0]])
+def test_what_is_no_time_and_no_rate(system, given):
+    with pytest.raises(fx.InputError) as error:
+        system.sampled(given)
+    assert error.value.key == "sample" and "5 kHz" in error.value.allowed and "0.2 ms" in error.value.allowed
+
+
 def test_a_loop_that_grows_without_end_is_named_as_a_cause():
     with pytest.raises(fx.ComputationError, match="t = ") as error:
         fx.simulate(

@@ -217,11 +217,14 @@ class SampledLoop:
         p, m = len(self.sampled.readings), len(self.sampled.outputs)
         try:
             y = np.ctypeslib.as_array(readings, (p,)).copy()  # type: ignore[arg-type]
-            found = np.asarray(self.sampled.function(t, y), dtype=float)  # type: ignore[misc]
+            given = self.sampled.function(t, y)  # type: ignore[misc]
+            try:
+                found = np.asarray(given, dtype=float)
+            except (TypeError, ValueError):
+                found = np.full(0, np.nan)
             if found.shape != (m,) or not np.isfinite(found).all():
-                raise InputError(
-                    f"returns {found.tolist()} at t = {t:.6g} s", key="controller", allowed=f"{m} finite numbers"
-                )
+                shown = found.tolist() if found.size else repr(given)
+                raise InputError(f"returns {shown} at t = {t:.6g} s", key="controller", allowed=f"{m} finite numbers")
             np.ctypeslib.as_array(outputs, (m,))[:] = found  # type: ignore[arg-type]
         except BaseException as error:  # a Ctrl-C as well: C knows no exceptions
             self.fault = error
