@@ -357,3 +357,38 @@ def test_hubs_that_turn_faster_than_every_machine(rate):
 
 def test_a_system_that_is_at_its_end_needs_no_time(double):
     refused(lambda: fx.time_optimal(double, end=0.0), "end")
+
+
+def by_matrices(A, B, C, D):
+    n = len(A)
+    return control.StateSpace(
+        A=A, B=np.reshape(B, (n, -1)), C=np.reshape(C, (-1, n)), D=D, inputs=("drive:1",), outputs=("stroke:1",),
+        states=tuple(f"x{i}" for i in range(n)), units={},
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda swings, sums: control.margins(swings, control.PID(1.0), delay=0.1), "a pole lies there"),
+        (lambda swings, sums: control.integrator(1.0).at([0.0]), "a pole lies there"),
+        (lambda swings, sums: sums.reduce(0), "no static response"),
+        (lambda swings, sums: control.by_modes(sums), "not told apart"),
+    ],
+)
+def test_poles_that_matrices_cannot_be_divided_at(call, words):
+    """An undamped mode, three integrators in a row: once errors of linear algebra."""
+    swings = by_matrices([[0.0, 1.0], [-4.0, 0.0]], [0.0, 1.0], [1.0, 0.0], [[0.0]])
+    sums = by_matrices(np.eye(3, k=1), [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [[0.0]])
+    with pytest.raises(fx.ComputationError, match=words):
+        call(swings, sums)
+
+
+def test_systems_without_channels_are_none_of_other_programs(system):
+    refused(lambda: system.select([], []).to_control(), "system")
+
+
+def test_rest_has_no_place_on_an_axis_of_logarithms(system):
+    refused(lambda: fx.plot.bode(system.frequency_response([0.0])), "frequency")
+    data = fx.compliance(fx.preset("small-hexapod"), [0.0])
+    refused(lambda: fx.plot.transmissibility(data), "frequency")
