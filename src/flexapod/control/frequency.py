@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -112,10 +114,10 @@ def _solved(A: Array, B: Array, C: Array, s: Complex) -> Complex:
     return np.concatenate([C @ divided(part, B.astype(complex)) for part in parts]).transpose(1, 2, 0)
 
 
-def divided(matrices: Complex, B: Complex) -> Complex:
+def divided(matrices: NDArray[Any], B: NDArray[Any]) -> Complex:
     """Matrices' inverses times B; a ComputationError where one has none."""
     try:
-        return np.linalg.solve(matrices, B)
+        return np.asarray(np.linalg.solve(matrices, B), dtype=np.complex128)
     except np.linalg.LinAlgError:
         raise ComputationError(
             "the response has no finite size at a frequency: a pole lies there", next_step=ADVICE
