@@ -245,6 +245,18 @@ def test_a_study_and_its_tables_are_not_replaced_by_what_is_made_of_them(tmp_pat
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
+def test_a_study_is_written_where_its_other_tables_are(tmp_path):
+    """Once its files were there before it was told that they cannot be read."""
+    head = "frequency [Hz],x [(m/s^2)^2/Hz],y [(m/s^2)^2/Hz],z [(m/s^2)^2/Hz]"
+    (tmp_path / "floor.csv").write_text(f"{head}\n1,1e-8,1e-8,1e-8\n100,1e-8,1e-8,1e-8\n")
+    file = tmp_path / "study.toml"
+    file.write_text(fx.preset("machine-hexapod").source_text + '\n[disturbance]\nfloor = { spectrum = "floor.csv" }\n')
+    (tmp_path / "other").mkdir()
+    with pytest.raises(fx.InputError, match=r"where floor\.csv is not") as error:
+        fx.compensate(file, out=tmp_path / "other" / "ahead.toml")
+    assert error.value.key == "out" and list((tmp_path / "other").iterdir()) == []
+
+
 @pytest.mark.parametrize(
     ("format", "out", "given", "key"),
     [
