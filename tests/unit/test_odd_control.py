@@ -245,6 +245,18 @@ def test_a_study_and_its_tables_are_not_replaced_by_what_is_made_of_them(tmp_pat
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
+def test_a_study_is_written_where_its_other_tables_are(tmp_path):
+    """Once its files were there before it was told that they cannot be read."""
+    head = "frequency [Hz],x [(m/s^2)^2/Hz],y [(m/s^2)^2/Hz],z [(m/s^2)^2/Hz]"
+    (tmp_path / "floor.csv").write_text(f"{head}\n1,1e-8,1e-8,1e-8\n100,1e-8,1e-8,1e-8\n")
+    file = tmp_path / "study.toml"
+    file.write_text(fx.preset("machine-hexapod").source_text + '\n[disturbance]\nfloor = { spectrum = "floor.csv" }\n')
+    (tmp_path / "other").mkdir()
+    with pytest.raises(fx.InputError, match=r"where floor\.csv is not") as error:
+        fx.compensate(file, out=tmp_path / "other" / "ahead.toml")
+    assert error.value.key == "out" and list((tmp_path / "other").iterdir()) == []
+
+
 @pytest.mark.parametrize(
     ("format", "out", "given", "key"),
     [
@@ -287,6 +299,42 @@ def test_settings_of_samples_that_are_none(given, key):
     refused(lambda: fx.simulate(study, controller=control.IFF(50.0), sample=2e-4, **given), key)
 
 
+def test_samples_that_no_step_could_end_on():
+    with pytest.raises(fx.InputError, match="shorter than steps within a tolerance") as error:
+        fx.simulate(fx.preset("nano-hexapod"), controller=control.IFF(50.0), sample=1e-9, duration=0.001)
+    assert error.value.key == "sample"
+
+
+@pytest.mark.parametrize("given", ["x", None, [1j], [1.0, 2.0], [NAN]])
+def test_functions_that_return_no_numbers(given):
+    """Some once ended in an error of the conversion."""
+    asked = control.Function(function=lambda t, y: given, inputs=("stroke:1",), outputs=("drive:1",))
+    with pytest.raises(fx.InputError, match="at t = 0 s") as error:
+        fx.simulate(fx.preset("nano-hexapod"), controller=asked, sample=2e-4, duration=0.001)
+    assert error.value.key == "controller" and error.value.allowed == "1 finite numbers"
+
+
+@pytest.mark.parametrize("given", ["3e-4", "1 kg", [1.0]])
+def test_what_is_no_time_and_no_rate(system, given):
+    with pytest.raises(fx.InputError) as error:
+        system.sampled(given)
+    assert error.value.key == "sample" and "5 kHz" in error.value.allowed and "0.2 ms" in error.value.allowed
+
+
+def test_a_loop_that_grows_without_end_is_named_as_a_cause():
+    with pytest.raises(fx.ComputationError, match="t = ") as error:
+        fx.simulate(
+            fx.preset("nano-hexapod"), controller=control.DVF(1e12), sample=2e-4, duration=0.004, output_step=0.002
+        )
+    assert "reduce gain or delay" in (error.value.next_step or "")
+
+
+def test_matrices_do_not_have_the_loop_of_the_study(tmp_path):
+    text = fx.preset("nano-hexapod").source_text + '\n[control]\nlaw = "iff"\ngain = 50\nsample = "0.2 ms"\n'
+    made = fx.export(fx.loads(text), "mat", tmp_path / "a.npz", inputs="wrench", outputs="tool")
+    assert "[control]: the loop of a controller" in made.left_out
+
+
 def test_names_and_flags_of_linear_models():
     study = fx.preset("nano-hexapod")
     refused(lambda: fx.linearize(study, inputs="drive", outputs="tool", drives=np.ones((1, 2))), "drives")
@@ -321,3 +369,38 @@ def test_hubs_that_turn_faster_than_every_machine(rate):
 
 def test_a_system_that_is_at_its_end_needs_no_time(double):
     refused(lambda: fx.time_optimal(double, end=0.0), "end")
+
+
+def by_matrices(A, B, C, D):
+    n = len(A)
+    return control.StateSpace(
+        A=A, B=np.reshape(B, (n, -1)), C=np.reshape(C, (-1, n)), D=D, inputs=("drive:1",), outputs=("stroke:1",),
+        states=tuple(f"x{i}" for i in range(n)), units={},
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda swings, sums: control.margins(swings, control.PID(1.0), delay=0.1), "a pole lies there"),
+        (lambda swings, sums: control.integrator(1.0).at([0.0]), "a pole lies there"),
+        (lambda swings, sums: sums.reduce(0), "no static response"),
+        (lambda swings, sums: control.by_modes(sums), "not told apart"),
+    ],
+)
+def test_poles_that_matrices_cannot_be_divided_at(call, words):
+    """An undamped mode, three integrators in a row: once errors of linear algebra."""
+    swings = by_matrices([[0.0, 1.0], [-4.0, 0.0]], [0.0, 1.0], [1.0, 0.0], [[0.0]])
+    sums = by_matrices(np.eye(3, k=1), [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [[0.0]])
+    with pytest.raises(fx.ComputationError, match=words):
+        call(swings, sums)
+
+
+def test_systems_without_channels_are_none_of_other_programs(system):
+    refused(lambda: system.select([], []).to_control(), "system")
+
+
+def test_rest_has_no_place_on_an_axis_of_logarithms(system):
+    refused(lambda: fx.plot.bode(system.frequency_response([0.0])), "frequency")
+    data = fx.compliance(fx.preset("small-hexapod"), [0.0])
+    refused(lambda: fx.plot.transmissibility(data), "frequency")

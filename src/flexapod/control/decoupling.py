@@ -124,7 +124,10 @@ def by_modes(
     part = a_system(system).select(actuator, sensor)
     k = min(part.D.shape) if count is None else whole(count, "count", 1, min(part.D.shape))
     values, right = np.linalg.eig(part.A)
-    left = np.linalg.solve(right, part.B.astype(complex))
+    try:
+        left = np.linalg.solve(right, part.B.astype(complex))
+    except np.linalg.LinAlgError:
+        raise ComputationError("modes of equal poles have equal shapes: they are not told apart") from None
     shown = part.C @ right
     edge = 2 * np.pi * number(above, "above", "frequency", least=0.0)
     slowest = np.argsort(np.abs(values), kind="stable")

@@ -27,6 +27,8 @@ def to_control(system: StateSpace) -> Any:
         raise ComputationError(
             "python-control is not installed", next_step='pip install "flexapod[control]", or pip install control'
         ) from None
+    if not (system.inputs and system.outputs):
+        raise InputError("has no inputs or no outputs", key="system", value=system, allowed="at least one of each")
     names = {"inputs": list(system.inputs), "outputs": list(system.outputs), "states": list(system.states)}
     return control.ss(system.A, system.B, system.C, system.D, system.sample or 0, **names)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,7 +11,7 @@ from flexapod.arrays import Array
 from flexapod.control.integrators import moved_and_shown, without_integrators
 from flexapod.errors import ComputationError
 
-__all__ = ["response"]
+__all__ = ["divided", "response"]
 
 Complex = NDArray[np.complex128]
 
@@ -19,6 +21,7 @@ ALIKE = 1e5  # condition of the shapes of poles above which residues cancel
 AGREES = 1e-9  # of the response, or a tenth of
 CANCELS = 0.1  # what its poles could add up to
 SHIFTED = 2**0.5  # from the middle of the points, which may lie upon a pole
+ADVICE = "Choose other frequencies, or give damping to what vibrates there"
 BLOCK = 64  # frequencies solved for side by side
 BAND, MANY = 4.0, 100  # span, and number of frequencies, with less of which they are solved for and not taken in halves
 
@@ -90,7 +93,7 @@ def _refuse_poles(values: Complex | Array, s: Complex) -> None:
         at = s[(away <= UPON * np.abs(values)).any(axis=1)][0]
         raise ComputationError(
             f"the response has no finite size at {abs(at.imag) / (2 * np.pi):.6g} Hz: a pole lies there",
-            next_step="Choose other frequencies, or give damping to what vibrates there",
+            next_step=ADVICE,
         )
 
 
@@ -120,7 +123,15 @@ def _by_residues(values: Complex, left: Complex, right: Complex, s: Complex) -> 
 def _solved(A: Array, B: Array, C: Array, s: Complex) -> Complex:
     """The same by solving at each point."""
     each = np.eye(len(A))
-    found = [
-        C @ np.linalg.solve(s[i : i + BLOCK, None, None] * each - A, B.astype(complex)) for i in range(0, s.size, BLOCK)
-    ]
-    return np.concatenate(found).transpose(1, 2, 0)
+    parts = (s[i : i + BLOCK, None, None] * each - A for i in range(0, s.size, BLOCK))
+    return np.concatenate([C @ divided(part, B.astype(complex)) for part in parts]).transpose(1, 2, 0)
+
+
+def divided(matrices: NDArray[Any], B: NDArray[Any]) -> Complex:
+    """Matrices' inverses times B; a ComputationError where one has none."""
+    try:
+        return np.asarray(np.linalg.solve(matrices, B), dtype=np.complex128)
+    except np.linalg.LinAlgError:
+        raise ComputationError(
+            "the response has no finite size at a frequency: a pole lies there", next_step=ADVICE
+        ) from None

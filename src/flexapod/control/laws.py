@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod.arrays import Array
 from flexapod.control.arguments import frequencies, number, numbers
+from flexapod.control.frequency import divided
 from flexapod.errors import InputError
 from flexapod.units import DIMENSIONS
 
@@ -123,7 +124,7 @@ class ControlLaw:
         """Complex response (f,) at frequencies [Hz], the rate that of the reading."""
         s = 2j * np.pi * frequencies(hz)
         given = np.stack([np.ones_like(s), s])
-        moved = np.linalg.solve(s[:, None, None] * np.eye(len(self.A)) - self.A, (self.B @ given).T[..., None])
+        moved = divided(s[:, None, None] * np.eye(len(self.A)) - self.A, (self.B @ given).T[..., None])
         return (moved[..., 0] @ self.C) + self.D @ given
 
 

@@ -59,7 +59,7 @@ def reduced(system: StateSpace, modes: int | None, below: float | str | None, re
     slow, fast = apart(system.A, system.B, system.C, lambda pole: abs(pole) < 2 * np.pi * edge)
     D = np.array(system.D)
     if residual and len(fast.A):
-        if np.abs(np.linalg.eigvals(fast.A)).min() < STATIC * np.abs(poles).max():
+        if np.abs(np.linalg.eigvals(fast.A)).min() <= STATIC * np.abs(poles).max():
             raise ComputationError("what is left out has no static response: it drifts", next_step="residual=False")
         D -= fast.C @ np.linalg.solve(fast.A, fast.B)  # (T21.24)
     return replace(

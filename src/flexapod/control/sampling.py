@@ -29,7 +29,11 @@ def period_of(sample: float | str) -> float:
     try:
         period = to_si(sample, "time", key="sample")
     except InputError:
-        rate = to_si(sample, "frequency", key="sample")
+        try:
+            rate = to_si(sample, "frequency", key="sample")
+        except InputError as error:
+            allowed = 'a time, as 2e-4 [s] or "0.2 ms", or a rate, as "5 kHz"'
+            raise InputError(error.what, key="sample", value=sample, allowed=allowed) from None
         period = 1.0 / rate if rate else 0.0
     if not DIMENSIONS["time"].least <= period <= DIMENSIONS["time"].most:
         raise InputError("is not a time", key="sample", value=sample, allowed='above 0 s, for example "5 kHz"')

@@ -42,4 +42,5 @@ def state_space(
     with scratch() as folder:
         content = found.save(folder / Path(name).name).read_bytes()
     left = ["all that is not linear about the equilibrium", "frequencies above those of the shapes"]
+    left += ["[control]: the loop of a controller"] * (study.control is not None)
     return Content(files={"": content}, left_out=tuple(left))

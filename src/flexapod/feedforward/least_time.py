@@ -166,13 +166,13 @@ def fastest(
     if bound <= 0:
         raise InputError("is not a bound", key="residual", value=residual, allowed="above 0 m")
     way = StraightWay(study, limits, *_ends(study, start, end))
+    period = PERIODS / way.first  # refused at once where nothing vibrates
     low, place = way.without_vibration()
     rough = way.study(low, place)
     stiff, place = way.bounded(low, place, bound)
     duration, place, marched = way.held(stiff, place, bound)
     own = way.study(duration, place)
     check_path(own)
-    period = PERIODS / way.first
     left = [vibration_along(x, t, t + period).after(t) for x, t in ((own, duration), (rough, low))]
     told = Fastest(
         study=own, duration=duration, unbounded=low, residual=(left[0], left[1]), bound=bound,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple, TypeVar, cast
@@ -136,6 +137,7 @@ def _graded(knots: Array, count: int, nearest: float) -> Array:
     return found[np.append(True, np.diff(found) > 0.5 * nearest)]
 
 
+TABLES = re.compile(r"""["']([^"'\n]+\.csv)["']""")  # names of tables in a study file
 S = TypeVar("S", bound=Study | ActuatorStudy)
 
 
@@ -152,6 +154,12 @@ def check_out(study: Study | ActuatorStudy, path: FileLike) -> Path:
     if own is not None and place.resolve().parent == own.parent and table in study.source_text:
         words = f"would replace {table}, a table that the study names"
         raise InputError(words, key="out", value=str(path), next_step="Choose another name")
+    if own is not None and isinstance(study, Study):
+        made = {getattr(study.motion, "file", None), "table.csv"}  # the motion's own is written, and that of Python's
+        for name in sorted(set(TABLES.findall(study.source_text)) - made):
+            if not (place.parent / name).is_file():
+                words = f"lies where {name} is not, a table that the study names"
+                raise InputError(words, key="out", value=str(path), allowed=f"a file in {own.parent}")
     return place
 
 

@@ -41,6 +41,7 @@ def bode(data: Several, inputs: Names = None, outputs: Names = None) -> Figure:
         Channels (``drive:1``) and groups (``drive``) to show; by itself all.
     """
     results = _named(data)
+    _check_frequencies(results)
     pairs, zero = _moved(results, _pairs(results, inputs, outputs))
     strokes = [name for name in results if any(_there(results[name], *pair) for pair in pairs)]
     fig = figure(PAGE, 5.0)
@@ -85,6 +86,7 @@ def transmissibility(data: Several) -> Figure:
         raise InputError(
             "cannot be drawn", key="transmissibility", allowed="results of flexapod.transmissibility, or of compliance"
         )
+    _check_frequencies(results)
     fig = figure(PAGE, 5.4)
     panels = fig.subplots(2, 1, sharex=True)
     units = {"transmissibility": ("1", "1"), "compliance": ("m/N", "rad/(N m)")}[name]
@@ -153,6 +155,12 @@ def cumulative(data: Several, outputs: Names = None) -> Figure:
 def _named(data: Several) -> Mapping[str, xr.Dataset]:
     """Results by words; a single one has none."""
     return {"": data} if isinstance(data, xr.Dataset) else data
+
+
+def _check_frequencies(results: Mapping[str, xr.Dataset]) -> None:
+    """Refuse what has no place on an axis of logarithms."""
+    if not any((one.frequency > 0).any() for one in results.values()):
+        raise InputError("has no frequency above 0 Hz", key="frequency", allowed="one at least")
 
 
 def _pairs(results: Mapping[str, xr.Dataset], inputs: Names, outputs: Names) -> list[tuple[str, str]]:

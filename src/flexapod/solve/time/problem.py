@@ -31,6 +31,7 @@ _ADVICE = (
     "Reduce the step, check for a singular pose, a leg near buckling or a piston almost inside its cylinder, "
     "or start from equilibrium."
 )
+_OF_LOOPS = "Its controller may make it grow: reduce gain or delay, or sample more often. Else: "
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,7 +74,9 @@ class Problem:
         """What to raise where an integration stopped; the fault of a controller's function as it is."""
         if status == ASKED and self.loop and self.loop.fault:
             raise self.loop.fault
-        return ComputationError(f"the integration stopped {where}", next_step=_ADVICE)
+        return ComputationError(
+            f"the integration stopped {where}", next_step=_OF_LOOPS + _ADVICE if self.loop else _ADVICE
+        )
 
     @property
     def adaptive(self) -> bool:

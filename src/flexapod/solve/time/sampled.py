@@ -20,6 +20,7 @@ from flexapod.model import Leg, Robot
 from flexapod.solve.linear.channels import Geophone, PlantChannel, asked
 from flexapod.solve.statics.drive_forces import force_ports, push_ports
 from flexapod.solve.system import Flow, System
+from flexapod.solve.time.radau import SHORTEST
 from flexapod.solve.time.tables import Law
 
 __all__ = ["Asked", "Sampled", "SampledLoop"]
@@ -187,6 +188,11 @@ class SampledLoop:
 
     def refuse_off(self, step: float) -> None:
         """Raise InputError if the period is no multiple of a fixed step [s]; of steps of their own it is 0."""
+        if not step and self.sampled.period < SHORTEST:
+            raise InputError(
+                "is shorter than steps within a tolerance can be", key="sample", value=f"{self.sampled.period:.6g} s",
+                allowed=f"at least {SHORTEST:g} s, or fixed steps",
+            )  # fmt: skip
         many = self.sampled.period / step if step else 1.0
         if abs(many - round(many)) > NEAR_SAMPLE * max(many, 1.0) or round(many) < 1:
             raise InputError(
@@ -223,11 +229,14 @@ class SampledLoop:
         p, m = len(self.sampled.readings), len(self.sampled.outputs)
         try:
             y = np.ctypeslib.as_array(readings, (p,)).copy()  # type: ignore[arg-type]
-            found = np.asarray(self.sampled.function(t, y), dtype=float)  # type: ignore[misc]
+            given = self.sampled.function(t, y)  # type: ignore[misc]
+            try:
+                found = np.asarray(given, dtype=float)
+            except (TypeError, ValueError):
+                found = np.full(0, np.nan)
             if found.shape != (m,) or not np.isfinite(found).all():
-                raise InputError(
-                    f"returns {found.tolist()} at t = {t:.6g} s", key="controller", allowed=f"{m} finite numbers"
-                )
+                shown = found.tolist() if found.size else repr(given)
+                raise InputError(f"returns {shown} at t = {t:.6g} s", key="controller", allowed=f"{m} finite numbers")
             np.ctypeslib.as_array(outputs, (m,))[:] = found  # type: ignore[arg-type]
         except BaseException as error:  # a Ctrl-C as well: C knows no exceptions
             self.fault = error
