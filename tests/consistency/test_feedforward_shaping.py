@@ -8,18 +8,27 @@ from scipy.spatial import cKDTree
 
 import flexapod as fx
 from flexapod.feedforward.shaping import shaping
-from flexapod.kinematics import poses
+from flexapod.kinematics import coordinates, poses
 
 # of the unshaped residual: the largest difference that the task allows between linear model and march
 SHARE = 0.02
 
 
-def left(study: fx.Study) -> float:
-    """Half the way that the tool still goes once the motion is over, in the march."""
-    exact = study.simulation.replace(tolerance=1e-5, output_step=2e-4, duration=None)
+def left(study: fx.Study, sticks: bool = False) -> float:
+    """How far the tool still goes from where it rests once the motion is over, in the march.
+
+    It rests where it does at the start of a march that stays at the pose it has reached. What `sticks`
+    by friction rests beside that: there half the way that it goes, which of a decaying vibration is less.
+    """
+    exact = study.simulation.replace(tolerance=1e-6, output_step=2e-4, duration=None)
     data = fx.simulate(study.replace(simulation=exact))
     off = data.tool_deviation.values[data.time.values >= study.motion.end_time - study.motion.hold - 1e-9]
-    return float(np.linalg.norm(off - 0.5 * (off.max(axis=0) + off.min(axis=0)), axis=1).max())
+    if sticks:
+        return float(np.linalg.norm(off - 0.5 * (off.max(axis=0) + off.min(axis=0)), axis=1).max())
+    still = np.repeat(coordinates(study.motion, np.array([study.motion.end_time])).position, 2, axis=0)
+    stays = fx.model.CsvMotion(time=np.array([0.0, 1e-3]), pose=still, pivot=study.motion.pivot)
+    rest = fx.simulate(study.replace(motion=stays, simulation=exact)).tool_deviation.values[0]
+    return float(np.linalg.norm(off - rest, axis=1).max())
 
 
 def brisk() -> fx.Study:
@@ -39,14 +48,26 @@ def test_a_brisk_move_leaves_what_the_linear_model_says(kind: str, modes: int) -
     assert found.longer == pytest.approx(found.study.motion.end_time - study.motion.end_time)
 
 
+@pytest.mark.parametrize(
+    ("axis", "amplitude"), [("roll", 0.01), ("roll", 0.05), ("roll", 0.1), ("roll", 0.2), ("pitch", 0.05), ("yaw", 0.2)]
+)
+def test_turns_leave_what_the_linear_model_says(axis: str, amplitude: float) -> None:
+    """Turns by up to 11 deg in a tenth of a second, two periods of the first mode: roll shakes modes above it."""
+    motion = fx.model.AxisMotion(type=axis, amplitude=amplitude, duration=0.1, hold=0.4)
+    study = fx.preset("paper-robot").replace(motion=motion)
+    found, before = shaping(study, "zv"), left(study)
+    # rates of the path, up to 4 rad/s of 2 pi 22 Hz, act on what vibrates: 3 %, which the model leaves out
+    assert abs(found.residual[0] - before) < (SHARE if abs(amplitude) < 0.2 or axis != "roll" else 0.06) * before
+    assert abs(found.residual[1] - left(found.study)) < SHARE * before
+
+
 @pytest.mark.parametrize("name", ["paper-robot", "machine-hexapod", "tripod"])
 def test_a_preset_leaves_what_the_linear_model_says(name: str) -> None:
     study = fx.preset(name)
     study = study.replace(simulation=study.simulation.replace(duration=None))
-    found, before = shaping(study, "zvd"), left(study)
-    # friction of machine-hexapod rubs in the march alone
-    share = 0.05 if name == "machine-hexapod" else SHARE
-    assert abs(found.residual[1] - left(found.study)) < share * before
+    sticks = name == "machine-hexapod"  # its friction rubs in the march alone
+    found, before = shaping(study, "zvd"), left(study, sticks)
+    assert abs(found.residual[1] - left(found.study, sticks)) < SHARE * before
 
 
 def test_the_pose_is_shaped_and_stays_on_its_path() -> None:

@@ -103,7 +103,7 @@ class FilesPanel:
             gui.add_html(markup.block(f"A study file (TOML, UTF-8) of at most {LARGEST / 1e6:g} MB.", "soft"))
             study_file = gui.add_upload_button("Study file", icon=Icon.UPLOAD, mime_type=".toml,text/plain")
             gui.add_html(markup.block("Tables that a study names (CSV) first, then the study.", "soft"))
-            table = gui.add_upload_button("Table", icon=Icon.UPLOAD, mime_type=".csv,text/csv")
+            table = gui.add_upload_button("Table", icon=Icon.UPLOAD, mime_type=".csv,text/csv,.json")
         study_file.on_upload(lambda _: self._do(lambda: self._take(study_file.value.name, study_file.value.content)))
         table.on_upload(lambda _: self._do(lambda: self._keep(table.value.name, table.value.content)))
         limit_uploads(client, LARGEST, self._refused)

@@ -13,7 +13,6 @@ from flexapod.control.arguments import whole
 from flexapod.errors import InputError, closest
 from flexapod.results.asked import Made
 from flexapod.results.record import Record
-from flexapod.solve.linear.motions import COMPONENTS
 from flexapod.units import to_si
 
 if TYPE_CHECKING:
@@ -43,7 +42,6 @@ Noise = float | Mapping[str, float] | Mapping[str, Mapping[str, float]] | None
 #: Groups of channels that controllers read and move without being told which.
 READ, MOVED = ("stroke", "encoder", "drive-force", "force-sensor:drive"), ("drive", "command")
 READ_OF_PLATFORM = ("tool", "com", *(f"{x}:{at}" for x in ("accelerometer", "geophone") for at in ("tool", "com")))
-TOOL = tuple(f"tool:{name}" for name in COMPONENTS)
 
 
 def sampled_controller(
@@ -97,11 +95,14 @@ def sampled_controller(
 
 def _of_table(table: model.Control, robot: model.Robot) -> tuple[AnyController, dict[str, object]]:
     """Controller and settings of a study file."""
+    from flexapod.solve.linear.channels import asked
+
     names = ("sample", "delay_samples", "saturate", "seed", "quantise", "noise")
     found = {name: getattr(table, name, None) for name in names}
     if isinstance(table, model.ToolControl):
+        tool = [channel.name for channel in asked(table.reads, robot, "outputs")]
         each = {name: found[name] for name in ("quantise", "noise")}
-        found |= {name: None if x is None else dict(zip(TOOL, x.tolist(), strict=True)) for name, x in each.items()}  # type: ignore[attr-defined]
+        found |= {name: None if x is None else dict(zip(tool, x.tolist(), strict=True)) for name, x in each.items()}  # type: ignore[attr-defined]
     if isinstance(table, model.FileControl) and table.saturate is not None:
         found["saturate"] = {"drive": table.saturate}
     return _controller_of(table, robot), {name: value for name, value in found.items() if value is not None}
