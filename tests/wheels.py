@@ -1,7 +1,8 @@
 """``python -m tests.wheels``: the source distribution builds a wheel; installed in clean environments, it runs.
 
 Each of Python 3.11 to 3.14 that is found on this machine (``python3.12``, or of pyenv) gets an environment of its own
-with the wheel and nothing else of ours; `flexapod new`, `check` and `run` and a call from Python are made there.
+with the wheel and nothing else of ours; `flexapod new`, `check` and `run` and a call from Python are made there. With
+``--check`` the source distribution, by itself in a folder, also passes `make check`.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import sys
 import tarfile
 import tempfile
 import tomllib
+import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
@@ -48,21 +50,40 @@ def found(version: str) -> Path | None:
     return None
 
 
-def built(folder: Path) -> Path:
-    """The wheel that the source distribution gives; what has to be in both is."""
+def built(folder: Path) -> tuple[Path, Path]:
+    """The source distribution and the wheel that it gives; what has to be in both is, licence and all."""
     pip = [sys.executable, "-m", "pip"]
     make = "import setuptools.build_meta as b, sys; print(b.build_sdist(sys.argv[1]))"
     packer = folder / "packer"
     told([sys.executable, "-m", "venv", packer], folder)
     told([packer / "bin" / "pip", "install", "--quiet", "setuptools>=77"], folder)
+    notes = ROOT / "src" / "flexapod.egg-info"
+    kept = notes.exists()
     sdist = folder / told([packer / "bin" / "python", "-c", make, folder], ROOT).splitlines()[-1]
+    if not kept:
+        shutil.rmtree(notes, ignore_errors=True)
     with tarfile.open(sdist) as archive:
         names = {name.split("/", 1)[1] for name in archive.getnames() if "/" in name}
     for name in ("Makefile", "constraints.txt", "tests/conftest.py", "docs/index.md", "LICENSE", "README.md"):
         if name not in names:
             raise SystemExit(f"{name} is not in the source distribution")
     told([*pip, "wheel", "--quiet", "--no-deps", "--wheel-dir", folder, sdist], folder)
-    return next(folder.glob("flexapod-*.whl"))
+    wheel = next(folder.glob("flexapod-*.whl"))
+    with zipfile.ZipFile(wheel) as archive:
+        inside = set(archive.namelist())
+    package = {path.relative_to(ROOT / "src").as_posix() for path in (ROOT / "src" / "flexapod").rglob("*.*")}
+    missing = {name for name in package if "__pycache__" not in name and (ROOT / "src" / name).is_file()} - inside
+    missing |= {"LICENSE"} - {Path(name).name for name in inside if ".dist-info/licenses/" in name}
+    if missing:
+        raise SystemExit(f"not in the wheel: {', '.join(sorted(missing))}")
+    return sdist, wheel
+
+
+def checked(sdist: Path, folder: Path) -> None:
+    """The source distribution by itself, as somebody gets it: `make check`."""
+    with tarfile.open(sdist) as archive:
+        archive.extractall(folder, filter="data")
+    told(["make", "check"], next(folder.iterdir()))
 
 
 def tried(python: Path, wheel: Path, folder: Path) -> None:
@@ -84,7 +105,7 @@ def main() -> None:
     needed = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["requires-python"]
     print(f"flexapod needs Python {needed}")
     with tempfile.TemporaryDirectory() as name:
-        wheel = built(Path(name))
+        sdist, wheel = built(Path(name))
         print(f"{wheel.name}: {wheel.stat().st_size / 1e6:.1f} MB, built of the source distribution")
         for version in VERSIONS:
             python = found(version)
@@ -93,6 +114,9 @@ def main() -> None:
                 continue
             tried(python, wheel, Path(name) / version)
             print(f"{version}: installed by itself, runs")
+        if "--check" in sys.argv[1:]:
+            checked(sdist, Path(name) / "source")
+            print("the source distribution passes `make check`")
 
 
 if __name__ == "__main__":

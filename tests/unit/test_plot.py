@@ -447,3 +447,21 @@ def test_words_and_numbers_of_a_robot_along_one_axis_stand_apart():
         boxes = [text.get_window_extent() for text in texts]
         assert len(boxes) > 3
         assert not any(boxes[0].overlaps(box) for box in boxes[1:])
+
+
+@pytest.mark.parametrize(("turning", "drawn"), [(1e-36, False), (1e-12, True)])
+def test_what_symmetry_makes_zero_is_no_vibration(turning, drawn):
+    """An upright shake of a symmetric robot was drawn as a rotation of 1e-15 urad, with the name of a mode at it."""
+    component = ["x", "y", "z", "rx", "ry", "rz"]
+    variance = xr.DataArray([0, 0, 1e-14, 0, 0, 1.0], {"component": component})
+    variance[-1] = turning
+    f = np.geomspace(0.01, 2e4, 30)
+    falls = xr.DataArray(np.where(f < 459, 1.0, 0.0), {"spectrum_frequency": f})
+    rms = np.sqrt(variance)
+    data = xr.Dataset(
+        {"vibration_cumulative": falls * rms, "vibration_by_mode": rms.expand_dims(mode=[1]), "vibration_rms": rms}
+    )
+    upper, lower = plot.vibration(data.assign(frequency=("mode", [459.0]))).axes
+    assert upper.texts and bool(lower.texts) == drawn
+    assert ("zero but for rounding" in lower.get_title(loc="left") + lower.get_title()) != drawn
+    assert (max(np.max(line.get_ydata()) for line in lower.lines[:3]) > 0) == drawn

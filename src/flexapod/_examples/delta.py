@@ -49,6 +49,6 @@ np.testing.assert_allclose(data.drive_command, by_hand, atol=1e-12)
 
 figure, axes = plt.subplots()
 for i in range(3):
-    axes.plot(data.time, 1e3 * data.drive_command[:, i], label=f"carriage {i + 1}")
+    axes.plot(data.time, 1e3 * data.drive_command[:, i], ["-", "-", "--"][i], label=f"carriage {i + 1}")
 axes.set(xlabel="time [s]", ylabel="place of the carriage [mm]", title="A linear delta: 60 mm across, 40 mm up")
 axes.legend()

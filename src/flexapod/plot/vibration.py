@@ -16,6 +16,8 @@ from flexapod.words import scale
 NAMED = 3  # modes with the largest steps
 ROW = 10  # height of a name [points]
 LEAST = 0.05  # share of a mode in the variance that is worth a name
+ROUNDING = 1e-9  # of the largest, a radian as a metre: what symmetry makes zero comes out at 1e-13 and less
+DECADES = 1e4  # from the lowest to the highest frequency, from which on each has one number
 
 
 @styled
@@ -37,6 +39,8 @@ def vibration(data: xr.Dataset) -> Figure:
         ("displacement of the tool", "rotation of the tool"), strict=True,
     ):  # fmt: skip
         part = data.vibration_cumulative.sel(component=list(names))
+        moves = bool(part.max() >= ROUNDING * data.vibration_cumulative.max())
+        part = part if moves else 0 * part
         small = scale(part, unit)
         for name, color, width in zip(names, AXIS_COLORS.values(), (3.2, 1.3, 1.3), strict=True):
             values = small(part.sel(component=name))  # x broad: y often lies upon it
@@ -44,11 +48,14 @@ def vibration(data: xr.Dataset) -> Figure:
         axes.set_xscale("log")
         axes.set_ylim(bottom=0)
         axes.set_ylabel(f"rms from here up [{small.name}]")
-        axes.set_title(title[0].upper() + title[1:], pad=4 + ROW * NAMED)
-        _name_modes(axes, data, list(names))
+        words = title[0].upper() + title[1:] + ("" if moves else ", zero but for rounding")
+        axes.set_title(words, pad=4 + ROW * NAMED)
+        if moves:
+            _name_modes(axes, data, list(names))
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     panels[-1].set_xlabel("frequency [Hz]")
-    panels[-1].xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    f = data.spectrum_frequency.values
+    panels[-1].xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if f[-1] < DECADES * f[0] else (1,)))
     panels[-1].xaxis.set_major_formatter("{x:g}")
     panels[-1].xaxis.set_minor_formatter(NullFormatter())
     fig.align_ylabels(panels)
