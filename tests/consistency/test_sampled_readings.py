@@ -168,3 +168,17 @@ def test_commands_that_jump_cost_no_order():
         data = fx.simulate(fx.loads(springs.STUDY), controller=given, step=springs.T / parts)
         errors.append(np.abs(springs.heave(data) - springs.Heave().run(law, len(data.time))[0]).max())
     np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])), 2.0, atol=0.1)
+
+
+def test_readings_go_to_the_nearest_step_and_outputs_to_both_limits():
+    """Of a law that hardly acts, with and without steps of its readings; a damper reaches its limits both ways."""
+    law = springs.integral(1e-9).system()
+    study = fx.loads(springs.STUDY)
+    plain, stepped = (fx.simulate(study, controller=law, **given) for given in ({}, {"quantise": 0.3}))
+    y = plain.sensor_reading.values
+    # away from the middle between two steps, where rounding and what the law does decide
+    sure = np.abs(np.abs((y / 0.3) % 1 - 0.5)) > 1e-6
+    assert stepped.sensor_reading.values[sure] == pytest.approx((0.3 * np.rint(y / 0.3))[sure], abs=1e-12)
+    assert len(np.unique(np.rint(y / 0.3))) > 5 and (y.min(), y.max()) != (0.0, 0.0)
+    held = fx.simulate(study, controller=springs.LAWS["stroke"][0].system(), saturate=0.02).control_input.values
+    assert (held.min(), held.max()) == (-0.02, 0.02)
