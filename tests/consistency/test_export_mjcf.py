@@ -192,3 +192,25 @@ def test_dampers_of_drives_and_joints_are_there(tmp_path):
         for name in ("alpha", "beta"):
             one = soft.joint(f"{name}_{i}")
             assert (one.stiffness[0], one.damping[0]) == pytest.approx((200.0, 0.7))
+
+
+def test_joints_that_give_way_differently_across_and_along(tmp_path):
+    """Flexures at both ends on springs, softer across below, along above: as `test_static_stiffness...`, to 1e-3.
+
+    Legs that hold their angles carry forces across, so that what gives way there counts.
+    """
+    study = study_of("flexures")
+    legs = tuple(
+        leg.replace(
+            base_joint=leg.base_joint.replace(stiffness=np.diag([2e5, 2e5, 2e7, 0, 0, 0]), leg_axes=True),
+            platform_joint=leg.platform_joint.replace(stiffness=np.diag([3e5, 3e5, 1e7, 0, 0, 0]), leg_axes=True),
+        )
+        for leg in study.robot.legs
+    )
+    soft = study.replace(robot=study.robot.replace(legs=legs))
+    stiffness = [fx.stiffness(x, load=np.zeros(6)).stiffness.values for x in (study, soft)]
+    scale = np.sqrt(np.diag(stiffness[1]))
+    assert (np.abs(np.diag(stiffness[0] / stiffness[1]) - 1) > 0.05).all()
+    model = model_of(fx.export(soft, "mjcf", tmp_path / "robot.xml"))
+    theirs = np.linalg.inv(model.compliance(np.diag(np.linalg.inv(stiffness[1]))))
+    assert np.abs((theirs - stiffness[1]) / np.outer(scale, scale)).max() < 1e-3
