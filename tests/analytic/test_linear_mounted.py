@@ -77,7 +77,7 @@ def test_transmissibility_at_another_point_of_a_turned_platform():
     exact = np.einsum("ij,jkf,kl->ilf", carry, T, np.linalg.inv(carry))
     assert exact == pytest.approx(P, abs=1e-9 * np.abs(P).max())
     assert np.abs(T - P).max() > 0.05 * np.abs(P).max()
-    # at the tool: what the floor, turned about that place, does to it as seen from the floor, and the floor's own motion
+    # at the tool: what it does as seen from a floor that turns about that place, and the floor's own motion
     place = lin.position + matrix(lin.quaternion[None])[0] @ (given.robot.tool - given.robot.com)
     moved = BaseMotion(time=np.array([0.0, 1.0]), values=np.zeros((2, 6)), at=place)
     there = given.replace(robot=given.robot.replace(base_motion=moved))
