@@ -49,6 +49,18 @@ def test_two_masses_and_a_spring(robust: bool) -> None:
     assert "vibrat" in repr(found)
 
 
+def test_without_vibration_unequal_masses_take_what_their_sum_takes() -> None:
+    """1 and 3 kg on a spring and a damper, pushed at the first: a mass of 4 kg takes 2 sqrt(4)."""
+    k, c = 2.0, 0.1
+    system = StateSpace(
+        A=[[0, 0, 1, 0], [0, 0, 0, 1], [-k, k, -c, c], [k / 3, -k / 3, c / 3, -c / 3]], B=[[0], [0], [1], [0]],
+        C=[[0, 1, 0, 0]], D=[[0]], inputs=("force",), outputs=("place",), states=("x1", "x2", "v1", "v2"), units={},
+    )  # fmt: skip
+    found = fx.time_optimal(system, end=1.0)
+    assert found.rigid == pytest.approx(4.0, abs=1e-6)
+    assert found.duration > 4.0
+
+
 def test_what_is_robust_is_quieter_where_the_spring_is_another() -> None:
     def energy(x: np.ndarray, k: float) -> float:
         return 0.5 * (x[2] - x[3]) ** 2 + k * (x[0] - x[1]) ** 2

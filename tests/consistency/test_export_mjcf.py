@@ -11,7 +11,17 @@ import pytest
 
 import flexapod as fx
 from flexapod.kinematics import poses, rigid_limbs
-from flexapod.model import AxisMotion, CombinedMotion, ConstantWrench, ForceDrive, Guide, Load, override
+from flexapod.model import (
+    AxisMotion,
+    CombinedMotion,
+    ConstantWrench,
+    ForceDrive,
+    Guide,
+    Load,
+    ServoDrive,
+    override,
+)  # fmt: skip
+from flexapod.model.joint import Joint
 from flexapod.results.names import VARIABLES
 from flexapod.verify.engines import mujoco_forces
 from flexapod.verify.engines.mujoco_rest import AtRest
@@ -163,3 +173,45 @@ def test_what_is_lost_is_said(tmp_path):
     model = model_of(fx.export(pushed, "mjcf", tmp_path / "b.xml"))
     ours = fx.inverse_dynamics(robot, AxisMotion(type="heave", amplitude=0.0, duration=1.0)).actuator_force_rigid
     assert model.data.ctrl == pytest.approx(ours.values[0], rel=1e-12)  # motors hold the robot at home
+
+
+def test_dampers_of_drives_and_joints_are_there(tmp_path):
+    """As MuJoCo has read them: force = kp (command - stroke) - kv rate, moments of joints that hold their angles."""
+    robot = fx.preset("paper-robot").robot
+    below = Joint(bending=200.0, damping=0.7)
+    legs = tuple(leg.replace(drive=ServoDrive(stiffness=2e6, damping=4e3), base_joint=below) for leg in robot.legs)
+    robot = robot.replace(legs=legs)
+    rigid = model_of(fx.export(robot, "mjcf", tmp_path / "r.xml", fidelity="rigid")).model
+    assert rigid.actuator_biasprm[:, 1:3] == pytest.approx(np.tile([-2e6, -4e3], (6, 1)))
+    assert rigid.actuator_gainprm[:, 0] == pytest.approx(np.full(6, 2e6))
+    soft = model_of(fx.export(robot, "mjcf", tmp_path / "s.xml")).model
+    # in series with the piston: softer than both, and damped as the drive is
+    assert (soft.actuator_gainprm[:, 0] < 2e6).all()
+    assert soft.actuator_biasprm[:, 2] == pytest.approx(np.full(6, -4e3))
+    for i in range(1, 7):
+        for name in ("alpha", "beta"):
+            one = soft.joint(f"{name}_{i}")
+            assert (one.stiffness[0], one.damping[0]) == pytest.approx((200.0, 0.7))
+
+
+def test_joints_that_give_way_differently_across_and_along(tmp_path):
+    """The leg without a drive that holds a tricept's platform upright, on springs at both ends; to 1e-3.
+
+    It carries forces across, so that what gives way there counts: twice as stiff below is 2 % of a stiffness.
+    """
+    study = study_of("tricept")
+    legs = tuple(
+        leg if leg.driven else leg.replace(
+            base_joint=leg.base_joint.replace(stiffness=np.diag([2e6, 2e6, 2e7, 0, 0, 0]), leg_axes=True),
+            platform_joint=leg.platform_joint.replace(stiffness=np.diag([3e6, 3e6, 1e8, 0, 0, 0]), leg_axes=True),
+        )
+        for leg in study.robot.legs
+    )  # fmt: skip
+    soft = study.replace(robot=study.robot.replace(legs=legs))
+    free = ~rigid_limbs(soft.robot).hub_held
+    ours = fx.stiffness(soft, load=np.zeros(6)).stiffness.values[np.ix_(free, free)]
+    expected, scale = np.zeros(6), np.sqrt(np.diag(ours))
+    expected[free] = np.diag(np.linalg.inv(ours))
+    model = model_of(fx.export(soft, "mjcf", tmp_path / "robot.xml"))
+    theirs = np.linalg.inv(model.compliance(expected)[free])
+    assert np.abs((theirs - ours) / np.outer(scale, scale)).max() < 1e-3

@@ -16,6 +16,7 @@ from tests.fmi_importer import Instance, Unit
 import flexapod as fx
 from flexapod.errors import InputError
 from flexapod.exchange.c_source import FLAGS
+from flexapod.exchange.fmu import UNITS
 from flexapod.model import override
 from flexapod.solve.time import native
 from flexapod.solve.time.recording import Counters, unpack
@@ -256,3 +257,59 @@ def test_c_of_other_mechanisms_is_their_march(tmp_path, name):
 def test_refusals(tmp_path, given, words):
     with pytest.raises(InputError, match=words):
         fx.export(fx.preset("tripod"), "fmu", tmp_path / "robot.fmu", **given)
+
+
+#: Kilogram, metre, second, radian of each unit that results have.
+SI = {
+    "m": (0, 1, 0, 0), "rad": (0, 0, 0, 1), "N": (1, 1, -2, 0), "N m": (1, 2, -2, 0), "J": (1, 2, -2, 0), "1": (0,) * 4,
+    "m s-1": (0, 1, -1, 0), "m s-2": (0, 1, -2, 0), "rad s-1": (0, 0, -1, 1), "rad s-2": (0, 0, -2, 1),
+}  # fmt: skip
+
+
+def test_units_are_what_their_names_say(units):
+    written = {
+        unit.get("name"): unit.find("BaseUnit").attrib
+        for name in (("machine-hexapod", "motion"), ("nano-hexapod",))
+        for unit in units(*name)[0].root.find("UnitDefinitions")
+    }
+    assert {"m", "N", "J", "m s-1", "m s-2"} <= set(written)
+    for name, base in (written | UNITS).items():
+        assert tuple(int(base.get(of, 0)) for of in ("kg", "m", "s", "rad")) == SI[name]
+        assert set(base) <= {"kg", "m", "s", "rad"}
+
+
+def test_all_results_are_those_of_the_march_on_the_way(units):
+    """After 60 steps with the motion built in, works and energies by their names; as forces of `built_in` 1e-6."""
+    unit, _ = units("machine-hexapod", "motion")
+    data = fx.simulate(fx.preset("machine-hexapod"), step=STEP, output_step=STEP, duration=60 * STEP).isel(time=-1)
+    one = Instance(unit)
+    for _ in range(60):
+        assert one.steps(STEP) == 0, one.said
+    for name, (_, shape, said) in unit.variables.items():
+        if said["causality"] == "output" and name != "closure_residual":
+            ours = data[name].values
+            np.testing.assert_allclose(
+                one.get(name).reshape(shape), ours, rtol=1e-6, atol=1e-6 * np.abs(ours).max() + 1e-12, err_msg=name
+            )
+    assert abs(float(data.work_drive)) > 1e-6 and abs(float(data.energy_kinetic)) > 1e-9
+
+
+def test_a_unit_begins_when_it_is_told_and_again_at_nothing_after_a_reset(units):
+    unit, _ = units("nano-hexapod")
+    late, early = Instance(unit, start=2.5), Instance(unit)
+    assert late.get("time")[0] == 2.5
+    for one in (late, early):
+        one.set("wrench", [1.0, -2.0, 3.0, 0.1, 0.2, -0.3])
+        for _ in range(4):
+            assert one.steps(STEP) == 0, one.said
+    assert late.get("time")[0] == pytest.approx(2.5 + 4 * STEP, rel=1e-12)
+    np.testing.assert_array_equal(late.get("tool_position"), early.get("tool_position"))
+    late.call("Reset")
+    assert late.get("time")[0] == 0.0
+    # a moment alone turns the platform: of the wrench all six numbers act
+    still, turned = Instance(unit), Instance(unit)
+    turned.set("wrench", [0.0, 0.0, 0.0, 0.0, 0.0, 5.0])
+    for one in (still, turned):
+        for _ in range(20):
+            assert one.steps(STEP) == 0, one.said
+    assert np.abs(turned.get("platform_quaternion")[3] - still.get("platform_quaternion")[3]) > 1e-9

@@ -1,10 +1,11 @@
 """What a sampled controller reads along a path of large turns, against motion, forces and Newton's law of a result."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from tests.consistency import test_sampled_loops as springs
 from xarray import Dataset
 
 import flexapod as fx
@@ -133,3 +134,51 @@ def test_forces_and_strokes_of_legs(marched):
     line = marched.com + marched.turn.apply(marched.joints[1] - COM) - marched.joints[0]
     along = (data.joint_force.values[:, 2] * line).sum(axis=1) / np.linalg.norm(line, axis=1)
     assert_read(marched, "force-sensor:platform:3", along)
+
+
+COMMANDS = tuple(f"command:{i}" for i in range(1, 7))
+
+
+@pytest.mark.parametrize("name", ["force, its sum", "stroke", "limited", "and late"])
+def test_commands_of_servos_are_forces_over_their_stiffness(name):
+    """A command that jumps by u pulls at once with k u; strokes are read against the path, not against that command.
+
+    As with forces: steps of h are late by (w h)^2 / 12 of the phase, 1.6e-3 of a damped half.
+    """
+    law, given, own = springs.LAWS[name]
+    whole = law.system()
+    law_of_places = replace(whole, C=whole.C / springs.K, D=whole.D / springs.K, outputs=COMMANDS)
+    if "saturate" in given:
+        given = {"saturate": {"command": own["most"] / springs.K}}
+    data = fx.simulate(fx.loads(springs.STUDY), controller=law_of_places, step=springs.T / 40, **given)
+    z, read, held = springs.Heave().run(law, len(data.time), **own)
+    assert np.abs(springs.heave(data) - z).max() < 8e-4 * np.abs(z).max()
+    assert data.sensor_reading.values[1:, 3] == pytest.approx(read[:-1], abs=8e-4 * np.abs(read).max())
+    assert springs.K * data.control_input.values[1:, 3] == pytest.approx(held[:-1], abs=8e-4 * np.abs(held).max())
+    # a command does no work of its own: that is the drive's
+    assert np.abs(data.work_control.values).max() == 0.0
+
+
+def test_commands_that_jump_cost_no_order():
+    """Errors against the exact recursion fall as the square of the step."""
+    law, errors = springs.LAWS["force, its sum"][0], []
+    whole = law.system()
+    for parts in (10, 20, 40):
+        given = replace(whole, C=whole.C / springs.K, D=whole.D / springs.K, outputs=COMMANDS)
+        data = fx.simulate(fx.loads(springs.STUDY), controller=given, step=springs.T / parts)
+        errors.append(np.abs(springs.heave(data) - springs.Heave().run(law, len(data.time))[0]).max())
+    np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])), 2.0, atol=0.1)
+
+
+def test_readings_go_to_the_nearest_step_and_outputs_to_both_limits():
+    """Of a law that hardly acts, with and without steps of its readings; a damper reaches its limits both ways."""
+    law = springs.integral(1e-9).system()
+    study = fx.loads(springs.STUDY)
+    plain, stepped = (fx.simulate(study, controller=law, **given) for given in ({}, {"quantise": 0.3}))
+    y = plain.sensor_reading.values
+    # away from the middle between two steps, where rounding and what the law does decide
+    sure = np.abs(np.abs((y / 0.3) % 1 - 0.5)) > 1e-6
+    assert stepped.sensor_reading.values[sure] == pytest.approx((0.3 * np.rint(y / 0.3))[sure], abs=1e-12)
+    assert len(np.unique(np.rint(y / 0.3))) > 5 and (y.min(), y.max()) != (0.0, 0.0)
+    held = fx.simulate(study, controller=springs.LAWS["stroke"][0].system(), saturate=0.02).control_input.values
+    assert (held.min(), held.max()) == (-0.02, 0.02)
