@@ -12,7 +12,7 @@ from tests.unit.test_compile_cache import Compile
 from flexapod.errors import ComputationError
 from flexapod.symbolic import compiler
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="scripts as programs")
+pytestmark = [pytest.mark.optimised, pytest.mark.skipif(sys.platform == "win32", reason="scripts as programs")]
 
 
 @pytest.fixture
