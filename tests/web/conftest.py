@@ -243,27 +243,45 @@ def reports(tmp_path_factory) -> Reports:
     return Reports(tmp_path_factory.mktemp("reports"))
 
 
+@pytest.fixture(scope="module")
+def windows(browser) -> Iterator[dict[str, object]]:
+    """Windows by their settings, from test to test: a new one takes twice as long to show a report."""
+    found: dict[str, object] = {}
+    yield found
+    for page in found.values():
+        page.context.close()
+
+
 @pytest.fixture
-def read(browser, reports) -> Iterator[Callable[..., object]]:
+def read(browser, windows, reports) -> Iterator[Callable[..., object]]:
     """`read(preset)`: the report in a window of its own; fails on an error in it, or if it asks for anything."""
-    contexts, errors, asked = [], [], []
+    pages, errors, asked = [], [], []
+    heard = {
+        "pageerror": lambda error: errors.append(str(error)),
+        "console": lambda said: errors.append(said.text) if said.type == "error" else None,
+        "request": lambda request: asked.append(request.url),
+    }
 
     def go(preset: str = "paper-robot", **settings: object) -> object:
-        context = browser.new_context(**({"viewport": {"width": 1100, "height": 900}} | settings))
-        contexts.append(context)
-        page = context.new_page()
+        settings = {"viewport": {"width": 1100, "height": 900}} | settings
+        page = windows.get(repr(settings)) or browser.new_context(**settings).new_page()
+        windows[repr(settings)] = page
+        page.emulate_media(media="screen")
+        page.mouse.move(0, 0)
         page.set_default_timeout(300_000)  # the machine may be busy: what is waited for comes, or the test is wrong
-        page.on("pageerror", lambda error: errors.append(str(error)))
-        page.on("console", lambda said: errors.append(said.text) if said.type == "error" else None)
-        page.on("request", lambda request: asked.append(request.url))
+        for event, hear in heard.items():
+            page.on(event, hear)
+        pages.append(page)
         page.goto(reports[preset].as_uri())
         if settings.get("java_script_enabled", True):
             page.locator("html[data-ready=yes]").wait_for(state="attached")
         return page
 
     yield go
-    for context in contexts:
-        context.close()
+    for page in pages:
+        for event, hear in heard.items():
+            page.remove_listener(event, hear)
+        page.goto("about:blank")  # what is open draws
     assert not errors
     outside = [url for url in asked if not url.startswith(("data:", "blob:"))]
-    assert all(url.endswith(".html") for url in outside) and len(outside) == len(contexts)
+    assert all(url.endswith(".html") for url in outside) and len(outside) == len(pages)

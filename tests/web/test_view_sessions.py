@@ -131,7 +131,7 @@ def test_no_more_simulations_at_once_than_cores():
     for thread in threads:
         thread.start()
     for thread in threads:
-        thread.join(30)
+        thread.join(300)
     assert sorted(done) == list(range(8)) and max(most) == 2
 
 
@@ -385,7 +385,7 @@ def test_a_study_that_would_fill_the_memory_is_not_begun(session):
 def test_downloads_of_one_hold_nobody_up(view, monkeypatch):
     """40 messages for a report filled the threads that answer everybody; another's Simulate waited for a minute."""
     finish, begun = threading.Event(), []
-    monkeypatch.setattr(files_panel, "csv", lambda data: begun.append(data) or finish.wait(60) or b"")
+    monkeypatch.setattr(files_panel, "csv", lambda data: begun.append(data) or finish.wait(300) or b"")
     server = view(study_text(*SHORT))
     with guest(server) as one:
         first = until(lambda: server.sessions)[0]
