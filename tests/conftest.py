@@ -13,6 +13,8 @@ KINDS = (
     "analytic", "cli", "consistency", "contract", "conservation", "convergence",
     "golden", "literature", "meta", "property", "unit", "web",
 )  # fmt: skip
+#: Kinds of which most kernels are called a few times. Not meant: files that are "optimised", groups that march long.
+QUICK = ("analytic", "conservation", "consistency", "contract", "property", "unit", "web")
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -22,6 +24,21 @@ def forgotten(request: pytest.FixtureRequest) -> Iterator[None]:
     for value in vars(request.module).values():
         if getattr(value, "__module__", None) == request.module.__name__ and hasattr(value, "cache_clear"):
             value.cache_clear()
+
+
+@pytest.fixture(scope="module", autouse=True)
+def quickly_compiled(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Kernels of kinds of tests that have one each: not optimised they have the same bits in a third of the time."""
+    kind = request.path.relative_to(HERE).parts[0]
+    if kind not in QUICK or any(map(request.node.get_closest_marker, ("optimised", "xdist_group"))):
+        yield
+        return
+    from flexapod.solve.kernel import kernel
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("flexapod.symbolic.compiler.FLAGS", ("-O0",))
+        yield
+    kernel.cache_clear()
 
 
 @pytest.fixture

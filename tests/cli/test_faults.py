@@ -22,7 +22,7 @@ posix = pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/fu
 
 def command(*arguments, **more):
     return subprocess.run(
-        [sys.executable, "-m", "flexapod", *map(str, arguments)], stderr=subprocess.PIPE, text=True, timeout=120, **more
+        [sys.executable, "-m", "flexapod", *map(str, arguments)], stderr=subprocess.PIPE, text=True, timeout=300, **more
     )
 
 
@@ -53,7 +53,7 @@ def test_short_words_into_a_full_output_and_a_closed_pipe(folder):
 @posix
 def test_stderr_that_takes_no_more(folder):
     with open("/dev/full", "w") as full:
-        done = subprocess.run([sys.executable, "-m", "flexapod", "check", "none.toml"], stderr=full, timeout=120)
+        done = subprocess.run([sys.executable, "-m", "flexapod", "check", "none.toml"], stderr=full, timeout=300)
     assert done.returncode == 2
 
 
@@ -152,7 +152,7 @@ cli.main()
 def test_a_signal_while_results_are_written_leaves_nothing_half(study, folder, name, code):
     file = study(*SHORT)
     done = subprocess.run(
-        [sys.executable, "-c", WRITING.format(name=name), str(file)], capture_output=True, text=True, timeout=120,
+        [sys.executable, "-c", WRITING.format(name=name), str(file)], capture_output=True, text=True, timeout=300,
         preexec_fn=heed_interrupts,
     )  # fmt: skip
     assert done.returncode == code
@@ -178,7 +178,7 @@ def test_a_signal_after_the_last_step_loses_nothing(study, folder, module, name)
         f"    return whole(*a, **k)\nowner.{function} = once\n"
         "sys.argv = ['flexapod', 'run', sys.argv[1]]\ncli.main()"
     )
-    done = subprocess.run([sys.executable, "-c", code, str(study(*SHORT))], capture_output=True, text=True, timeout=120)
+    done = subprocess.run([sys.executable, "-c", code, str(study(*SHORT))], capture_output=True, text=True, timeout=300)
     assert done.returncode == 143 and "Traceback" not in done.stderr
     assert "stopped by SIGTERM at t = 0.2 s; the whole result is kept" in done.stderr
     found = open_results(folder / "study-run" / "results.nc")
@@ -195,7 +195,7 @@ def test_sigterm_keeps_what_was_computed(study, folder):
         "def some(*a):\n    count.append(1)\n    len(count) == 3 and os.kill(os.getpid(), signal.SIGTERM)\n"
         "    return kept(*a)\nrecord._kept = some\nsys.argv = ['flexapod', 'run', sys.argv[1]]\ncli.main()"
     )
-    done = subprocess.run([sys.executable, "-c", code, str(file)], capture_output=True, text=True, timeout=120)
+    done = subprocess.run([sys.executable, "-c", code, str(file)], capture_output=True, text=True, timeout=300)
     assert done.returncode == 143
     assert "stopped by SIGTERM at t = " in done.stderr
     assert open_results(folder / "study-run" / "results.nc").attrs["partial"] == 1
@@ -254,7 +254,7 @@ def test_ctrl_c_while_workers_start(study, folder):
     assert run.stdout.readline() == "started\n"
     time.sleep(0.3)  # it imports Dask now
     os.killpg(run.pid, signal.SIGINT)
-    _, told = run.communicate(timeout=120)
+    _, told = run.communicate(timeout=300)
     assert run.returncode == 130
     assert told.startswith("Error: stopped by Ctrl-C")
     assert told.count("\n") <= 2

@@ -32,10 +32,10 @@ def terminal():
     return pytest.importorskip("pty").openpty()
 
 
-def read_until(source, word, seconds=60.0):
-    """What a terminal shows until `word` appears."""
+def read_until(source, *words, seconds=300.0):
+    """What a terminal shows until all `words` have appeared."""
     shown, end = b"", time.monotonic() + seconds
-    while word not in shown:
+    while not all(word in shown for word in words):
         assert time.monotonic() < end, shown.decode(errors="replace")[-2000:]
         shown += os.read(source, 4096)
     return shown
@@ -50,11 +50,10 @@ def test_interrupted_run(study, folder):
         command, stdout=subprocess.PIPE, stderr=sink, text=True, env=environment, preexec_fn=heed_interrupts
     )
     os.close(sink)
-    shown = read_until(source, b"simulating")
-    time.sleep(1.0)
+    shown = read_until(source, b"simulating", b" 1%")
     run.send_signal(signal.SIGINT)
     shown += read_until(source, b"stopped by Ctrl-C")
-    out, _ = run.communicate(timeout=60)
+    out, _ = run.communicate(timeout=300)
     os.close(source)
     assert run.returncode == 130
     assert b"Traceback" not in shown
@@ -69,7 +68,7 @@ def test_interrupted_run(study, folder):
 @pytest.mark.skipif(sys.platform == "win32", reason="SIGINT")
 def test_interrupted_run_as_json(study, folder):
     command = [sys.executable, "-c", PROGRAM, str(study(*LONG))]
-    run = subprocess.run(command, capture_output=True, text=True, timeout=60, preexec_fn=heed_interrupts)
+    run = subprocess.run(command, capture_output=True, text=True, timeout=300, preexec_fn=heed_interrupts)
     assert run.returncode == 130
     assert json.loads(run.stdout)["partial"] is True
     assert json.loads(run.stderr)["error"]["kind"] == "interrupt"

@@ -164,7 +164,7 @@ def test_ctrl_c_ends_the_engine(folder):
     command = [sys.executable, "-c", PROGRAM, "out"]
     environment = os.environ | {"TMPDIR": str(folder)}
     run = subprocess.run(
-        command, capture_output=True, text=True, timeout=60, preexec_fn=heed_interrupts, env=environment
+        command, capture_output=True, text=True, timeout=300, preexec_fn=heed_interrupts, env=environment
     )
     assert run.returncode == 130, run.stderr
     assert "stopped by Ctrl-C" in run.stderr and "Traceback" not in run.stderr

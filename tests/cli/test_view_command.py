@@ -117,10 +117,10 @@ def test_serves_until_ctrl_c(study, folder, options, words):
     try:
         said = running.stdout.readline()
         page = said.decode().split("http://")[1].split()[0]
-        with urllib.request.urlopen(f"http://{page}", timeout=60) as answer:
+        with urllib.request.urlopen(f"http://{page}", timeout=300) as answer:
             assert b"<html" in answer.read()
         running.send_signal(signal.SIGINT)
-        rest, wrong = running.communicate(timeout=60)
+        rest, wrong = running.communicate(timeout=300)
     finally:
         running.kill()
     assert running.returncode == 0
@@ -149,7 +149,7 @@ def test_however_it_is_ended_nothing_that_was_sent_stays(study, folder, kinds):
             (place / "path.csv").write_text("time [s], roll [deg]")
             for kind in kinds:
                 running.send_signal(getattr(signal, kind))
-            assert running.wait(timeout=60) == 0
+            assert running.wait(timeout=300) == 0
             _, wrong = running.communicate()
     finally:
         running.kill()
@@ -168,7 +168,7 @@ def test_address_as_json(study, folder):
             assert line, "it ended"
         assert json.loads(lines)["local"] is True
         running.send_signal(signal.SIGINT)
-        running.wait(timeout=60)
+        running.wait(timeout=300)
     finally:
         running.kill()
         running.stdout.close()

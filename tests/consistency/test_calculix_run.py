@@ -56,14 +56,14 @@ def test_crash_says_which_and_the_last_lines(stand_in):
 
 
 def test_hang_is_stopped_with_all_it_started(stand_in, tmp_path):
-    where = stand_in(f"echo thinking; sleep 77 & echo $! > '{tmp_path}/child'; wait")
+    where = stand_in(f"echo thinking; sleep 777 & echo $! > '{tmp_path}/child'; wait")
     begin = time.perf_counter()
     with pytest.raises(ComputationError, match=r"did not end within 1 s.*thinking"):
         calculix.run("*HEADING\n", time_limit=1.0)
-    assert time.perf_counter() - begin < 40  # of a machine with much else to do; the sleep is 77 s
+    assert time.perf_counter() - begin < 300  # of a machine with much else to do; the sleep is 777 s
     assert gone(where)
     child = int((tmp_path / "child").read_text(encoding="utf-8"))
-    deadline = time.perf_counter() + 30
+    deadline = time.perf_counter() + 300
     while running(child) and time.perf_counter() < deadline:
         time.sleep(0.05)
     assert not running(child)

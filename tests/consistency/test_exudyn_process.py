@@ -41,8 +41,8 @@ class TestPresent:
     def test_a_process_that_does_not_end_is_stopped(self):
         begin = time.perf_counter()
         with pytest.raises(ComputationError, match=r"did not end within 0\.5 s"):
-            ask(print, Does(time.sleep, 60), time_limit=0.5)
-        assert time.perf_counter() - begin < 30
+            ask(print, Does(time.sleep, 600), time_limit=0.5)
+        assert time.perf_counter() - begin < 300  # of a machine with much else to do
 
     def test_a_crash_is_told_with_its_signal(self):
         with pytest.raises(ComputationError, match="SIGABRT"):

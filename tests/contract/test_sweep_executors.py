@@ -163,7 +163,7 @@ def test_a_script_without_a_guard_is_told_so(tmp_path):
         encoding="utf-8",
     )
     process = start(script)
-    _, shown = process.communicate(timeout=60)
+    _, shown = process.communicate(timeout=300)
     assert process.returncode == 1
     assert 'if __name__ == "__main__":' in shown
 

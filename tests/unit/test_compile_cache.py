@@ -24,7 +24,7 @@ from flexapod.symbolic.compiler import CompiledFunction, compiled_library, writt
 from flexapod.symbolic.functions import NamedFunction
 from flexapod.symbolic.vocabulary import symbol
 
-pytestmark = pytest.mark.skipif(compiler.compiler() is None, reason="there is no C compiler")
+pytestmark = [pytest.mark.optimised, pytest.mark.skipif(compiler.compiler() is None, reason="there is no C compiler")]
 
 
 def functions(factor: float) -> list[NamedFunction]:

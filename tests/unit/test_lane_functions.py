@@ -8,7 +8,7 @@ from flexapod.symbolic.compiler import CompiledFunction, compiled_library
 from flexapod.symbolic.functions import NamedFunction
 from flexapod.symbolic.vocabulary import SX, cos, dot, exp, sin, sqrt, symbol, vertcat
 
-pytestmark = pytest.mark.skipif(compiler.compiler() is None, reason="there is no C compiler")
+pytestmark = [pytest.mark.optimised, pytest.mark.skipif(compiler.compiler() is None, reason="there is no C compiler")]
 
 ANGLES = np.concatenate(
     [

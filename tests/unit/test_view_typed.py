@@ -135,7 +135,7 @@ def test_a_text_is_left_alone_while_somebody_types(client, panel):
 
 def test_a_pause_is_enough(client, panel):
     type_into(client, field(client, "mass [kg]"), "2e2")
-    end = time.monotonic() + 20
+    end = time.monotonic() + 300
     while not hasattr(panel, "edit") and time.monotonic() < end:
         time.sleep(0.02)
     assert panel.edit.study.robot.payload.mass == 200.0

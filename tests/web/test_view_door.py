@@ -57,7 +57,7 @@ def all_entries(monkeypatch):
 
 def asked(server, *lines: str) -> tuple[int, dict[str, str]]:
     """Status and headers of the answer to a request."""
-    with socket.create_connection(("127.0.0.1", server.port), timeout=30) as line:
+    with socket.create_connection(("127.0.0.1", server.port), timeout=300) as line:
         line.sendall("\r\n".join(["GET / HTTP/1.1", *lines, "", ""]).encode())
         answer = b""
         while b"\r\n\r\n" not in answer and (more := line.recv(65536)):
@@ -76,7 +76,7 @@ def ended(server, message, **options) -> int:
         try:
             line.send(message)
             while True:
-                line.recv(timeout=30)
+                line.recv(timeout=300)
         except ConnectionClosed as closed:
             return closed.rcvd.code
 
@@ -105,7 +105,7 @@ def test_every_answer_carries_the_headers(server):
 def _of(server, path):
     request = urllib.request.Request(f"http://{here(server)}{path}")
     try:
-        with urllib.request.urlopen(request, timeout=30) as answer:
+        with urllib.request.urlopen(request, timeout=300) as answer:
             return answer.status, dict(answer.headers)
     except urllib.error.HTTPError as error:
         with error:
@@ -199,7 +199,7 @@ def test_pieces_without_end_are_not_gathered(server):
         with pytest.raises(ConnectionClosed):
             line.send(b"" for _ in range(100_000))
             while True:
-                line.recv(timeout=30)
+                line.recv(timeout=300)
 
 
 def test_who_does_not_say_that_a_page_is_there_does_not_stay(server, monkeypatch):
@@ -209,11 +209,11 @@ def test_who_does_not_say_that_a_page_is_there_does_not_stay(server, monkeypatch
 
 
 def test_who_has_said_so_may_be_silent(server, monkeypatch):
-    monkeypatch.setattr(visitor, "FIRST_MESSAGE", 0.5)
+    monkeypatch.setattr(visitor, "FIRST_MESSAGE", 2.0)
     with guest(server) as client:
         session = until(lambda: server.sessions)[0]
         until(lambda: session.data is not None)
-        time.sleep(0.6)
+        time.sleep(2.2)
         assert client._thread.is_alive()
     until(lambda: not server.sessions)
 
@@ -221,7 +221,7 @@ def test_who_has_said_so_may_be_silent(server, monkeypatch):
 def test_another_version_is_sent_away_without_a_word_in_the_terminal(server, capfd):
     with connect(f"ws://{here(server)}", subprotocols=["viser-v0.0"]) as line:
         with pytest.raises(ConnectionClosed) as closed:
-            line.recv(timeout=30)
+            line.recv(timeout=300)
     assert closed.value.rcvd.code == 1002 and "Version mismatch" in closed.value.rcvd.reason
     assert capfd.readouterr() == ("", "")
 
@@ -235,7 +235,7 @@ def test_messages_for_others_go_nowhere(server):
         for i in range(20):
             client.socket.send(packed(type="GuiFormDirtyMessage", uuid=f"{i}" + 50_000 * "x"))
             client.socket.send(packed(type="ShareUrlRequest"))
-        until(lambda: client.socket.ping().wait(30))
+        until(lambda: client.socket.ping().wait(300))
         client.socket.send(GREETING)
         session = server.sessions[0]
         until(lambda: session.data is not None)
@@ -345,13 +345,13 @@ def test_whoever_is_new_finds_a_place(greedy):
 def test_connections_that_say_nothing_are_counted(server, monkeypatch):
     """As many of one address as are still free."""
     monkeypatch.setattr(visitor, "MOST_CONNECTIONS", 6)
-    silent = [socket.create_connection(("127.0.0.1", server.port), timeout=30) for _ in range(3)]
+    silent = [socket.create_connection(("127.0.0.1", server.port), timeout=300) for _ in range(3)]
     try:
-        with socket.create_connection(("127.0.0.1", server.port), timeout=30) as line:
+        with socket.create_connection(("127.0.0.1", server.port), timeout=300) as line:
             with pytest.raises(ConnectionResetError):
                 if line.recv(1) == b"":
                     raise ConnectionResetError
-        with socket.create_connection(("127.0.0.1", server.port), timeout=30, source_address=("127.0.0.2", 0)) as line:
+        with socket.create_connection(("127.0.0.1", server.port), timeout=300, source_address=("127.0.0.2", 0)) as line:
             line.sendall(f"GET / HTTP/1.1\r\nHost: {here(server)}\r\n\r\n".encode())
             assert line.recv(65536).startswith(b"HTTP/1.1 200")
     finally:

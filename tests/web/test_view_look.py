@@ -149,7 +149,7 @@ def test_the_long_notice_is_hidden_before_any_script_runs(desk):
 
     for packed in ("gzip", "identity"):
         request = urllib.request.Request(f"http://127.0.0.1:{desk[0].port}/", headers={"Accept-Encoding": packed})
-        with urllib.request.urlopen(request, timeout=30) as answer:
+        with urllib.request.urlopen(request, timeout=300) as answer:
             assert answer.headers["Content-Encoding"] == packed
             body = answer.read()
             assert int(answer.headers["Content-Length"]) == len(body)

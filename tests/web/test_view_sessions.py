@@ -17,6 +17,7 @@ from viser import _messages
 import flexapod as fx
 from flexapod import study as studies
 from flexapod.page import files_panel, player, running, time_panel
+from flexapod.page import server as pages
 from flexapod.page.document import Document, read
 from flexapod.page.opening import StudySource
 from flexapod.page.running import Cores, Turn
@@ -114,6 +115,28 @@ def test_a_fault_in_a_thread_is_told_and_ends_nothing(what, request, monkeypatch
     until(lambda: session.modes_panel._inside._modes is not None)
 
 
+def test_a_session_begins_when_what_it_needs_is_loaded(view, monkeypatch):
+    """Of two threads that imported dask at once, on a busy machine, one got half of it: the first simulation ended."""
+    loading, go, load = threading.Event(), threading.Event(), pages._load
+
+    def slowly():
+        loading.set()
+        assert go.wait(300)
+        load()
+
+    monkeypatch.setattr(pages, "_load", slowly)
+    begun = []
+    monkeypatch.setattr("flexapod.page.session.Session.start", lambda session: begun.append("dask.base" in sys.modules))
+    server = view(study_text(*SHORT))
+    with guest(server):
+        assert loading.wait(300)
+        until(lambda: server._server.get_clients())  # it has come, and waits
+        assert not begun and not server.sessions
+        go.set()
+        until(lambda: begun)
+    assert begun == [True]
+
+
 def test_no_more_simulations_at_once_than_cores():
     places, at_once, most, done = Cores(2), [], [], []
 
@@ -131,7 +154,7 @@ def test_no_more_simulations_at_once_than_cores():
     for thread in threads:
         thread.start()
     for thread in threads:
-        thread.join(30)
+        thread.join(300)
     assert sorted(done) == list(range(8)) and max(most) == 2
 
 
@@ -385,7 +408,7 @@ def test_a_study_that_would_fill_the_memory_is_not_begun(session):
 def test_downloads_of_one_hold_nobody_up(view, monkeypatch):
     """40 messages for a report filled the threads that answer everybody; another's Simulate waited for a minute."""
     finish, begun = threading.Event(), []
-    monkeypatch.setattr(files_panel, "csv", lambda data: begun.append(data) or finish.wait(60) or b"")
+    monkeypatch.setattr(files_panel, "csv", lambda data: begun.append(data) or finish.wait(300) or b"")
     server = view(study_text(*SHORT))
     with guest(server) as one:
         first = until(lambda: server.sessions)[0]

@@ -81,25 +81,27 @@ def _rows_compressed(A: Array, B: Array, C: Array, D: Array) -> tuple[Array, Arr
         left, values, _ = np.linalg.svd(D)
         rank = int((values > RANK).sum())
         if rank == C.shape[0]:
-            return A, B, C, D
+            break
         C, D = left.T @ C, left.T @ D  # rows below `rank` have no feed-through
-        if not len(A):
-            return A, B, C[:rank], D[:rank]
-        free = C[rank:]
-        _, sizes, basis = np.linalg.svd(free)
-        held = int((sizes > RANK * max(1.0, float(np.abs(free).max(initial=0.0)))).sum())
+        basis, held = _held(C[rank:])
         if held == 0:
             return A, B, C[:rank], D[:rank]
-        turn = basis.T[:, ::-1]  # held states last
-        A, B, C = turn.T @ A @ turn, turn.T @ B, C[:rank] @ turn
-        stay = len(A) - held
-        A, C, B, D = (
-            A[:stay, :stay],
-            np.vstack([C[:, :stay], A[stay:, :stay]]),
-            B[:stay],
-            np.vstack([D[:rank], B[stay:]]),
-        )
+        A, B, C, D = _without_held(A, B, C[:rank], D[:rank], basis.T[:, ::-1], len(A) - held)
     return A, B, C, D
+
+
+def _held(free: Array) -> tuple[Array, int]:
+    """Directions of states by how much outputs without feed-through hold them, and how many they hold."""
+    if not free.shape[1]:
+        return np.zeros((0, 0)), 0
+    _, sizes, basis = np.linalg.svd(free)
+    return basis, int((sizes > RANK * max(1.0, float(np.abs(free).max(initial=0.0)))).sum())
+
+
+def _without_held(A: Array, B: Array, C: Array, D: Array, turn: Array, stay: int) -> tuple[Array, Array, Array, Array]:
+    """The system turned so that held states are last, without these: what they do counts as outputs."""
+    A, B, C = turn.T @ A @ turn, turn.T @ B, C @ turn
+    return A[:stay, :stay], B[:stay], np.vstack([C[:, :stay], A[stay:, :stay]]), np.vstack([D, B[stay:]])
 
 
 def _without_cancelled(zeros: Complex, poles: Complex, rate: float) -> Complex:

@@ -61,7 +61,8 @@ class View:
         )
         self._server.scene.configure_environment_map(None)  # its reflections take seconds where no GPU draws the page
         self._server.scene.configure_default_lights(enabled=False)
-        threading.Thread(target=_load, name="flexapod-load", daemon=True).start()
+        self._loading = threading.Thread(target=_load, name="flexapod-load", daemon=True)
+        self._loading.start()
         self._server.on_client_connect(self._connected)
         self._server.on_client_disconnect(self._disconnected)
 
@@ -79,6 +80,7 @@ class View:
             self._server.stop()
 
     def _connected(self, client: viser.ClientHandle) -> None:
+        self._loading.join()
         from flexapod.page.session import Session
 
         session = Session(client, self._source, self._cores)
@@ -119,6 +121,7 @@ def _load() -> None:
         loaded(name)
     loaded("flexapod.study.simulation")
     loaded("xarray")
+    loaded("dask.base")  # xarray asks it for its types; of two threads that import it at once one gets half of it
 
 
 def _unhandled(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
