@@ -171,3 +171,16 @@ def test_a_machine_on_soft_feet_is_answered_after_the_path() -> None:
 def test_robots_whose_elastic_motion_is_not_inverted_are_refused() -> None:
     with pytest.raises(fx.InputError, match="six motions"):
         fx.compensate(fx.preset("tripod"), "stable-inversion")
+
+
+def test_what_is_not_to_be_made_up_for_is_not():
+    """Without what warms it commands are those of the cold machine as drawn; with it they differ by micrometres."""
+    study = fx.preset("machine-hexapod")
+    assert study.robot.heat is not None
+    drawn = study.replace(robot=study.robot.replace(geometry=None, heat=None))
+    left, plain, whole = (
+        fx.compensate(x, corrections=1, as_built=built).motion
+        for x, built in ((study, False), (drawn, True), (study, True))
+    )
+    np.testing.assert_allclose(left.pose, plain.pose, atol=1e-12)
+    assert np.abs(whole.pose - left.pose)[:, :3].max() > 1e-6

@@ -313,3 +313,18 @@ def test_a_unit_begins_when_it_is_told_and_again_at_nothing_after_a_reset(units)
         for _ in range(20):
             assert one.steps(STEP) == 0, one.said
     assert np.abs(turned.get("platform_quaternion")[3] - still.get("platform_quaternion")[3]) > 1e-9
+
+
+def test_carriages_that_keep_their_first_command_stay_where_they_are(tmp_path):
+    """Commands of a hexaglide count from the feet of its rails: told what it starts with it does not move."""
+    study = fx.load(EXAMPLES / "hexaglide.toml")
+    found = fx.export(study, "fmu", tmp_path / "robot.fmu", commands="inputs", step=STEP)
+    one = Instance(Unit(found.path, tmp_path / "unpacked"))
+    assert np.abs(one.unit.start("drive_command")).min() > 0.1
+    np.testing.assert_allclose(one.unit.start("drive_command"), one.get("drive_position"), atol=1e-12)
+    start = one.get("tool_position")
+    for _ in range(10):
+        assert one.steps(STEP) == 0, one.said
+    # at rest in its equilibrium, found to 1e-10 of a metre
+    np.testing.assert_allclose(one.get("tool_position"), start, atol=1e-8)
+    np.testing.assert_allclose(one.get("drive_position"), one.unit.start("drive_command"), atol=1e-9)
