@@ -1,7 +1,5 @@
 """State spaces with named channels: closed forms, and NumPy's solutions at each frequency."""
 
-import time
-
 import numpy as np
 import pytest
 
@@ -175,16 +173,13 @@ def test_a_sampled_system_is_evaluated_on_the_circle():
     assert system.damp().damping_ratio == 1.0
 
 
-def test_many_frequencies_cost_far_less_than_solving():
-    system = random_robot(np.random.default_rng(1))
-    hz = np.geomspace(1, 1e4, 1000)
-    system.at(hz)
-    start = time.process_time()
-    system.at(hz)
-    fast = time.process_time() - start
-    start = time.process_time()
-    solved(system, hz[:100])
-    assert fast < 2.5 * (time.process_time() - start)  # a quarter of what it would take at all of them
+def test_of_many_frequencies_few_are_solved_for(monkeypatch):
+    """A solution at a frequency costs as much as poles and residues at a hundred: some twenty check the others."""
+    system, solved_for = random_robot(np.random.default_rng(1)), []
+    solving = frequency._solved
+    monkeypatch.setattr(frequency, "_solved", lambda A, B, C, s: solved_for.append(s.size) or solving(A, B, C, s))
+    system.at(np.geomspace(1, 1e4, 1000))
+    assert 0 < sum(solved_for) <= 2 * frequency.CHECKED
 
 
 def test_channels_are_chosen_by_name_and_by_group():
