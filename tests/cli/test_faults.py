@@ -191,9 +191,9 @@ def test_sigterm_keeps_what_was_computed(study, folder):
     file = study(*changes, ("tolerance = 1e-4", 'step = "0.5 ms"\noutput_step = "10 ms"'))
     code = (
         "import os, signal, sys\nfrom flexapod.results import record\nfrom flexapod.cli import cli\n"
-        "kept = record._kept\ncount = []\n"
+        "kept = record.kept\ncount = []\n"
         "def some(*a):\n    count.append(1)\n    len(count) == 3 and os.kill(os.getpid(), signal.SIGTERM)\n"
-        "    return kept(*a)\nrecord._kept = some\nsys.argv = ['flexapod', 'run', sys.argv[1]]\ncli.main()"
+        "    return kept(*a)\nrecord.kept = some\nsys.argv = ['flexapod', 'run', sys.argv[1]]\ncli.main()"
     )
     done = subprocess.run([sys.executable, "-c", code, str(file)], capture_output=True, text=True, timeout=300)
     assert done.returncode == 143
