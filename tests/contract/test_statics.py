@@ -7,7 +7,7 @@ import pytest
 from tests.runs import paper_robot
 
 import flexapod as fx
-from flexapod.description.rest import Rest
+from flexapod.description.rest import RestingRobot
 from flexapod.description.robot import describe_pose
 from flexapod.model import (
     ConstantWrench,
@@ -81,7 +81,7 @@ def test_statics_are_the_first_instant_of_a_run(drive, load, fidelity):
     modes, many = fx.modes(study, POSE), fx.modes(study, np.tile([0, 0.03, 0.02, 0.1, 0, 0], (2, 1)))
     at = {"heave": [POSE["heave"]]}
     map_ = fx.workspace_map(study, at, at={"sway": POSE["sway"], "roll": POSE["roll"]}).isel(heave=0)
-    checked = describe_pose("start", Rest(study, 0.0))
+    checked = describe_pose("start", RestingRobot(study, 0.0))
     sag = start.com_deviation.values
     agree(modes.com_sag, sag)
     agree(many.com_sag[1], sag)
@@ -124,4 +124,4 @@ def test_a_table_counts_at_the_instant_of_the_pose():
     later = ForceDrive(law="csv", file="f.csv", time=[0.0, 1.0], force=[400.0, 400.0], feedback=SPRING)
     legs = tuple(leg.replace(drive=later) for leg in study.robot.legs)
     expected = fx.modes(study.replace(robot=study.robot.replace(legs=legs)), POSE).com_sag.values
-    agree(describe_pose("end of the motion", Rest(study, 1.0)).sag, np.linalg.norm(expected))
+    agree(describe_pose("end of the motion", RestingRobot(study, 1.0)).sag, np.linalg.norm(expected))

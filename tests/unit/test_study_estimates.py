@@ -13,7 +13,7 @@ from tests.runs import paper_robot, with_legs
 import flexapod as fx
 from flexapod import kinematics
 from flexapod.bases import lateral_basis
-from flexapod.description.rest import Rest, vibration_to_expect
+from flexapod.description.rest import RestingRobot, vibration_to_expect
 from flexapod.mechanics.layout import LEG_PARAMETERS, columns
 from flexapod.model import AxisMotion, Feedback, ForceDrive, Payload, ServoDrive, Simulation, Study
 from flexapod.results.path import RigidPath
@@ -293,7 +293,7 @@ def test_what_is_fed_forward_does_not_excite():
     for name, drive in drives.items():
         study = with_legs(paper_robot(fidelity="lumped", duration=0.3, step=5e-4), lambda leg: leg.replace(drive=drive))  # noqa: B023
         study = study.replace(motion=AxisMotion(type="roll", amplitude=np.deg2rad(5), duration=0.1, hold=0.2))
-        told[name] = vibration_to_expect(Rest(study, 0.1)).amplitude
+        told[name] = vibration_to_expect(RestingRobot(study, 0.1)).amplitude
         rest = fx.simulate(study).com_deviation.sel(time=slice(0.1, None))
         found[name] = float(((rest - rest.mean("time")) ** 2).sum("axis").max() ** 0.5)
     assert found["force"] < 0.05 * found["servo"]

@@ -21,7 +21,7 @@ PER_PERIOD, FEWEST, MOST = 12, 2000, 100_000  # instants of the motion: of a per
 
 
 @dataclass(frozen=True)
-class Rest:
+class RestingRobot:
     """A study's robot at rest at an instant of its path, drives locked; computed once."""
 
     study: model.Study
@@ -61,7 +61,7 @@ class VibrationToExpect:
     left_out: float | None
 
 
-def vibration_to_expect(rest: Rest) -> VibrationToExpect | None:
+def vibration_to_expect(rest: RestingRobot) -> VibrationToExpect | None:
     """Residual vibration after the motion, which ends at `rest`; None where it cannot vibrate."""
     study, end = rest.study, rest.time
     robot = study.robot

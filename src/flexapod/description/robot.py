@@ -32,7 +32,7 @@ from flexapod.description.leg import (
     describe_leg,
     load_remarks,
 )
-from flexapod.description.rest import Rest, VibrationToExpect, vibration_to_expect
+from flexapod.description.rest import RestingRobot, VibrationToExpect, vibration_to_expect
 from flexapod.description.screw import ScrewDescription, back_words, describe_screws, screw_remarks
 from flexapod.elements.springs import springs_along
 from flexapod.errors import FlexapodError, InputError
@@ -104,7 +104,7 @@ class PoseDescription:
     bushings: tuple[tuple[float, ...], ...] = ()
 
 
-def describe_pose(name: str, rest: Rest) -> PoseDescription:
+def describe_pose(name: str, rest: RestingRobot) -> PoseDescription:
     """The robot at rest at an instant of its path."""
     study, path, time = rest.study, rest.path, rest.time
     robot = study.robot
@@ -238,10 +238,10 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
     legs, singularity = describe_legs(path), _singularity(path)
     screws, hydraulics = describe_screws(path), describe_hydraulics(path)
     end = min(study.motion.end_time - study.motion.hold, study.duration)
-    rests = {"start": Rest(study, 0.0), "end of the motion": Rest(study, end)}
+    rests = {"start": RestingRobot(study, 0.0), "end of the motion": RestingRobot(study, end)}
     worst = singularity.time if singularity else end
     if min(worst, abs(worst - end)) > 0.02 * end and worst < end:
-        rests["nearest to a singularity"] = Rest(study, worst)
+        rests["nearest to a singularity"] = RestingRobot(study, worst)
     return RobotDescription(
         file=study.path,
         duration=study.duration,
