@@ -1,6 +1,7 @@
 """Types, found out beside the other tests: by a process that one of theirs waits for."""
 
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -23,7 +24,8 @@ def test_types_agree():
 def test_every_name_that_others_see_has_a_type():
     """As a program that uses the package sees it: nothing is left to be inferred, by which type checkers differ."""
     command = [PYRIGHT, "--verifytypes", "flexapod", "--ignoreexternal", "--outputjson"]
-    found = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    here = os.environ | {"PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])}
+    found = subprocess.run(command, cwd=ROOT, env=here, capture_output=True, text=True, check=False)
     complete = json.loads(found.stdout)["typeCompleteness"]
     assert complete["exportedSymbolCounts"]["withKnownType"] > 1000
     assert not [x["name"] for x in complete["symbols"] if x["isExported"] and not x["isTypeKnown"]]

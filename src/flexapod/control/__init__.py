@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 from flexapod.runtime.loading import later
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from flexapod.control.adaptive import AdaptiveDamping, Tracker
     from flexapod.control.closing import DelayedLoop
     from flexapod.control.controllers import DVF, IFF, PID, Controller, Decentralised, Decoupled, Fused, Together
@@ -104,7 +106,7 @@ __all__ = [
 ]
 
 
-__getattr__ = later("flexapod.control", _HOMES)
+__getattr__: Callable[[str], object] = later("flexapod.control", _HOMES)
 
 
 def __dir__() -> list[str]:

@@ -17,6 +17,8 @@ from flexapod.plot.vibration import vibration
 from flexapod.runtime.loading import later
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from flexapod.plot.linear import bode, cumulative, transmissibility
     from flexapod.plot.poles import pole_map, root_locus
     from flexapod.plot.robot3d import modes_3d, robot_3d
@@ -63,4 +65,4 @@ _LATER = {
     "flexapod.paper.variant_figures": ("half_angles", "start_jump"),
 }
 
-__getattr__ = later("flexapod.plot", _LATER)
+__getattr__: Callable[[str], object] = later("flexapod.plot", _LATER)

@@ -10,6 +10,8 @@ from flexapod.runtime.loading import later
 from flexapod.study.parts import parts
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from flexapod.error_budget import budget
     from flexapod.pose_errors.disturbances import vibration
     from flexapod.results.record import Interrupted
@@ -65,7 +67,7 @@ __all__ = [
 ]
 
 
-__getattr__ = later("flexapod.study", _LATER)
+__getattr__: Callable[[str], object] = later("flexapod.study", _LATER)
 
 
 def __dir__() -> list[str]:

@@ -1,5 +1,7 @@
 """Many variants of a study, computed by many workers, into one store that survives being killed."""
 
+from __future__ import annotations
+
 from typing import TYPE_CHECKING
 
 from flexapod.runtime.loading import later
@@ -7,9 +9,13 @@ from flexapod.surveys.sweeps.result import open_sweep, save_table, scalar_names,
 from flexapod.surveys.sweeps.zarr_folder import save_zarr
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from flexapod.surveys.sweeps.run import SweepStopped, sweep
 
 __all__ = ["SweepStopped", "open_sweep", "save_table", "save_zarr", "scalar_names", "sweep", "unstacked"]
 
 #: What computes is loaded when it is asked for: who opens a result needs no solver.
-__getattr__ = later("flexapod.surveys.sweeps", {"flexapod.surveys.sweeps.run": ("SweepStopped", "sweep")})
+__getattr__: Callable[[str], object] = later(
+    "flexapod.surveys.sweeps", {"flexapod.surveys.sweeps.run": ("SweepStopped", "sweep")}
+)
