@@ -81,6 +81,17 @@ def test_check_says_what_a_controller_leaves_of_static_stiffness(flexapod, folde
     assert "control" not in json.loads(flexapod("check", file, "--json").stdout)
 
 
+def test_check_says_that_a_loop_is_not_stable(flexapod, folder):
+    """Its static stiffness is not said, as nothing comes to rest; the march leaves its model after 54 ms."""
+    file = folder / "nano.toml"
+    gains = 'proportional = "0.2 N/um"\nintegral = "5e6 N/(m s)"\nderivative = "200 N s/m"'
+    file.write_text(fx.model.preset_text("nano-hexapod") + f'[control]\nlaw = "pid"\n{gains}\nsample = "0.1 ms"\n')
+    found = flexapod("check", file)
+    assert found.exit_code == 0, found.stderr
+    assert "The loop is not stable: 16 of its poles grow" in " ".join(found.stdout.split())
+    assert "static stiffness of the tool" not in found.stdout
+
+
 def test_a_robot_whose_platform_is_fixed_has_poles_too(flexapod):
     """It once was told that --input, which the command has not, has no meaning."""
     said = flexapod("damp", MECHANISMS / "strut.toml", "--count", "2")

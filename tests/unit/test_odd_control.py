@@ -4,20 +4,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.odd import NAN, refused, swinging
 
 import flexapod as fx
 from flexapod import control
 
-NAN = float("nan")
 NONE = (None, NAN, "1 kg", [], [1.0, 2.0], {}, 3 + 2j, object())
 
 
 @pytest.fixture(scope="module")
 def system():
-    return control.StateSpace(
-        A=[[0.0, 1.0], [-4.0, -0.1]], B=[[0.0], [1.0]], C=[[1.0, 0.0]], D=[[0.0]], inputs=("drive:1",),
-        outputs=("stroke:1",), states=("place", "rate"), units={},
-    )  # fmt: skip
+    return swinging()
 
 
 @pytest.fixture(scope="module")
@@ -27,12 +24,6 @@ def double():
         A=[[0.0, 1.0], [0.0, 0.0]], B=[[0.0], [1.0]], C=[[1.0, 0.0]], D=[[0.0]], inputs=("force",),
         outputs=("place",), states=("place", "speed"), units={},
     )  # fmt: skip
-
-
-def refused(call, key):
-    with pytest.raises(fx.InputError) as error:
-        call()
-    assert error.value.key == key
 
 
 @pytest.mark.parametrize(

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.odd import NAN, refused, swinging
 
 import flexapod as fx
 from flexapod import control
 from flexapod.exchange.uff import uff
 
-NAN = float("nan")
 MECHANISMS = Path(__file__).parents[2] / "examples" / "mechanisms"
 
 
@@ -20,16 +20,7 @@ def robot():
 
 @pytest.fixture(scope="module")
 def system():
-    return control.StateSpace(
-        A=[[0.0, 1.0], [-4.0, -0.1]], B=[[0.0], [1.0]], C=[[1.0, 0.0]], D=[[0.0]], inputs=("drive:1",),
-        outputs=("stroke:1",), states=("place", "rate"), units={},
-    )  # fmt: skip
-
-
-def refused(call, key):
-    with pytest.raises(fx.InputError) as error:
-        call()
-    assert error.value.key == key
+    return swinging()
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """The table [control] of a study file."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -210,6 +211,24 @@ def test_a_law_without_states_is_read(tmp_path):
 def test_refusals_of_laws_in_files(tmp_path, changes, words):
     with pytest.raises(InputError, match=words):
         own(tmp_path, **changes)
+
+
+def test_the_limit_of_drives_is_for_laws_that_move_drives(tmp_path):
+    with pytest.raises(InputError, match=r"control.saturate = 1.0: .* the law in the file moves none.*: command:2"):
+        sampled_controller(own(tmp_path, outputs=["command:2"]))
+
+
+def test_a_period_off_the_fixed_steps_is_refused_where_it_is_given(tmp_path):
+    """In the table by its file and key; of a call by its argument."""
+    fixed = DVF.replace("0.1 ms", "0.13 ms")
+    file = tmp_path / "study.toml"
+    text = re.sub(r"(?m)^tolerance = .*$", 'step = "0.1 ms"', preset_text("nano-hexapod")) + fixed
+    file.write_text(text)
+    with pytest.raises(InputError, match=r"study.toml: control.sample = '0.00013 s': is no multiple of the fixed step"):
+        fx.simulate(file)
+    with pytest.raises(InputError, match=r"sample = '0.00017 s': is no multiple") as error:
+        fx.simulate(file, sample=1.7e-4)
+    assert error.value.key == "sample"
 
 
 @pytest.mark.parametrize(

@@ -180,6 +180,7 @@ def _key_chapter(found: Listed, head: Sequence[str], *, alone: bool) -> parts.Ch
     title = f"[{entry.table}] {entry.title}".rstrip() + ("" if alone else f" ({entry.study})")
     rows = [[row.key, row.what, row.unit, row.default, row.allowed] for row in found.rows]
     keys = [parts.TextTable(head, rows, left=range(len(head)))] if rows else []
+    keys += [parts.Text(found.further)] if found.further else []
     return parts.Chapter(
         title, [parts.Text(entry.words), *keys, "", parts.Lines(entry.example.strip()), ""], close=True
     )

@@ -26,6 +26,16 @@ Matrix = Annotated[
 NONE = (0.0,) * 6
 Count = Annotated[int, Field(strict=True, ge=0, le=1000)]
 Seed = Annotated[int, Field(strict=True, ge=0, le=2**31 - 1)]
+LowPass = Annotated[
+    float | None,
+    Quantity("frequency", above=0, why="above it rates count less", usual="differences from sample to sample"),
+]
+StepOfStroke = Annotated[
+    float | None, Quantity("length", least=0, why="step of the readings, as of an encoder", usual="none")
+]
+NoiseOfStroke = Annotated[
+    float | None, Quantity("length", least=0, why="standard deviation of a reading", usual="none")
+]
 
 
 class _Sampled(Table):
@@ -66,16 +76,9 @@ class DampedControl(_Sampled):
     reads: ClassVar[str] = "stroke"
     law: Annotated[Literal["dvf"], Key("what is fed back")] = "dvf"
     gain: Annotated[float, Quantity("damping", above=0, why="force of the drive against the rate of its stroke")]
-    low_pass: Annotated[
-        float | None,
-        Quantity("frequency", above=0, why="above it the rate counts less", usual="differences from sample to sample"),
-    ] = None
-    quantise: Annotated[
-        float | None, Quantity("length", least=0, why="step of the readings, as of an encoder", usual="none")
-    ] = None
-    noise: Annotated[float | None, Quantity("length", least=0, why="standard deviation of a reading", usual="none")] = (
-        None
-    )
+    low_pass: LowPass = None
+    quantise: StepOfStroke = None
+    noise: NoiseOfStroke = None
 
 
 class StrokeControl(_Sampled):
@@ -93,16 +96,9 @@ class StrokeControl(_Sampled):
     derivative: Annotated[
         float, Quantity("damping", least=0, why="force of the drive against the rate of its stroke")
     ] = 0.0
-    low_pass: Annotated[
-        float | None,
-        Quantity("frequency", above=0, why="above it the rate counts less", usual="differences from sample to sample"),
-    ] = None
-    quantise: Annotated[
-        float | None, Quantity("length", least=0, why="step of the readings, as of an encoder", usual="none")
-    ] = None
-    noise: Annotated[float | None, Quantity("length", least=0, why="standard deviation of a reading", usual="none")] = (
-        None
-    )
+    low_pass: LowPass = None
+    quantise: StepOfStroke = None
+    noise: NoiseOfStroke = None
 
     @model_validator(mode="after")
     def _something(self) -> StrokeControl:
@@ -129,10 +125,7 @@ class ToolControl(_Sampled):
     derivative: Annotated[Vec6, Quantity("damping", "rotational damping", why="the same against their rates")] = Field(
         default=NONE, validate_default=True
     )
-    low_pass: Annotated[
-        float | None,
-        Quantity("frequency", above=0, why="above it rates count less", usual="differences from sample to sample"),
-    ] = None
+    low_pass: LowPass = None
     quantise: Annotated[Vec6 | None, Quantity("length", "angle", why="steps of the readings", usual="none")] = None
     noise: Annotated[
         Vec6 | None, Quantity("length", "angle", why="standard deviations of the readings", usual="none")

@@ -67,6 +67,15 @@ class Listed:
     rows: tuple[PageRow, ...]
     besides: tuple[str, ...]
 
+    @property
+    def further(self) -> str:
+        """Its keys that are listed above, in words; nothing where there are none or it has no others."""
+        return (
+            f"Further keys, as above: {', '.join(f'`{key}`' for key in self.besides)}."
+            if self.besides and self.rows
+            else ""
+        )
+
 
 def study_data(entry: Entry) -> dict[str, Any]:
     """A whole study with the entry's example in it, as tables."""
@@ -205,8 +214,8 @@ def entry_text(item: Listed) -> Iterator[str]:
         yield entry.words
     if item.rows:
         yield _table(HEAD, [(f"`{row.key}`", *astuple(row)[1:]) for row in item.rows])
-    if item.besides and item.rows:
-        yield "Further keys, as above: " + ", ".join(f"`{key}`" for key in item.besides) + "."
+    if item.further:
+        yield item.further
     yield f"```toml\n{entry.example.strip()}\n```"
 
 

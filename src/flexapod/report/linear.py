@@ -68,5 +68,3 @@ def _damped(study: Study) -> Iterator[Item]:
     yield TextTable(head, list(zip(*columns, strict=True)), left=())
     yield Text("Predicted by the linear model, from sample to sample, without noise and limits.", "soft")
     yield from map(sentence, control_words(study))
-    if found.growing:
-        yield Text(f"{found.growing} poles of the loop grow.", "bad")

@@ -83,7 +83,8 @@ def sampled_controller(
     given = {name: value for name, value in given.items() if value is not None}
     if controller is None and study.control is not None:
         controller, own = _of_table(study.control, study.robot)
-        given = own | given
+        key = "sample" if "sample" in given else "control.sample"
+        return _made(controller, study.robot, key=key, **(own | given))  # type: ignore[arg-type]
     if controller is None:
         if given:
             raise InputError(
@@ -104,8 +105,20 @@ def _of_table(table: model.Control, robot: model.Robot) -> tuple[AnyController, 
         each = {name: found[name] for name in ("quantise", "noise")}
         found |= {name: None if x is None else dict(zip(tool, x.tolist(), strict=True)) for name, x in each.items()}  # type: ignore[attr-defined]
     if isinstance(table, model.FileControl) and table.saturate is not None:
-        found["saturate"] = {"drive": table.saturate}
+        found["saturate"] = _limit_of_drives(table)
     return _controller_of(table, robot), {name: value for name, value in found.items() if value is not None}
+
+
+def _limit_of_drives(table: model.FileControl) -> dict[str, float | None]:
+    """The largest force of the drives that a law in a file moves."""
+    if not any(name.partition(":")[0] == "drive" for name in table.outputs):
+        raise InputError(
+            "limits forces of drives, and the law in the file moves none",
+            key="control.saturate",
+            value=table.saturate,
+            allowed=f"laws with outputs drive:1 and so on; its own: {', '.join(table.outputs)}",
+        )
+    return {"drive": table.saturate}
 
 
 def _controller_of(table: model.Control, robot: model.Robot) -> Controller | StateSpace:
@@ -153,8 +166,9 @@ def _made(
     saturate: PerChannel = None,
     noise: Noise = None,
     seed: int = 0,
+    key: str = "sample",
 ) -> Sampled:
-    """A controller with all settings."""
+    """A controller with all settings; `key`: where its time between samples is given."""
     from flexapod.control import StateSpace
     from flexapod.solve.time.sampled import Sampled
 
@@ -162,9 +176,9 @@ def _made(
     delay_samples, seed = whole(delay_samples, "delay_samples", 0, 1000), whole(seed, "seed", 0, 2**31 - 1)
     law = _law(controller, period, robot)
     inputs, outputs = tuple(law.inputs), tuple(law.outputs)
-    for key, names in (("controller.inputs", inputs), ("controller.outputs", outputs)):
+    for which, names in (("inputs", inputs), ("outputs", outputs)):
         if not names or len(set(names)) < len(names):
-            raise InputError("are none, or one of them twice", key=key, value=", ".join(names))
+            raise InputError("are none, or one of them twice", key=f"controller.{which}", value=", ".join(names))
     matrices = {name: getattr(law, name) for name in "ABCD"} if isinstance(law, StateSpace) else {}
     return Sampled(
         readings=inputs,
@@ -176,6 +190,7 @@ def _made(
         most=_by_channel(saturate, outputs, "saturate", np.inf),
         sigma=_by_channel(_sigmas(noise, period), inputs, "noise", 0.0),
         seed=seed,
+        key=key,
         **matrices,
     )
 

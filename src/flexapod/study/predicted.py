@@ -101,14 +101,17 @@ def static_stiffness(study: model.Study) -> tuple[float, float] | None:
 
 
 def control_words(study: model.Study) -> tuple[str, ...]:
-    """What the controller of a study does to static stiffness, in words; nothing without one."""
+    """Whether the loop of a study is stable, and what it does to static stiffness, in words; nothing without one."""
     sampled = sampled_controller(study)
     if sampled is None:
         return ()
     try:
+        predicted = predicted_damping(study)
+        if predicted is not None and predicted.growing:
+            return (_unstable(predicted.growing), *control_remarks(sampled))
         found = static_stiffness(study)
     except FlexapodError as error:
-        return (f"static stiffness with the controller cannot be said: {error}",)
+        return (f"what the controller does cannot be said: {error}",)
     if found is None:
         return control_remarks(sampled)
     off, on = found
@@ -123,6 +126,14 @@ def control_words(study: model.Study) -> tuple[str, ...]:
         f"static stiffness of the tool at home, where it is least: {text(off, 'N/m', 3)} without the controller, {kept}"
     )
     return (words, *control_remarks(sampled))
+
+
+def _unstable(growing: int) -> str:
+    poles = "one of its poles grows" if growing == 1 else f"{growing} of its poles grow"
+    return (
+        f"the loop is not stable: {poles}, by the linear model from sample to sample; "
+        "reduce gains or delay, or sample more often"
+    )
 
 
 def _pole(data: Dataset) -> NDArray[np.complex128]:

@@ -17,7 +17,7 @@ from flexapod.solve.time.tables import Law
 if TYPE_CHECKING:
     from flexapod.solve.time.sampled import SampledLoop
 
-__all__ = ["CAUSES", "Chunk", "Measure", "Problem", "Weight"]
+__all__ = ["CAUSES", "OF_LOOPS", "Chunk", "Measure", "Problem", "Weight"]
 
 Measure = Callable[[Recording], list[Array]]
 ASKED = 5  # as in loop.c
@@ -31,7 +31,7 @@ _ADVICE = (
     "Reduce the step, check for a singular pose, a leg near buckling or a piston almost inside its cylinder, "
     "or start from equilibrium."
 )
-_OF_LOOPS = "Its controller may make it grow: reduce gain or delay, or sample more often. Else: "
+OF_LOOPS = "Its controller may make it grow: reduce gain or delay, or sample more often. Else: "
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,7 +75,7 @@ class Problem:
         if status == ASKED and self.loop and self.loop.fault:
             raise self.loop.fault
         return ComputationError(
-            f"the integration stopped {where}", next_step=_OF_LOOPS + _ADVICE if self.loop else _ADVICE
+            f"the integration stopped {where}", next_step=OF_LOOPS + _ADVICE if self.loop else _ADVICE
         )
 
     @property

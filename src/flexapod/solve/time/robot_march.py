@@ -27,7 +27,7 @@ from flexapod.solve.system import Flow, State, System
 from flexapod.solve.time.march import initial_step, march
 from flexapod.solve.time.motor_lag import settled
 from flexapod.solve.time.pieces import Pieces
-from flexapod.solve.time.problem import Chunk, Problem, Weight
+from flexapod.solve.time.problem import OF_LOOPS, Chunk, Problem, Weight
 from flexapod.solve.time.recording import Counters, Recording
 from flexapod.solve.time.redundant import independent, shared
 from flexapod.solve.time.start import consistent_start
@@ -102,14 +102,17 @@ def prepare(study: Study, state: State | None = None, sampled: "Sampled | None" 
         knots=path.knots,
         restart=lambda flow, t, h: after_impact(system, flow, loop.onto(law, flow) if loop else law, t, method, h),
         stops=Stops.of(kinematics.robot_breaks(study, far), output_step, simulation.step, outputs),
-        check=_Range(study, system),
+        check=_Range(study, system, controlled=loop is not None),
         tolerance=simulation.tolerance,
         loop=loop,
     )
     step = initial_step(problem, simulation.step)
     start, impact = consistent_start(system, state, law, 0.0, method, step)
     if loop is not None:
-        loop.refuse_off(step)
+        try:
+            loop.refuse_off(step)
+        except InputError as error:
+            raise error.located(file=study.path) from None
         start = replace(start, loop=loop.start())
     chunks = march(problem, start, step, counters)
     if system.slack is not None:
@@ -301,7 +304,8 @@ def after_impact(system: System, flow: Flow, law: Law, now: float, method: Gener
 class _Range:
     """Stop where the model has no meaning: a piston inside or out of its cylinder, a universal joint turned over."""
 
-    def __init__(self, study: Study, system: System) -> None:
+    def __init__(self, study: Study, system: System, *, controlled: bool) -> None:
+        self.advice = OF_LOOPS if controlled else ""
         legs, shapes = study.robot.legs, system.kernel.shapes
         self.system, self.robot = system, study.robot
         self.mouth = np.array([leg.cylinder.mouth for leg in legs])
@@ -326,5 +330,5 @@ class _Range:
                 at, leg = np.argwhere(bad)[0]
                 raise ComputationError(
                     f"leg {leg + 1} left the range of the model at t = {recording.time[at]:.6g} s: {words}",
-                    next_step="Check drive forces and feedback of this leg, or the start.",
+                    next_step=f"{self.advice}Check drive forces and feedback of this leg, or the start.",
                 )

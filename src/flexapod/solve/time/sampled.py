@@ -60,6 +60,8 @@ class Sampled:
         Standard deviation of the noise of a reading.
     seed : int
         Of the noise.
+    key : str
+        Where the period is given.
     """
 
     readings: tuple[str, ...]
@@ -75,6 +77,7 @@ class Sampled:
     most: Array
     sigma: Array
     seed: int = 0
+    key: str = "sample"
 
     def noise(self, first: int, count: int) -> Array:
         """Noise of samples from `first` on, (count, readings): the same whatever is asked for at once, Eq. (T26.4)."""
@@ -190,14 +193,16 @@ class SampledLoop:
         """Raise InputError if the period is no multiple of a fixed step [s]; of steps of their own it is 0."""
         if not step and self.sampled.period < SHORTEST:
             raise InputError(
-                "is shorter than steps within a tolerance can be", key="sample", value=f"{self.sampled.period:.6g} s",
+                "is shorter than steps within a tolerance can be",
+                key=self.sampled.key,
+                value=f"{self.sampled.period:.6g} s",
                 allowed=f"at least {SHORTEST:g} s, or fixed steps",
-            )  # fmt: skip
+            )
         many = self.sampled.period / step if step else 1.0
         if abs(many - round(many)) > NEAR_SAMPLE * max(many, 1.0) or round(many) < 1:
             raise InputError(
                 "is no multiple of the fixed step",
-                key="sample",
+                key=self.sampled.key,
                 value=f"{self.sampled.period:.6g} s",
                 allowed=f"multiples of {step:.6g} s; the nearest is {max(1, round(many)) * step:.6g} s",
                 next_step=f"Give the nearest, step = {self.sampled.period / max(1, np.ceil(many)):.6g}, or a tolerance",
