@@ -109,10 +109,7 @@ def prepare(study: Study, state: State | None = None, sampled: "Sampled | None" 
     step = initial_step(problem, simulation.step)
     start, impact = consistent_start(system, state, law, 0.0, method, step)
     if loop is not None:
-        try:
-            loop.refuse_off(step)
-        except InputError as error:
-            raise error.located(file=study.path) from None
+        loop.refuse_off(step, study.path)
         start = replace(start, loop=loop.start())
     chunks = march(problem, start, step, counters)
     if system.slack is not None:

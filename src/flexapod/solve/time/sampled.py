@@ -189,11 +189,15 @@ class SampledLoop:
         found = [k * period for k in numbers if first + near < k * period < last - near]
         return [t for t in found if all(abs(t - x) > near for x in known)]
 
-    def refuse_off(self, step: float) -> None:
-        """Raise InputError if the period is no multiple of a fixed step [s]; of steps of their own it is 0."""
+    def refuse_off(self, step: float, file: str | None) -> None:
+        """Raise InputError if the period is no multiple of a fixed step [s]; of steps of their own it is 0.
+
+        ``file``: that of the study.
+        """
         if not step and self.sampled.period < SHORTEST:
             raise InputError(
                 "is shorter than steps within a tolerance can be",
+                file=file,
                 key=self.sampled.key,
                 value=f"{self.sampled.period:.6g} s",
                 allowed=f"at least {SHORTEST:g} s, or fixed steps",
@@ -202,6 +206,7 @@ class SampledLoop:
         if abs(many - round(many)) > NEAR_SAMPLE * max(many, 1.0) or round(many) < 1:
             raise InputError(
                 "is no multiple of the fixed step",
+                file=file,
                 key=self.sampled.key,
                 value=f"{self.sampled.period:.6g} s",
                 allowed=f"multiples of {step:.6g} s; the nearest is {max(1, round(many)) * step:.6g} s",
