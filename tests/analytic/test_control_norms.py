@@ -78,7 +78,50 @@ def test_hinf_of_one_mode_is_its_closed_form():
     stiff = mode(c=50 * np.sqrt(K * M)).hinf("force", "tool")
     assert float(stiff.hinf_norm) == pytest.approx(1 / K, rel=1e-12) and stiff.frequency == 0
     assert np.isinf(mode(c=0.0).hinf("force", "tool").hinf_norm)
-    assert float(mode(c=2 * M * 40).hinf("force", "accelerometer").hinf_norm) >= 1 / M  # the mass alone
+
+
+@pytest.mark.parametrize("zeta", [0.05, 0.5, 0.7, 0.705, 0.9])
+def test_hinf_next_to_what_no_end_of_frequencies_has(zeta):
+    """The acceleration of a mass by its force: 1 / M far above it, and a little more before."""
+    found = mode(c=2 * zeta * np.sqrt(K * M)).hinf("force", "accelerometer")
+    peak = 1 / (2 * zeta * np.sqrt(1 - zeta**2)) if zeta < 0.5**0.5 else 1.0
+    assert float(found.hinf_norm) == pytest.approx(peak / M, rel=1e-9)  # ten times its accuracy
+    if zeta < 0.7:
+        hertz = np.sqrt(K / M / (1 - 2 * zeta**2)) / (2 * np.pi)
+        assert float(found.frequency) == pytest.approx(hertz, rel=1e-4)
+
+
+@pytest.mark.parametrize("sample", [None, 0.01])
+def test_hinf_is_no_less_than_anything_on_a_grid_and_reached(sample):
+    """Systems of all kinds, drawn: none is above what is found, and where that is said to be, it is."""
+    rng = np.random.default_rng(11)
+    for _ in range(150):
+        n, m, p = rng.integers(1, 7), rng.integers(1, 4), rng.integers(1, 4)
+        A, B, C = rng.normal(size=(n, n)), rng.normal(size=(n, m)), rng.normal(size=(p, n))
+        D = rng.normal(size=(p, m)) * rng.integers(0, 2)
+        if sample is None:
+            A -= (np.linalg.eigvals(A).real.max() + 10 ** rng.uniform(-3, 0)) * np.eye(n)
+            s = 1j * np.concatenate([[0.0], np.geomspace(1e-4, 1e4, 400)])
+        else:
+            A *= rng.uniform(0.3, 0.999) / np.abs(np.linalg.eigvals(A)).max()
+            s = np.exp(1j * np.linspace(0, np.pi, 400))
+        names = (tuple(f"{letter}{i}" for i in range(count)) for letter, count in (("u", m), ("y", p), ("x", n)))
+        inputs, outputs, states = names
+        found = fc.StateSpace(
+            A=A, B=B, C=C, D=D, inputs=inputs, outputs=outputs, states=states, units={}, sample=sample
+        ).hinf()
+        level, hertz = float(found.hinf_norm), float(found.frequency)
+
+        def sizes(s, A=A, B=B, C=C, D=D):
+            inner = s[:, None, None] * np.eye(len(A)) - A
+            return np.linalg.norm(C @ np.linalg.solve(inner, np.broadcast_to(B, (len(s), *B.shape))) + D, 2, (1, 2))
+
+        assert sizes(s).max() <= level * (1 + 1e-9)
+        if np.isinf(hertz):
+            assert np.linalg.norm(D, 2) == pytest.approx(level, rel=1e-8)
+        else:
+            there = np.array([2j * np.pi * hertz])
+            assert sizes(there if sample is None else np.exp(there * sample))[0] == pytest.approx(level, rel=1e-8)
 
 
 def test_norms_between_samples():
@@ -88,6 +131,24 @@ def test_norms_between_samples():
     )
     assert one.h2().h2_norm.item() == pytest.approx(np.sqrt(b**2 / (1 - a**2) + 0.25), rel=1e-12)
     assert float(one.hinf().hinf_norm) == pytest.approx(b / (1 - a) + 0.5, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("pole", "hertz", "words"),
+    [
+        (-1.0, 50.0, "never decays: a pole at 50 Hz"),
+        (1.0, 0.0, "never decays: a pole at 0 Hz"),
+        (-1.01, 50.0, "unstable"),
+    ],
+)
+def test_norms_of_samples_that_do_not_end(pole, hertz, words):
+    """What changes its sign from sample to sample is at half their rate."""
+    one = fc.StateSpace(
+        A=[[pole]], B=[[1.0]], C=[[1.0]], D=[[0.0]], inputs=("u",), outputs=("y",), states=("x",), units={}, sample=0.01
+    )
+    assert np.isinf(one.h2().h2_norm.item()) and words in one.h2().attrs["warnings"]
+    found = one.hinf()
+    assert np.isinf(float(found.hinf_norm)) and float(found.frequency) == pytest.approx(hertz, abs=1e-9)
 
 
 def test_relative_gains_of_two_by_two():

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from flexapod.arrays import Array
 from flexapod.control.integrators import integrators, moved_and_shown, reached
+from flexapod.control.poles import swings_of
 from flexapod.control.reduction import Subsystem, apart
 from flexapod.errors import ComputationError
 
@@ -23,6 +24,7 @@ Complex = NDArray[np.complex128]
 LASTS = 1e-9  # damping ratio, and size of a pole over the middle one, below which nothing decays
 SHOWN = 1e-9  # of the product of its sizes: a response of what lasts that counts
 PEAK = 1e-10  # relative accuracy of H-infinity
+COARSE = (1e-3, 1e-6)  # above what no end of frequencies has: next to that, crossings lie near no end and are not found
 ROUNDS = 40
 ON_AXIS = 1e-8  # real part of an eigenvalue over its size that lies on the imaginary axis
 
@@ -67,7 +69,7 @@ def _h2_of(A: Array, b: Array, C: Array, d: Array, sample: float | None) -> tupl
     rate = float(np.exp(np.log(size[size > LASTS * size.max()]).mean())) if size.any() else 1.0
     passes = (lambda pole: abs(pole) < 1 - LASTS) if sample is not None else (lambda pole: not stays(pole, rate))
     ends, lasts = apart(A, b[:, None], C, passes)
-    words = _lasting(lasts)
+    words = _lasting(lasts, sample)
     if not len(ends.A):
         return np.abs(d), words
     if sample is None:
@@ -78,8 +80,8 @@ def _h2_of(A: Array, b: Array, C: Array, d: Array, sample: float | None) -> tupl
     return np.sqrt(np.maximum(power, 0.0)), words
 
 
-def _lasting(part: Subsystem) -> list[str]:
-    """What lasts in each output, in words; "" where nothing of it is seen."""
+def _lasting(part: Subsystem, sample: float | None) -> list[str]:
+    """What lasts in each output, in words; "" where nothing of it is seen. Poles of samples are those behind them."""
     words = [""] * len(part.C)
     if not len(part.A):
         return words
@@ -90,7 +92,7 @@ def _lasting(part: Subsystem) -> list[str]:
         power = part.A @ power
         if not power.any():
             break
-    worst = max(np.linalg.eigvals(part.A), key=lambda pole: pole.real)
+    worst = max(swings_of(np.linalg.eigvals(part.A).astype(complex), sample)[0], key=lambda pole: pole.real)
     at = f"a pole at {abs(worst) / (2 * np.pi):.4g} Hz"
     kind = "an unstable motion" if worst.real > LASTS * abs(worst) else "a motion that never decays"
     return [f"{kind}: {at}" if one else "" for one in seen]
@@ -107,6 +109,8 @@ def hinf_norm(system: StateSpace) -> tuple[float, float]:
     if not len(A):
         return float(np.linalg.norm(D, 2)) if D.size else 0.0, 0.0
     if system.sample is not None:
+        if len(lasting := poles[np.abs(poles) >= 1 - LASTS]):
+            return np.inf, float(np.abs(np.angle(lasting[0])) / (2 * np.pi * system.sample))
         A, B, C, D, poles = _continuous(A, B, C, D)
     size = np.abs(poles)
     rate = float(np.exp(np.log(np.maximum(size, LASTS * size.max() or 1.0)).mean()))
@@ -118,14 +122,16 @@ def hinf_norm(system: StateSpace) -> tuple[float, float]:
     far = float(np.linalg.norm(D, 2))
     level, at = max((level, at), (far, np.inf))
     for _ in range(ROUNDS):
-        raised = level * (1 + PEAK)
-        crossings = _crossings(A, B, C, D, raised) if raised else np.zeros(0)
-        if len(crossings) < 2:
+        steps = (PEAK,) if np.isfinite(at) else (*COARSE, PEAK)
+        every = (_crossings(A, B, C, D, level * (1 + step)) for step in steps if level)
+        crossings = next((found for found in every if len(found)), np.zeros(0))
+        if not len(crossings):
             break
-        middles = 0.5 * (crossings[1:] + crossings[:-1])
-        level, at = max((float(np.linalg.norm(_at(A, B, C, D, w), 2)), w) for w in middles)
-        if level <= raised:
+        middles = [0.5 * crossings[0], *0.5 * (crossings[1:] + crossings[:-1]), 2 * crossings[-1]]
+        most, where = max((float(np.linalg.norm(_at(A, B, C, D, w), 2)), w) for w in middles)
+        if most <= level * (1 + PEAK):
             break
+        level, at = most, where
     return level, _hertz(at * rate, system.sample)
 
 
