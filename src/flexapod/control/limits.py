@@ -14,7 +14,7 @@ from flexapod.arrays import Array
 from flexapod.control.arguments import number
 from flexapod.control.closing import DelayedLoop
 from flexapod.control.interconnect import closed
-from flexapod.control.poles import damping_of
+from flexapod.control.poles import damping_of, swings_of
 from flexapod.control.sampling import law_beside
 from flexapod.control.state_space import a_system
 from flexapod.errors import ComputationError, InputError
@@ -36,6 +36,9 @@ NEAR = 12  # frequencies on each side of a resonance, farther and farther
 SPAN = 100.0  # of frequencies beyond the slowest and fastest poles
 FINEST = 1e-9  # of the largest frequency, or the middle pole: less is none
 CUTS, ROUNDS = 41, 6  # of a bracket: 41^-6 of it is left; its middle, often an undamped pole, is none
+BESIDE = 1e-5  # of the least or over the largest of all frequencies: as good as rest and no end of them
+SETTLED = 1e-3  # relative change of a loop from there to twice as far that is a number's
+ENDS: tuple[Kind, Kind] = ("real", "nearest")
 CLOSE = 3  # brackets of each loop in which the nearest point to -1 is looked for
 
 
@@ -72,6 +75,7 @@ def margins(system: StateSpace, controller: Controller | StateSpace, *, delay: f
     whole = around(hz)
     cut = _cut(whole, late, hz)
     found = _refined([*_brackets(cut, hz)], lambda f: _cut(around(f), late, f))
+    found += _ends(lambda f: _cut(around(f), late, f), hz, system.sample, late)
     each = [_of_loop(k, found) for k in range(len(law.outputs))]
     return margins_dataset(law.outputs, each, _growing(poles, system.sample, late, around, hz, whole))
 
@@ -130,6 +134,27 @@ def _refined(brackets: list[Bracket], loops: Callable[[Array], Complex]) -> list
     return list(zip(brackets, places, values.tolist(), strict=True))
 
 
+def _ends(
+    loops: Callable[[Array], Complex], hz: Array, sample: float | None, delay: float
+) -> list[tuple[Bracket, float, complex]]:
+    """What happens at rest, at half of the samples and at no end of frequencies, where a loop is a real number.
+
+    That is read a little beside: real parts change with the square of the distance.
+    """
+    ends = [(0.0, hz[0] * BESIDE)]
+    if sample is not None:
+        ends.append((hz[-1], hz[-1]))
+    elif not delay:
+        ends.append((np.inf, hz[-1] / BESIDE))
+    found = []
+    for f, near in ends:
+        L = loops(np.array([near, near if near == f else near * 2 if f == 0.0 else near / 2]))
+        for k, (one, other) in enumerate(L):
+            if max(abs(one.imag), abs(one - other)) <= SETTLED * abs(one.real):
+                found += [(Bracket(loop=k, kind=kind, low=f, high=f), f, complex(one.real)) for kind in ENDS]
+    return found
+
+
 def _place(kind: Kind, L: Complex) -> int:
     """Where in a bracket what it is about happens: the part that begins there, for the nearest point the one before."""
     if kind == "nearest":
@@ -156,9 +181,9 @@ def _of_loop(k: int, found: list[tuple[Bracket, float, complex]]) -> dict[str, t
 
 def _growing(poles: Complex, sample: float | None, delay: float, around: Gains, hz: Array, whole: Complex) -> int:
     """Poles of a delayed loop that grow, Eq. (T21.32): those without delay, and those that cross as it rises."""
-    s, _, _ = damping_of(poles, sample)
+    s, _, _ = swings_of(poles, sample)
     drifts = FINEST * np.median(np.abs(s)) if len(s) else 0.0
-    count = sum(1 if pole.imag == 0 else 2 for pole in s if pole.real > drifts)
+    count = int((s.real > drifts).sum())
     if not delay:
         return count
     values = np.linalg.eigvals(whole)
