@@ -14,7 +14,7 @@ from flexapod.control.arguments import number
 from flexapod.control.channels import Names
 from flexapod.control.controllers import pairs
 from flexapod.control.function import Function
-from flexapod.control.sampling import period_of
+from flexapod.control.sampling import LATEST, period_of
 from flexapod.errors import InputError
 
 if TYPE_CHECKING:
@@ -126,6 +126,7 @@ class AdaptiveDamping:
             state = known.get(k, start) if k else start
             state = np.stack([self.tracker.step(v, x, T) for v, x in zip(y, state, strict=True)])
             known[k + 1] = state
+            known.pop(k - LATEST, None)
             return gain * state[:, 2] * state[:, 1]  # (T21.45)  y' = a' = -w b
 
         return Function(function=asked, inputs=tuple(sensors), outputs=tuple(actuators))

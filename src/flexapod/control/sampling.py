@@ -18,9 +18,9 @@ from flexapod.units import DIMENSIONS, to_si
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
 
-__all__ = ["held", "law_beside", "period_of", "without_rates"]
+__all__ = ["LATEST", "held", "law_beside", "period_of", "without_rates"]
 
-LATEST = 1000  # samples of a delay, each with its states
+LATEST = 1000  # samples that are remembered: of a delay, each with its states; of a function, that may come again
 NEARLY = 1e-9  # of a period: a delay so near to whole samples has them
 
 

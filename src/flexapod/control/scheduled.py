@@ -14,7 +14,7 @@ from flexapod.control.arguments import number, numbers
 from flexapod.control.controllers import Controller
 from flexapod.control.function import Function
 from flexapod.control.interconnect import law_of
-from flexapod.control.sampling import period_of
+from flexapod.control.sampling import LATEST, period_of
 from flexapod.errors import InputError
 from flexapod.model import AXES
 
@@ -93,6 +93,7 @@ class Scheduled:
             shares = list(_weights(self.axes, pose(t)))
             A, B, C, D = (sum(w * getattr(each[i], name) for i, w in shares) for name in "ABCD")
             known[k + 1] = A @ x + B @ y
+            known.pop(k - LATEST, None)
             return C @ x + D @ y
 
         return Function(function=asked, inputs=each[0].inputs, outputs=each[0].outputs)
