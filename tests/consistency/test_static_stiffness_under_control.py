@@ -48,6 +48,18 @@ def test_flexures_beside_the_drives_keep_some():
     assert 1e-4 * off < on < 0.1 * off
 
 
+def test_a_parallel_stiffness_is_that_of_springs_in_place_of_the_drives():
+    """What sums force + k stroke holds the force of a spring k: at rest the robot has drives of that stiffness."""
+    text = fx.model.preset_text("nano-hexapod")
+    _, on = static_stiffness(
+        fx.loads(text + FORCES.replace("0.5 ms", "0.1 ms") + 'parallel_stiffness = "0.7 N/um"\nnoise = 1e-4\n')
+    )
+    sprung = fx.loads(text.replace('stiffness = "1.846 N/um", damping', 'stiffness = "0.7 N/um", damping'))
+    compliance = np.linalg.inv(fx.stiffness(sprung).stiffness.values)[:3, :3]
+    # The weight rests on stiffer springs in the first: their sag by a few um changes arms of 60 mm by less than 1e-4
+    assert on == pytest.approx(1 / np.linalg.norm(compliance, 2), rel=1e-4)
+
+
 def test_words():
     words = control_words(fx.loads(STUDY + FORCES))
     assert "none with it" in words[0] and "static stiffness is lost" in words[1]

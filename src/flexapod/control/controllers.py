@@ -108,7 +108,7 @@ class IFF(Controller):
     high_pass : float or str
         Corner [Hz] below which nothing is integrated: of static stiffness w / (w + gain) stays, and a robot that turns
         stays stable. Without it and without `parallel_stiffness` nothing holds at rest what the drives carry.
-    parallel_stiffness : float
+    parallel_stiffness : float or str
         Force per `stroke` [N/m] that is added to what the sensors read, as if springs beside actuators and sensors
         carried it: the robot keeps that stiffness.
     sensor, stroke, actuator : names
@@ -118,7 +118,7 @@ class IFF(Controller):
     gain: float
     _: KW_ONLY
     high_pass: Number = 0.0
-    parallel_stiffness: float = 0.0
+    parallel_stiffness: Number = 0.0
     sensor: Names = "force-sensor:drive"
     stroke: Names = "stroke"
     actuator: Names = "drive"
@@ -128,10 +128,11 @@ class IFF(Controller):
         law = laws.integrator(-to_si(self.gain, "number", key="gain"), self.high_pass)
         sensors, actuators = pairs(self.sensor, self.actuator, outputs, inputs)
         each = np.eye(len(sensors))
-        if not to_si(self.parallel_stiffness, "stiffness", key="parallel_stiffness"):
+        stiffness = to_si(self.parallel_stiffness, "stiffness", key="parallel_stiffness")
+        if not stiffness:
             return assembled([law] * len(sensors), each, each, sensors, actuators, units)
         strokes, _ = pairs(self.stroke, self.actuator, outputs, inputs)
-        into = np.hstack([each, self.parallel_stiffness * each])
+        into = np.hstack([each, stiffness * each])
         return assembled([law] * len(sensors), into, each, [*sensors, *strokes], actuators, units)
 
 

@@ -54,7 +54,10 @@ class _Sampled(Table):
 
 
 class ForceControl(_Sampled):
-    """Integral force feedback at each drive: `gain` [1/s], `high_pass` [Hz]; numbers of readings in N."""
+    """Integral force feedback at each drive: `gain` [1/s], `high_pass` [Hz], `parallel_stiffness` [N/m].
+
+    Numbers of readings of forces in N; strokes are read as they are.
+    """
 
     reads: ClassVar[str] = "force-sensor:drive"
     law: Annotated[Literal["iff"], Key("what is fed back")] = "iff"
@@ -63,6 +66,9 @@ class ForceControl(_Sampled):
     ]
     high_pass: Annotated[
         float, Quantity("frequency", least=0, why="below it the integral fades, and static stiffness stays")
+    ] = 0.0
+    parallel_stiffness: Annotated[
+        float, Quantity("stiffness", least=0, why="force per stroke that is added to the readings, and stays at rest")
     ] = 0.0
     quantise: Annotated[float | None, Quantity("force", least=0, why="step of the readings", usual="none")] = None
     noise: Annotated[float | None, Quantity("force", least=0, why="standard deviation of a reading", usual="none")] = (

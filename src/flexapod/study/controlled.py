@@ -104,6 +104,8 @@ def _of_table(table: model.Control, robot: model.Robot) -> tuple[AnyController, 
         tool = [channel.name for channel in asked(table.reads, robot, "outputs")]
         each = {name: found[name] for name in ("quantise", "noise")}
         found |= {name: None if x is None else dict(zip(tool, x.tolist(), strict=True)) for name, x in each.items()}  # type: ignore[attr-defined]
+    if isinstance(table, model.ForceControl):
+        found |= {name: {table.reads: found[name]} for name in ("quantise", "noise") if found[name] is not None}
     if isinstance(table, model.FileControl) and table.saturate is not None:
         found["saturate"] = _limit_of_drives(table)
     return _controller_of(table, robot), {name: value for name, value in found.items() if value is not None}
@@ -126,7 +128,9 @@ def _controller_of(table: model.Control, robot: model.Robot) -> Controller | Sta
     from flexapod.control import DVF, IFF, PID, Decoupled, StateSpace, by_jacobian, pid, robot_jacobian
 
     if isinstance(table, model.ForceControl):
-        return IFF(table.gain, high_pass=table.high_pass, sensor=table.reads)
+        return IFF(
+            table.gain, high_pass=table.high_pass, parallel_stiffness=table.parallel_stiffness, sensor=table.reads
+        )
     if isinstance(table, model.DampedControl):
         return DVF(table.gain, low_pass=table.low_pass, sensor=table.reads)
     if isinstance(table, model.StrokeControl):
