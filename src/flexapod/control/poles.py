@@ -40,7 +40,7 @@ def swings_of(poles: Complex, sample: float | None) -> tuple[Complex, Array, Arr
     if sample is not None:
         with np.errstate(divide="ignore"):
             behind = np.log(np.asarray(poles, dtype=complex))
-        poles = behind.real / sample + 1j * (behind.imag / sample)  # by parts: of a pole at 0 it is -inf
+        poles = np.real(behind) / sample + 1j * (np.imag(behind) / sample)  # by parts: of a pole at 0 it is -inf
     size = np.abs(poles)
     ratio = np.divide(-poles.real, size, out=np.zeros(poles.shape), where=(size > 0) & np.isfinite(size))
     return poles, size / (2 * np.pi), np.where(np.isinf(size), 1.0, ratio)
