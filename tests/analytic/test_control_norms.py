@@ -69,6 +69,39 @@ def test_h2_of_what_a_loop_leaves_at_rest():
     assert float(data.h2_norm[1, 0] ** 2) == pytest.approx(exact, rel=1e-9)
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_what_nothing_holds_among_fast_modes(seed):
+    """A free mass beside two modes, states mixed: rounding parts its poles at 0; others have their closed form."""
+    rng, zeta, w, W = np.random.default_rng(seed), 0.02, 30.0, 4e4
+    A, B, C = np.zeros((6, 6)), np.zeros((6, 1)), np.zeros((2, 6))
+    for k, omega in enumerate((0.0, w, W)):
+        A[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = [[0, 1], [-(omega**2), -2 * zeta * omega]]
+        B[2 * k + 1] = 1.0
+    C[0, [0, 2]] = C[1, 2] = 1.0  # where the mass is as well, and the slow mode alone
+    Q = np.linalg.qr(rng.normal(size=(6, 6)))[0]
+    mixed = fc.StateSpace(
+        A=Q.T @ A @ Q, B=Q.T @ B, C=C @ Q, D=np.zeros((2, 1)), inputs=("force",), outputs=("both", "mode"),
+        states=tuple("abcdef"), units={},
+    )  # fmt: skip
+    found = mixed.h2()
+    assert np.isinf(found.h2_norm[0, 0]) and "pole at" in found.attrs["warnings"]
+    assert np.isinf(float(mixed.hinf("force", "both").hinf_norm))
+    # Rounding of A is 1e-16 W^2 = 2e-7 beside w^2 = 900
+    assert found.h2_norm[1, 0].item() == pytest.approx(1 / np.sqrt(4 * zeta * w**3), rel=1e-6)
+
+
+def test_a_slow_filter_is_none_of_what_nothing_holds():
+    """1 / (s + 0.01) beside a mode of 1e5 rad/s: 1 / sqrt(0.02), and 100 at rest."""
+    A = np.zeros((3, 3))
+    A[0, 0], A[1:, 1:] = -0.01, [[0, 1], [-1e10, -2e3]]
+    one = fc.StateSpace(
+        A=A, B=[[1.0], [0.0], [1.0]], C=[[1.0, 1.0, 0.0]], D=[[0.0]], inputs=("u",), outputs=("y",),
+        states=tuple("abc"), units={},
+    )  # fmt: skip
+    assert one.h2().h2_norm.item() == pytest.approx(1 / np.sqrt(0.02), rel=1e-6)
+    assert float(one.hinf().hinf_norm) == pytest.approx(100.0, rel=1e-6)
+
+
 def test_hinf_of_one_mode_is_its_closed_form():
     zeta = C / (2 * np.sqrt(K * M))
     data = mode().hinf("force", "tool")

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from flexapod.arrays import Array
 from flexapod.control.integrators import integrators, moved_and_shown, reached
-from flexapod.control.poles import swings_of
+from flexapod.control.poles import INTEGRATES, swings_of
 from flexapod.control.reduction import Subsystem, apart
 from flexapod.errors import ComputationError
 
@@ -22,16 +22,32 @@ __all__ = ["h2_norms", "hinf_norm", "relative_gains", "stays"]
 Complex = NDArray[np.complex128]
 
 LASTS = 1e-9  # damping ratio, and size of a pole over the middle one, below which nothing decays
-SHOWN = 1e-9  # of the product of its sizes: a response of what lasts that counts
+OPPOSITE = 0.1  # of the size of two poles beside 0: so near their sum is to it
+SHOWN = 1e-9  # of the product of all sizes: a response of what lasts that counts
 PEAK = 1e-10  # relative accuracy of H-infinity
 COARSE = (1e-3, 1e-6)  # above what no end of frequencies has: next to that, crossings lie near no end and are not found
 ROUNDS = 40
 ON_AXIS = 1e-8  # real part of an eigenvalue over its size that lies on the imaginary axis
 
 
-def stays(pole: complex, rate: float) -> bool:
-    """Whether what a pole [1/s] stands for never decays, among others of a `rate` [rad/s]."""
-    return pole.real >= -max(LASTS * abs(pole), LASTS * LASTS * rate) or abs(pole) <= LASTS * rate
+def rates_of(poles: Complex) -> tuple[float, float]:
+    """The middle one [rad/s] of the sizes of poles, and the size up to which they are 0.
+
+    Rounding splits a double pole at 0, of what nothing holds, into two on opposite sides of it.
+    """
+    size = np.abs(poles)
+    if not size.any():
+        return 1.0, 0.0
+    rate = float(np.exp(np.log(size[size > LASTS * size.max()]).mean()))
+    few = poles[size <= INTEGRATES * size.max()]
+    across = np.abs(few[:, None] + few) + np.where(np.eye(len(few)), np.inf, 0.0)
+    split = np.abs(few)[across.min(axis=1, initial=np.inf) <= OPPOSITE * np.abs(few)]
+    return rate, max(LASTS * rate, 2 * float(split.max(initial=0.0)))
+
+
+def stays(pole: complex, rate: float, rest: float) -> bool:
+    """Whether what a pole [1/s] stands for never decays, among others of a `rate`; up to `rest` [rad/s] it is 0."""
+    return pole.real >= -max(LASTS * abs(pole), LASTS * LASTS * rate) or abs(pole) <= rest
 
 
 def h2_norms(system: StateSpace) -> tuple[Array, dict[tuple[int, int], str]]:
@@ -64,12 +80,10 @@ def _h2_of(A: Array, b: Array, C: Array, d: Array, sample: float | None) -> tupl
     """H2 norms of one input by outputs (p,), and of each what lasts in it, "" of those that end."""
     if not len(A):
         return np.abs(d), [""] * len(C)
-    poles = np.linalg.eigvals(A)
-    size = np.abs(poles)
-    rate = float(np.exp(np.log(size[size > LASTS * size.max()]).mean())) if size.any() else 1.0
-    passes = (lambda pole: abs(pole) < 1 - LASTS) if sample is not None else (lambda pole: not stays(pole, rate))
+    rate, rest = rates_of(np.linalg.eigvals(A).astype(complex))
+    passes = (lambda pole: abs(pole) < 1 - LASTS) if sample is not None else (lambda pole: not stays(pole, rate, rest))
     ends, lasts = apart(A, b[:, None], C, passes)
-    words = _lasting(lasts, sample)
+    words = _lasting(lasts, ends, sample)
     if not len(ends.A):
         return np.abs(d), words
     if sample is None:
@@ -80,12 +94,15 @@ def _h2_of(A: Array, b: Array, C: Array, d: Array, sample: float | None) -> tupl
     return np.sqrt(np.maximum(power, 0.0)), words
 
 
-def _lasting(part: Subsystem, sample: float | None) -> list[str]:
-    """What lasts in each output, in words; "" where nothing of it is seen. Poles of samples are those behind them."""
+def _lasting(part: Subsystem, ends: Subsystem, sample: float | None) -> list[str]:
+    """What lasts in each output, in words; "" where nothing of it is seen beside what ends.
+
+    Poles of samples are those behind them.
+    """
     words = [""] * len(part.C)
     if not len(part.A):
         return words
-    scale = np.linalg.norm(part.C, axis=1) * np.linalg.norm(part.B)
+    scale = np.linalg.norm(np.hstack([part.C, ends.C]), axis=1) * np.linalg.norm(np.vstack([part.B, ends.B]))
     power, seen = part.B[:, 0], np.zeros(len(part.C), dtype=bool)
     for _ in range(len(part.A)):
         seen |= np.abs(part.C @ power) > SHOWN * scale * (np.linalg.norm(power) / np.linalg.norm(part.B))
@@ -112,9 +129,8 @@ def hinf_norm(system: StateSpace) -> tuple[float, float]:
         if len(lasting := poles[np.abs(poles) >= 1 - LASTS]):
             return np.inf, float(np.abs(np.angle(lasting[0])) / (2 * np.pi * system.sample))
         A, B, C, D, poles = _continuous(A, B, C, D)
-    size = np.abs(poles)
-    rate = float(np.exp(np.log(np.maximum(size, LASTS * size.max() or 1.0)).mean()))
-    if lasting := [pole for pole in poles if stays(pole, rate)]:
+    rate, rest = rates_of(poles)
+    if lasting := [pole for pole in poles if stays(pole, rate, rest)]:
         return np.inf, _hertz(abs(lasting[0]), system.sample)
     A, change = scipy.linalg.matrix_balance(A / rate)  # time in units of 1 / rate
     B, C = np.asarray(np.linalg.solve(change, B), dtype=float), C @ change / rate

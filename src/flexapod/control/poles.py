@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from flexapod.arrays import Array
 
-__all__ = ["SWINGS", "damping_of", "poles_of", "swings_of", "zeros_of"]
+__all__ = ["INTEGRATES", "SWINGS", "damping_of", "poles_of", "swings_of", "zeros_of"]
 
 Complex = NDArray[np.complex128]
 
