@@ -351,16 +351,14 @@ def dataset(
         Entries that replace those of `VARIABLES`.
     """
     loaded("xarray")
-    import xarray as xr
+    from flexapod.results.labelled import awaited, labelled, variable
 
-    from flexapod.results.labelled import awaited, coordinates, variable
-
-    table = {**VARIABLES, **(forms or {})}
+    forms = forms or {}
     known = {dim: len(given) for dim, (given, _) in COORDINATES.items()} | {"pair": 2}
     known |= {dim: np.size(given) for dim, given in (coords or {}).items()}
     data, sizes = {}, {}
     for name in values:
-        dims, units, long_name = table[name]
+        dims, units, long_name = forms[name] if name in forms else VARIABLES[name]
         described = {"units": units, "long_name": long_name}
         if isinstance(values, Asked) and values.there(name) is None:
             own = {dim: known[dim] for dim in dims}
@@ -369,8 +367,8 @@ def dataset(
             data[name] = variable(dims, values[name], described)
         sizes |= data[name].sizes
     labels = {dim: (given, {"long_name": words}) for dim, (given, words) in fixed_labels(sizes).items()}
-    labels |= {dim: (given, _COORDINATE_ATTRS.get(dim, {})) for dim, given in (coords or {}).items()}
-    return xr.Dataset(data, coords=coordinates(labels), attrs=dict(attrs or {}))
+    labels |= {dim: (given, dict(_COORDINATE_ATTRS.get(dim, {}))) for dim, given in (coords or {}).items()}
+    return labelled(data, labels, attrs or {})
 
 
 _COORDINATE_ATTRS = {
