@@ -342,7 +342,8 @@ def dataset(
     Parameters
     ----------
     values : mapping
-        Arrays by name; of `Asked` what nobody has asked for yet is made when it is read.
+        Arrays by name; of `Asked` what nobody has asked for yet is made when it is read; its sizes are then those of
+        ``coords`` and of the arrays before it.
     coords : mapping, optional
         Labels of `time`, `mode`, `station` where these dimensions occur.
     attrs : mapping, optional
@@ -361,7 +362,7 @@ def dataset(
         dims, units, long_name = forms[name] if name in forms else VARIABLES[name]
         described = {"units": units, "long_name": long_name}
         if isinstance(values, Asked) and values.there(name) is None:
-            own = {dim: known[dim] for dim in dims}
+            own = {dim: (known | sizes)[dim] for dim in dims}
             data[name] = awaited(values, name, own, int if name in _WHOLE else float, described)
         else:
             data[name] = variable(dims, values[name], described)
