@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,7 @@ class BendingSection:
     kappa: float
 
 
+@lru_cache(maxsize=64)
 def piston_section(piston: Piston) -> BendingSection:
     """Section of a piston: a tube where its bore is known, else the full round bar with its EI and EA."""
     tube = Tube(diameter=piston.diameter or 1.0, inner_diameter=piston.inner_diameter)
