@@ -9,7 +9,7 @@ from flexapod.bases.eigen import finite
 from flexapod.errors import InputError
 from flexapod.kinematics.rotations import matrix
 from flexapod.model import Robot
-from flexapod.solve.saddle import solve_each
+from flexapod.solve.saddle import inverse_each, solve_each
 from flexapod.solve.statics.equilibrium import Equilibrium
 from flexapod.solve.statics.locked import LockedPoses
 from flexapod.solve.statics.reduction import reduced_legs
@@ -127,7 +127,7 @@ def compliance(total: Array) -> Array:
     """
     free = np.flatnonzero(~np.isposinf(np.diagonal(total, axis1=1, axis2=2)).any(axis=0))
     part, found = total[:, free[:, None], free], np.zeros_like(total)
-    inverse = solve_each(part, np.broadcast_to(np.eye(free.size), part.shape))
+    inverse = inverse_each(part)
     finite(part, inverse)
     found[:, free[:, None], free] = 0.5 * (inverse + inverse.swapaxes(-1, -2))
     return found
