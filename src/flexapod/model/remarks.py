@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 from flexapod.model.actuator import Actuator
 from flexapod.model.drive import ServoDrive
@@ -17,6 +18,7 @@ _SLENDER = 0.1
 _RATIO = 0.1  # damping ratio of the advice for a drive without damping
 
 
+@lru_cache(maxsize=64)
 def robot_remarks(robot: Robot) -> tuple[str, ...]:
     """Remarks on a robot's legs; the same remark for several legs is made once."""
     numbers: dict[str, list[int]] = {}

@@ -67,9 +67,13 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
     own = system if shapes.beam.a.count or shapes.beam.b.count else None
     loads = buckling_loads(robot, record.q[..., shapes.l_index], own) if inside.any() else None
     low, high, most_thrust = record.q.min(axis=0), record.q.max(axis=0), np.abs(compression).max(axis=0)
+    amplitude = np.sqrt(2) * lateral(shapes, np.maximum(high, -low)).max(axis=1)  # of both directions together
+    slope, curved = amplitude @ np.abs(basis.tip_slope), amplitude @ np.abs(_curvatures(basis)).max(axis=1, initial=0.0)
     for i, leg in enumerate(robot.legs):
         load = None if loads is None else loads[:, i]
-        doubt = _in_doubt(leg, shapes, low[i], high[i], most_thrust[i], load)
+        lengths = (low[i, shapes.l_index], high[i, shapes.l_index])
+        closer = leg.piston.sections or shapes.beam.shear
+        doubt = KINDS if closer else _in_doubt(leg, lengths, (slope[i], curved[i]), most_thrust[i], load)
         if not doubt:
             continue
         length, push = record.q[:, i, shapes.l_index], compression[:, i]
@@ -86,24 +90,23 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
     return worst_of_each(found)
 
 
-def _in_doubt(leg: Leg, shapes: Shapes, low: Array, high: Array, thrust: float, load: Array | None) -> set[str]:
-    """Kinds of remarks that extremes of a leg's coordinates (n,) and its largest thrust [N] alone do not exclude.
+def _in_doubt(
+    leg: Leg, lengths: tuple[float, float], bent: tuple[float, float], thrust: float, load: Array | None
+) -> set[str]:
+    """Kinds of remarks that extremes of a leg alone do not exclude.
 
-    `load`: Euler loads (T,) [N], where more than its piston gives way.
+    `lengths`: least and largest [m]; `bent`: bounds of slope and curvature of a free length of one [m]; `thrust`: the
+    largest [N]; `load`: Euler loads (T,) [N], where more than its piston gives way.
     """
-    piston, basis, limit = leg.piston, bending_basis(shapes), leg.stroke
-    if piston.sections or shapes.beam.shear:
-        return KINDS
-    shortest, longest = low[shapes.l_index] - leg.cylinder.mouth, high[shapes.l_index] - leg.cylinder.mouth
-    amplitude = np.sqrt(2) * lateral(shapes, np.maximum(high, -low)).max(axis=0)  # of both directions together
+    piston, limit, (low, high) = leg.piston, leg.stroke, lengths
+    shortest, longest = low - leg.cylinder.mouth, high - leg.cylinder.mouth
     stress = 0.0
     if piston.E is not None and piston.depth is not None:
-        curvature = (np.abs(_curvatures(basis)).max(axis=1, initial=0.0) @ amplitude) / shortest**2
-        stress = piston.E * (thrust / piston.EA + curvature * piston.depth / 2)
+        stress = piston.E * (thrust / piston.EA + bent[1] / shortest**2 * piston.depth / 2)
     push, most = (thrust * longest**2, piston.least_EI * (np.pi / 2) ** 2) if load is None else (thrust, load.min())
     excluded = {
-        "slope": np.abs(basis.tip_slope) @ amplitude <= SLOPE * shortest,
-        "stroke": limit is None or (low[shapes.l_index] >= limit.min and high[shapes.l_index] <= limit.max),
+        "slope": bent[0] <= SLOPE * shortest,
+        "stroke": limit is None or (low >= limit.min and high <= limit.max),
         "buckling": push <= NEAR_BUCKLING * most,
         "nut": leg.screw is None or thrust <= leg.screw.nut.linear_to,
         "slenderness": piston.shear or shortest >= SLENDERNESS * piston.width,

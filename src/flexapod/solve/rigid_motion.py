@@ -36,27 +36,32 @@ def rigid_motion(
     `legs`: at these poses, of a robot that is not as drawn.
     """
     legs = kinematics.inverse_kinematics(robot, path) if legs is None else legs
-    T, (q, v, v_dot) = len(path), _undeformed(system, robot, path, legs)
+    q, v, v_dot = _undeformed(system, robot, path, legs)
     R, w, w_dot = path.rotation, path.omega, path.alpha
     arm, inverse = R @ robot.com, R.swapaxes(1, 2)
     turning = np.cross(w, arm)
     velocity, acceleration = path.velocity + turning, path.acceleration + np.cross(w_dot, arm) + np.cross(w, turning)
-    states = RestStates(
-        q=q,
-        pose=np.concatenate([path.position + arm, quaternion(R)], axis=1),
-        lam=np.zeros((T, system.legs, system.rows)),
-        drive=np.zeros((T, system.legs, system.ports.size)),
-    )
     u, u_dot = (
         np.concatenate([linear, (inverse @ angular[..., None])[..., 0]], axis=1)
         for linear, angular in ((velocity, w), (acceleration, w_dot))
     )
-    return states, Rates(v=v, v_dot=v_dot, u=u, u_dot=u_dot)
+    return _without_forces(system, robot, path, q), Rates(v=v, v_dot=v_dot, u=u, u_dot=u_dot)
 
 
 def rigid_rest(system: System, robot: Robot, path: kinematics.Poses) -> RestStates:
     """States of the undeformed robot at the poses of a path, without forces."""
-    return rigid_motion(system, robot, path)[0]
+    q = _undeformed(system, robot, path, kinematics.inverse_kinematics(robot, path))[0]
+    return _without_forces(system, robot, path, q)
+
+
+def _without_forces(system: System, robot: Robot, path: kinematics.Poses, q: Array) -> RestStates:
+    T, R = len(path), path.rotation
+    return RestStates(
+        q=q,
+        pose=np.concatenate([path.position + R @ robot.com, quaternion(R)], axis=1),
+        lam=np.zeros((T, system.legs, system.rows)),
+        drive=np.zeros((T, system.legs, system.ports.size)),
+    )
 
 
 def rigid_state(system: System, robot: Robot, path: kinematics.Poses) -> State:

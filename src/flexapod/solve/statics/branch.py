@@ -35,7 +35,7 @@ def fallen(system: System, robot: Robot, start: RestStates, states: RestStates) 
         return np.zeros(0, dtype=bool)
     if kinematics.rigid_limbs(robot).plain and system.legs == system.hub_free.size == 6:
         both = platform_poses(robot, np.concatenate([start.pose, states.pose]))
-        before, after = np.split(kinematics.singularity(robot, both).determinant, 2)
+        before, after = np.split(kinematics.determinants(robot, both), 2)
     else:
         before, after = (_determinant(system, robot, x) for x in (start, states))
     return (np.sign(before) != np.sign(after)) | flipped(system, robot, states.q, states.pose).any(axis=1)
