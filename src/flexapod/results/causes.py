@@ -19,7 +19,7 @@ from flexapod.kinematics.robot import once
 from flexapod.kinematics.screws import screws
 from flexapod.model import Robot
 from flexapod.results.cause_words import CAUSES
-from flexapod.results.elongations import elongations, frame_names, part_names
+from flexapod.results.elongations import elongations, frame_names, in_gap, part_names
 from flexapod.results.inside import tip_moves
 from flexapod.results.legs import stretch
 from flexapod.results.path import RigidPath
@@ -93,10 +93,11 @@ def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | Re
         place: np.array([leg.closed_about == place for leg in robot.legs]) for place in ("stroke", "joint-to-joint")
     }
     ends = inside["joint-to-joint"]  # (T23.56)
+    played = in_gap(system, record.q)
     drive[..., L] += axial[..., L] * ends
     axial[..., L] *= ~ends
     for places, whole in behind:  # (T15.14)
-        for name, give in elongations(robot, system, record.q, places).items():
+        for name, give in elongations(robot, system, record.q, places, played).items():
             seen = ends if whole is bending else ends | inside["stroke"]
             causes.setdefault(name, np.zeros_like(q))[..., L] += give * ~seen
             whole[..., L] -= give
