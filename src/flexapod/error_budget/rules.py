@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 
 import numpy as np
 
@@ -37,7 +37,7 @@ class Budget:
     @property
     def parts(self) -> tuple[str, ...]:
         """Names of the parts, in the order of their rows."""
-        return tuple(self._by_part)
+        return tuple(self._numbers)
 
     @cached_property
     def _sums(self) -> list[tuple[ErrorRow, Array]]:
@@ -45,10 +45,19 @@ class Budget:
         return [(row, combined(row.kind, row.by_leg)) for row in self.rows]
 
     @cached_property
-    def _by_part(self) -> dict[str, list[tuple[ErrorRow, Array]]]:
-        found: dict[str, list[tuple[ErrorRow, Array]]] = {}
+    def _numbers(self) -> dict[str, int]:
+        """Parts by name, numbered in the order of their rows."""
+        return {part: k for k, part in enumerate(dict.fromkeys(row.part for row in self.rows))}
+
+    @cached_property
+    def _by_part(self) -> dict[str, Array]:
+        """What each part adds to each of all kinds, (parts, 6)."""
+        rows: dict[tuple[str, str], list[Array]] = {}
         for row, x in self._sums:
-            found.setdefault(row.part, []).append((row, x))
+            rows.setdefault((row.kind, row.part), [np.zeros(6)]).append(x)
+        found = {kind: np.zeros((len(self._numbers), 6)) for kind in KINDS}
+        for (kind, part), parts in rows.items():
+            found[kind][self._numbers[part]] = combined(kind, np.array(parts))
         return found
 
     @property
@@ -63,8 +72,7 @@ class Budget:
 
     def of(self, part: str, kind: str) -> Array:
         """What a part adds to a kind, (6,)."""
-        found = [x for row, x in self._by_part[part] if row.kind == kind]
-        return combined(kind, np.array([np.zeros(6), *found]))
+        return self._by_part[kind][self._numbers[part]]
 
     def total(self, kind: str) -> Array:
         """The whole of a kind, (6,)."""
@@ -92,8 +100,9 @@ class Budget:
     @cached_property
     def sizes(self) -> dict[str, float]:
         """Size of the worst that each part does to the tool's place [m]."""
-        alone = {part: partial(self.of, part) for part in self.parts}
-        return {part: float(np.linalg.norm(self._worst(of, of)[PLACE])) for part, of in alone.items()}
+        alone = self._by_part.__getitem__
+        worst = self._worst(alone, alone)[:, PLACE]
+        return {part: float(np.linalg.norm(x)) for part, x in zip(self.parts, worst, strict=True)}
 
     @cached_property
     def shares(self) -> dict[str, float]:
