@@ -102,7 +102,7 @@ class Budget:
         """Size of the worst that each part does to the tool's place [m]."""
         alone = self._by_part.__getitem__
         worst = self._worst(alone, alone)[:, PLACE]
-        return {part: float(np.linalg.norm(x)) for part, x in zip(self.parts, worst, strict=True)}
+        return {part: float(np.sqrt(x @ x)) for part, x in zip(self.parts, worst, strict=True)}
 
     @cached_property
     def shares(self) -> dict[str, float]:

@@ -44,13 +44,16 @@ def quaternion(R: Array) -> Array:
     xx, yy, zz = R[..., 0, 0], R[..., 1, 1], R[..., 2, 2]
     wx, wy, wz = R[..., 2, 1] - R[..., 1, 2], R[..., 0, 2] - R[..., 2, 0], R[..., 1, 0] - R[..., 0, 1]
     xy, xz, yz = R[..., 0, 1] + R[..., 1, 0], R[..., 0, 2] + R[..., 2, 0], R[..., 1, 2] + R[..., 2, 1]
-    rows = [
-        [1 + xx + yy + zz, wx, wy, wz],
-        [wx, 1 + xx - yy - zz, xy, xz],
-        [wy, xy, 1 - xx + yy - zz, yz],
-        [wz, xz, yz, 1 - xx - yy + zz],
-    ]
-    products = np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    rows = (
+        (1 + xx + yy + zz, wx, wy, wz),
+        (wx, 1 + xx - yy - zz, xy, xz),
+        (wy, xy, 1 - xx + yy - zz, yz),
+        (wz, xz, yz, 1 - xx - yy + zz),
+    )
+    products = np.empty((*R.shape[:-2], 4, 4))
+    for i, row in enumerate(rows):
+        for j, x in enumerate(row):
+            products[..., i, j] = x
     largest = np.argmax(np.diagonal(products, axis1=-2, axis2=-1), axis=-1)
     return canonical(np.take_along_axis(products, largest[..., None, None], axis=-2)[..., 0, :])
 

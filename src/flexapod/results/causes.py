@@ -99,7 +99,9 @@ def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | Re
     for places, whole in behind:  # (T15.14)
         for name, give in elongations(robot, system, record.q, places, played).items():
             seen = ends if whole is bending else ends | inside["stroke"]
-            causes.setdefault(name, np.zeros_like(q))[..., L] += give * ~seen
+            if name not in causes:
+                causes[name] = np.zeros(q.shape)
+            causes[name][..., L] += give * ~seen
             whole[..., L] -= give
             drive[..., L] += give * seen
     if "drive" in places_with_friction(robot):

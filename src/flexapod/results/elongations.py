@@ -91,5 +91,5 @@ def _gives(system: System, q: Array) -> dict[Place, Array]:
 
 def _shares(springs: list[Spring], length: Array) -> list[Array]:
     softness = [spring.at_length(length) for spring in springs]
-    whole = np.sum(softness, axis=0)
+    whole = sum(softness)
     return [x / whole for x in softness]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from flexapod import kinematics, model
@@ -81,8 +83,18 @@ def _form(vectors: Array, matrix: Array) -> Array:
 
 def _forms(legs: Array, matrices: Array, chosen: list[int]) -> Array:
     """Quadratic forms of each leg (m, legs) in some of its coordinates, of vectors (m, legs, n)."""
-    part = legs[..., chosen]
-    return np.einsum("mli,lij,mlj->ml", part, matrices[:, chosen][..., chosen], part, optimize=True)
+    part, between = legs[..., chosen], matrices[:, chosen][..., chosen]
+    return np.einsum(_FORM, part, between, part, optimize=_order(part.shape, between.shape))
+
+
+_FORM = "mli,lij,mlj->ml"
+
+
+@lru_cache(maxsize=64)
+def _order(part: tuple[int, ...], between: tuple[int, ...]) -> list[object]:
+    """In which order factors of such shapes are multiplied."""
+    some = np.zeros(part)
+    return np.einsum_path(_FORM, some, np.zeros(between), some, optimize=True)[0]
 
 
 def _kinds(kinetic: Array, energies: dict[str, Array], payload: Array) -> Array:
