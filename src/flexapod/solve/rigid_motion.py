@@ -12,6 +12,7 @@ from flexapod.kinematics.limbs import COORDINATES, HELD, Limbs
 from flexapod.kinematics.mechanism import leg_state
 from flexapod.kinematics.rotations import quaternion
 from flexapod.kinematics.screws import screws
+from flexapod.kinematics.vectors import cross
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Robot
 from flexapod.solve.batch import Rates, RestStates
@@ -39,8 +40,8 @@ def rigid_motion(
     q, v, v_dot = _undeformed(system, robot, path, legs)
     R, w, w_dot = path.rotation, path.omega, path.alpha
     arm, inverse = R @ robot.com, R.swapaxes(1, 2)
-    turning = np.cross(w, arm)
-    velocity, acceleration = path.velocity + turning, path.acceleration + np.cross(w_dot, arm) + np.cross(w, turning)
+    turning = _cross(w, arm)
+    velocity, acceleration = path.velocity + turning, path.acceleration + _cross(w_dot, arm) + _cross(w, turning)
     u, u_dot = (
         np.concatenate([linear, (inverse @ angular[..., None])[..., 0]], axis=1)
         for linear, angular in ((velocity, w), (acceleration, w_dot))
@@ -52,6 +53,11 @@ def rigid_rest(system: System, robot: Robot, path: kinematics.Poses) -> RestStat
     """States of the undeformed robot at the poses of a path, without forces."""
     q = _undeformed(system, robot, path, kinematics.inverse_kinematics(robot, path))[0]
     return _without_forces(system, robot, path, q)
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """Cross products of rows (T, 3)."""
+    return np.stack(cross(a.T, b.T), axis=-1)
 
 
 def _without_forces(system: System, robot: Robot, path: kinematics.Poses, q: Array) -> RestStates:
@@ -89,9 +95,10 @@ def _with_rates(motion: tuple[RestStates, Rates]) -> State:
 def _undeformed(system: System, robot: Robot, path: kinematics.Poses, found: kinematics.LegState) -> Array:
     """Coordinates of the undeformed legs on a path of T poses, rates and accelerations, (3, T, legs, n)."""
     legs, shapes = kinematics.built_limbs(robot, kinematics.robot_limbs(robot)), system.kernel.shapes
-    x = np.empty((3, *found.length.shape, len(COORDINATES)))
-    for k, name in enumerate(COORDINATES):
-        for order, values in enumerate(found.coordinate(name)):
+    x = np.zeros((3, *found.length.shape, len(COORDINATES)))
+    there, at = leg_coordinates(shapes)
+    for k in range(len(COORDINATES)) if shapes.has("gamma1") else there:
+        for order, values in enumerate(found.coordinate(COORDINATES[k])):
             x[order, ..., k] = values
     held = legs.state == HELD  # welds, which the rigid path releases, too
     x[:, :, held] = 0.0
@@ -99,7 +106,6 @@ def _undeformed(system: System, robot: Robot, path: kinematics.Poses, found: kin
     if shapes.has("gamma1"):
         _turn_balls(legs, x, path)
     q = np.zeros((*x.shape[:3], system.n))
-    there, at = leg_coordinates(shapes)
     q[..., at] = x[..., there]
     for element in shapes.elements:
         has = [element.of(leg) is not None for leg in robot.legs]
