@@ -53,8 +53,10 @@ class Poses:
         p = np.array(position, dtype=float, ndmin=2)
         r = np.empty((len(p), 3, 3))
         r[...] = rotation
-        velocity, omega, acceleration, alpha = np.zeros((4, *p.shape))
-        return cls(position=p, rotation=r, velocity=velocity, omega=omega, acceleration=acceleration, alpha=alpha)
+        still = np.zeros((4, *p.shape))
+        return cls(
+            position=p, rotation=r, velocity=still[0], omega=still[1], acceleration=still[2], alpha=still[3]
+        )  # fmt: skip
 
     def part(self, where: slice | NDArray[np.intp]) -> Poses:
         """The poses of a range, or those chosen."""

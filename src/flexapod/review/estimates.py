@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,11 +35,17 @@ class BendingSection:
     kappa: float
 
 
-@lru_cache(maxsize=64)
 def piston_section(piston: Piston) -> BendingSection:
     """Section of a piston: a tube where its bore is known, else the full round bar with its EI and EA."""
+    return _section_of(piston)
+
+
+def _section(piston: Piston) -> BendingSection:
     tube = Tube(diameter=piston.diameter or 1.0, inner_diameter=piston.inner_diameter)
     return BendingSection(gyration=math.sqrt(piston.EI / piston.EA), kappa=tube.cowper(POISSON))
+
+
+_section_of = cast("Callable[[Piston], BendingSection]", lru_cache(maxsize=64)(_section))
 
 
 def beam_section(actuator: Actuator) -> BendingSection | None:
