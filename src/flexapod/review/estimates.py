@@ -19,7 +19,7 @@ from flexapod.results.legs import base_motion, of_drives
 from flexapod.results.path import RigidPath
 from flexapod.review.columns import stepped_buckling
 from flexapod.solve.modal.modes import RobotModes
-from flexapod.solve.rigid_motion import rigid_motion
+from flexapod.solve.rigid_motion import rigid_rates
 from flexapod.solve.statics.buckling import leg_loads
 from flexapod.solve.statics.drive_forces import feed_forward
 from flexapod.solve.system import System
@@ -259,7 +259,7 @@ def residual_vibration(
     shapes, omega = modes.shapes[keep], 2 * np.pi * frequency
     damped = omega * np.sqrt(1 - ratio**2)
     mass = modes.system.matrices(modes.equilibrium.state, np.zeros(6)).M
-    rates = _rigid_rates(robot, modes, path)
+    rates = rigid_rates(modes.system, robot, path)
     before = np.zeros(rates.shape[1]) if from_rest else rates[0]
     steps = np.diff(rates, axis=0, prepend=before[None], append=np.zeros((1, rates.shape[1])))
     impulse = (
@@ -289,12 +289,6 @@ def _rung_on(impulse: Array, rate: NDArray[Any], t: Array) -> NDArray[Any]:
     of_rows = rows.reshape(modes, row, row) @ np.ascontiguousarray(late.T)[..., None].view(float)
     inside = (early.T * of_rows.view(complex)[..., 0]).sum(axis=1)
     return impulse[0] * np.exp(rate * (t[-1] - t[0])) + inside + impulse[-1]
-
-
-def _rigid_rates(robot: Robot, modes: RobotModes, path: kinematics.Poses) -> Array:
-    """Rates of the rigid path in the flat coordinates of the modes, (T, N)."""
-    rates = rigid_motion(modes.system, robot, path)[1]
-    return np.concatenate([rates.v.reshape(len(path), -1), rates.u], axis=1)
 
 
 def _fed_forward(robot: Robot, t: Array, path: kinematics.Poses) -> Array:

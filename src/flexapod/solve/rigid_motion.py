@@ -18,7 +18,7 @@ from flexapod.model import Robot
 from flexapod.solve.batch import Rates, RestStates
 from flexapod.solve.system import Index, State, System
 
-__all__ = ["built_state", "leg_coordinates", "rigid_motion", "rigid_rest", "rigid_state"]
+__all__ = ["built_state", "leg_coordinates", "rigid_motion", "rigid_rates", "rigid_rest", "rigid_state"]
 
 GAMMA = slice(COORDINATES.index("gamma1"), None)
 
@@ -37,7 +37,7 @@ def rigid_motion(
     `legs`: at these poses, of a robot that is not as drawn.
     """
     legs = kinematics.inverse_kinematics(robot, path) if legs is None else legs
-    q, v, v_dot = _undeformed(system, robot, path, legs)
+    q, v, v_dot = _undeformed(system, robot, path, legs, 3)
     R, w, w_dot = path.rotation, path.omega, path.alpha
     arm, inverse = R @ robot.com, R.swapaxes(1, 2)
     turning = _cross(w, arm)
@@ -51,8 +51,16 @@ def rigid_motion(
 
 def rigid_rest(system: System, robot: Robot, path: kinematics.Poses) -> RestStates:
     """States of the undeformed robot at the poses of a path, without forces."""
-    q = _undeformed(system, robot, path, kinematics.inverse_kinematics(robot, path))[0]
+    q = _undeformed(system, robot, path, kinematics.inverse_kinematics(robot, path), 1)[0]
     return _without_forces(system, robot, path, q)
+
+
+def rigid_rates(system: System, robot: Robot, path: kinematics.Poses) -> Array:
+    """Rates of the undeformed robot in its flat coordinates at the instants of a path, (T, size)."""
+    v = _undeformed(system, robot, path, kinematics.inverse_kinematics(robot, path), 2)[1]
+    velocity = path.velocity + _cross(path.omega, path.rotation @ robot.com)
+    turn = (path.rotation.swapaxes(1, 2) @ path.omega[..., None])[..., 0]
+    return np.concatenate([v.reshape(len(path), -1), velocity, turn], axis=1)
 
 
 def _cross(a: Array, b: Array) -> Array:
@@ -92,13 +100,13 @@ def _with_rates(motion: tuple[RestStates, Rates]) -> State:
     return replace(states.state(0), v=v, v_dot=v_dot)
 
 
-def _undeformed(system: System, robot: Robot, path: kinematics.Poses, found: kinematics.LegState) -> Array:
-    """Coordinates of the undeformed legs on a path of T poses, rates and accelerations, (3, T, legs, n)."""
+def _undeformed(system: System, robot: Robot, path: kinematics.Poses, found: kinematics.LegState, orders: int) -> Array:
+    """Coordinates of the undeformed legs on a path of T poses, rates and accelerations, (orders, T, legs, n)."""
     legs, shapes = kinematics.built_limbs(robot, kinematics.robot_limbs(robot)), system.kernel.shapes
-    x = np.zeros((3, *found.length.shape, len(COORDINATES)))
+    x = np.zeros((orders, *found.length.shape, len(COORDINATES)))
     there, at = leg_coordinates(shapes)
     for k in range(len(COORDINATES)) if shapes.has("gamma1") else there:
-        for order, values in enumerate(found.coordinate(COORDINATES[k])):
+        for order, values in zip(range(orders), found.coordinate(COORDINATES[k]), strict=False):
             x[order, ..., k] = values
     held = legs.state == HELD  # welds, which the rigid path releases, too
     x[:, :, held] = 0.0
@@ -129,7 +137,7 @@ def _turn_balls(legs: Limbs, x: Array, path: kinematics.Poses) -> None:
     x[0][:, balls, GAMMA] = angles[:, balls]
     chain = screws(legs, x[0])
     turns = chain.columns[:, :, 3:]
-    for order, whole in ((1, path.omega), (2, path.alpha)):
+    for order, whole in ((1, path.omega), (2, path.alpha))[: len(x) - 1]:
         rest = whole[:, None, :, None] - turns @ x[order][..., None]
         if order == 2:
             rest = rest - chain.bias(x[1])[..., 3:, None]
