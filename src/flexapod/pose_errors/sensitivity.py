@@ -9,7 +9,7 @@ import numpy as np
 from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.errors import ComputationError
-from flexapod.kinematics.limbs import COORDINATES, DRIVEN, HELD
+from flexapod.kinematics.limbs import COORDINATES
 from flexapod.kinematics.mechanism import coordinates_of
 from flexapod.kinematics.screws import screws
 from flexapod.model import Robot
@@ -52,7 +52,7 @@ def sensitivity(robot: Robot, path: kinematics.Poses) -> Sensitivity:
     q = coordinates_of(kinematics.inverse_kinematics(robot, kinematics.Poses.at_rest(path.position, path.rotation)))
     by = _by_coordinate(robot, path)
     columns, takes = screws(legs, q).columns, closing(legs)
-    held = np.isin(legs.state, (HELD, DRIVEN))
+    held = legs.given
     base = np.zeros((*q.shape[:2], 3, 6))
     kinds = np.column_stack([legs.pose_closure, takes, held])
     for kind in set(map(tuple, kinds.tolist())):

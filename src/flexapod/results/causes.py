@@ -14,7 +14,7 @@ from flexapod.elements.flexure import Flexures
 from flexapod.elements.springs import Place
 from flexapod.errors import ComputationError
 from flexapod.kinematics.closures import Task, close
-from flexapod.kinematics.limbs import COORDINATES, DRIVEN, FREE, HELD, Limbs
+from flexapod.kinematics.limbs import COORDINATES, DRIVEN, FREE, Limbs
 from flexapod.kinematics.robot import once
 from flexapod.kinematics.screws import screws
 from flexapod.model import Robot
@@ -81,7 +81,7 @@ def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | Re
         if any(part.base.any() or part.platform.any() for part in parts):
             after = _straight(robot, kinematics.built_limbs(robot, found, done), at, q)
         more[name], before = before - after + longer, after  # (T16.7)
-    counts, own, axial = np.isin(found.state, (HELD, DRIVEN)), command.copy(), np.zeros_like(q)
+    counts, own, axial = found.given, command.copy(), np.zeros_like(q)
     own[..., (CHI, L)] = q[..., (CHI, L)]
     axial[..., L] = stretch(shapes, record.q)  # (T8.2)
     bending, drive = before - (own + axial), own - command  # (T8.3)-(T8.4)

@@ -328,7 +328,7 @@ AT_A_POSE = {name: form._replace(dims=form.dims[1:]) for name, form in _PLAY.ite
 def fixed_labels(sizes: Mapping[str, int]) -> dict[str, tuple[object, str]]:
     """Labels of those of some dimensions that need no others from a study, and what they stand for; legs by number."""
     found: dict[str, tuple[object, str]] = {dim: COORDINATES[dim] for dim in COORDINATES if dim in sizes}
-    return {"leg": (np.arange(1, sizes["leg"] + 1), "leg"), **found} if "leg" in sizes else found
+    return {"leg": (list(range(1, sizes["leg"] + 1)), "leg"), **found} if "leg" in sizes else found
 
 
 def dataset(

@@ -8,7 +8,6 @@ from flexapod import kinematics
 from flexapod.arrays import Array, Mask
 from flexapod.errors import ComputationError
 from flexapod.kinematics.closures import turned_over
-from flexapod.kinematics.limbs import DRIVEN, HELD
 from flexapod.kinematics.rotations import matrix
 from flexapod.kinematics.screws import screws
 from flexapod.model import Robot
@@ -56,7 +55,7 @@ def _determinant(system: System, robot: Robot, x: RestStates) -> Array:
     """Of the rates of what the rigid robot holds by steps of the payload, (P,); 1 where it is held in excess."""
     there, at = leg_coordinates(system.kernel.shapes)
     holds = np.zeros_like(system.held)
-    holds[:, at] = np.isin(kinematics.rigid_limbs(robot).state[:, there], (HELD, DRIVEN))
+    holds[:, at] = kinematics.rigid_limbs(robot).given[:, there]
     rows = []
     for b in leg_bases(system, matrices_at_rest(system, x, np.zeros(6))):
         for i, leg in enumerate(b.legs):

@@ -104,7 +104,9 @@ def displacement(locked: LockedPoses, loads: Array, on_payload: Array) -> Array:
     """
     system, m, free = locked.system, locked.m, locked.system.border
     S = m.payload_K[:, free[:, None], free]
-    side = np.pad(on_payload, ((0, 0), (0, 6 + system.shared.size - on_payload.shape[1]), (0, 0)))[:, free]
+    side = np.zeros((len(on_payload), 6 + system.shared.size, on_payload.shape[2]))
+    side[:, : on_payload.shape[1]] = on_payload
+    side = side[:, free]
     for b in locked.motions.bases:
         B, C, own = reduced_legs(system, b, m)
         f, width = loads[:, b.legs], C.shape[-1]
