@@ -4,6 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
+import xarray as xr
 from tests.runs import paper_robot
 
 import flexapod as fx
@@ -30,6 +31,19 @@ def test_an_array_is_made_once_and_what_made_it_is_dropped():
 def test_a_dataset_knows_shapes_and_kinds_of_what_was_not_made(data):
     told = {name: (array.shape, array.dtype) for name, array in data.variables.items()}
     assert told == {name: (array.values.shape, array.values.dtype) for name, array in data.variables.items()}
+
+
+def test_a_dataset_is_the_one_that_xarray_makes(data):
+    """It is put together of its parts, past all that xarray itself does with them."""
+    for found in (data.load(), fx.modes(paper_robot()), fx.stiffness(paper_robot())):
+        own = xr.Dataset({name: array.variable for name, array in found.data_vars.items()}, found.coords, found.attrs)
+        xr.testing.assert_identical(found, own)
+        assert list(found.variables) == list(own.variables)
+        assert list(found.xindexes) == list(own.xindexes)
+        assert found.sizes == own.sizes
+        assert {name: array.dtype for name, array in found.variables.items()} == {
+            name: array.dtype for name, array in own.variables.items()
+        }
 
 
 def test_arrays_are_the_same_each_time_they_are_read(data):

@@ -162,6 +162,6 @@ def _with_built(
 
 def without_rounding(table: list[ErrorRow]) -> list[ErrorRow]:
     """The rows that are more than rounding."""
-    sizes = np.array([[np.abs(row.by_leg[..., k]).max() for k in (slice(3), slice(3, 6))] for row in table])
+    sizes = np.array([np.abs(row.by_leg).max(axis=0) for row in table]).reshape(-1, 2, 3).max(axis=2)
     kept = (sizes > np.maximum(ROUNDING * sizes.max(axis=0), NOTHING)).any(axis=1) if table else []
     return [row for row, keep in zip(table, kept, strict=True) if keep]

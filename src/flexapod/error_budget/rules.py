@@ -23,8 +23,8 @@ PLACE = slice(3)
 def combined(kind: str, parts: Array) -> Array:
     """Sum over the first axis by the rule of a kind: with signs, of sizes, of squares, Eqs. (T17.3)-(T17.5)."""
     if kind == "hysteretic":
-        return np.abs(parts).sum(axis=0)
-    return np.sqrt((parts**2).sum(axis=0)) if kind == "random" else parts.sum(axis=0)
+        return np.add.reduce(np.abs(parts))
+    return np.sqrt(np.add.reduce(parts * parts)) if kind == "random" else np.add.reduce(parts)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,13 +37,27 @@ class Budget:
     @property
     def parts(self) -> tuple[str, ...]:
         """Names of the parts, in the order of their rows."""
-        return tuple(self._by_part)
+        return tuple(self._numbers)
 
     @cached_property
-    def _by_part(self) -> dict[str, list[ErrorRow]]:
-        found: dict[str, list[ErrorRow]] = {}
-        for row in self.rows:
-            found.setdefault(row.part, []).append(row)
+    def _sums(self) -> list[tuple[ErrorRow, Array]]:
+        """What each row adds up to over the legs by the rule of its kind, (6,)."""
+        return [(row, combined(row.kind, row.by_leg)) for row in self.rows]
+
+    @cached_property
+    def _numbers(self) -> dict[str, int]:
+        """Parts by name, numbered in the order of their rows."""
+        return {part: k for k, part in enumerate(dict.fromkeys(row.part for row in self.rows))}
+
+    @cached_property
+    def _by_part(self) -> dict[str, Array]:
+        """What each part adds to each of all kinds, (parts, 6)."""
+        rows: dict[tuple[str, str], list[Array]] = {}
+        for row, x in self._sums:
+            rows.setdefault((row.kind, row.part), [np.zeros(6)]).append(x)
+        found = {kind: np.zeros((len(self._numbers), 6)) for kind in KINDS}
+        for (kind, part), parts in rows.items():
+            found[kind][self._numbers[part]] = combined(kind, np.array(parts))
         return found
 
     @property
@@ -53,12 +67,12 @@ class Budget:
 
     def rule(self, kind: str, chosen: Callable[[ErrorRow], bool] = lambda row: True) -> Array:
         """Sum (6,) of the rows of a kind, or of some of them, by its rule; without what is left out of first order."""
-        found = [combined(kind, row.by_leg) for row in self.rows if row.kind == kind and chosen(row)]
+        found = [x for row, x in self._sums if row.kind == kind and chosen(row)]
         return combined(kind, np.array([np.zeros(6), *found]))
 
     def of(self, part: str, kind: str) -> Array:
         """What a part adds to a kind, (6,)."""
-        return self.rule(kind, lambda row: row.part == part)
+        return self._by_part[kind][self._numbers[part]]
 
     def total(self, kind: str) -> Array:
         """The whole of a kind, (6,)."""
@@ -71,8 +85,11 @@ class Budget:
     @property
     def worst(self) -> Array:
         """Largest size of each component if all kinds are at their worst at once, (6,), Eq. (T17.6)."""
-        most = np.abs(self.total("systematic")) + self.rule("hysteretic") + SIGMAS * self.rule("random")
-        return most + (np.abs(self.total("dynamic_peak")) if "dynamic_peak" in self.kinds else 0.0)
+        return self._worst(self.total, self.rule)
+
+    def _worst(self, total: Callable[[str], Array], rule: Callable[[str], Array]) -> Array:
+        most = np.abs(total("systematic")) + rule("hysteretic") + SIGMAS * rule("random")
+        return most + (np.abs(total("dynamic_peak")) if "dynamic_peak" in self.kinds else 0.0)
 
     @property
     def rss(self) -> Array:
@@ -83,9 +100,11 @@ class Budget:
     @cached_property
     def sizes(self) -> dict[str, float]:
         """Size of the worst that each part does to the tool's place [m]."""
-        return {part: float(np.linalg.norm(self._only(part).worst[PLACE])) for part in self.parts}
+        alone = self._by_part.__getitem__
+        worst = self._worst(alone, alone)[:, PLACE]
+        return {part: float(np.sqrt(x @ x)) for part, x in zip(self.parts, worst, strict=True)}
 
-    @property
+    @cached_property
     def shares(self) -> dict[str, float]:
         """Sizes of the parts over the sum of all sizes, Eq. (T17.8)."""
         return {part: size / (sum(self.sizes.values()) or 1.0) for part, size in self.sizes.items()}
@@ -99,10 +118,6 @@ class Budget:
     def calibrated(self) -> Budget:
         """The budget of a machine whose constant errors are known and taken out, at rest."""
         return Budget(rows=[row for row in self.rows if row.nature != "calibratable" and not row.stands], whole={})
-
-    def _only(self, part: str) -> Budget:
-        alone = Budget(rows=self._by_part[part], whole={})
-        return replace(alone, whole={kind: alone.rule(kind) for kind in self.whole})
 
     def with_half(self, part: str) -> Budget:
         """The budget if every error of a part were half as large."""

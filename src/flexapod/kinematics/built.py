@@ -91,7 +91,7 @@ def _geometry(robot: Robot) -> list[BuiltPart]:
     if given is None:
         return []
     legs, found = rigid_limbs(robot), []
-    acts = np.isin(legs.state, (HELD, DRIVEN))
+    acts = legs.given
     for name in GEOMETRY:
         value = getattr(given, name)
         if value is None:
@@ -117,7 +117,7 @@ def _heat(robot: Robot) -> list[BuiltPart]:
     heat, n = robot.heat, robot.count
     if heat is None:
         return []
-    acts = np.isin(rigid_limbs(robot).state[:, L], (HELD, DRIVEN))
+    acts = rigid_limbs(robot).given[:, L]
     found = []
     for part in HEAT_PARTS:
         if not heat.warms(part):

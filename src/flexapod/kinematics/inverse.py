@@ -61,7 +61,7 @@ class LegState:
             return self.length, self.rate, self.accel
         key, place = (name[:-1], int(name[-1]) - 1) if name.startswith("gamma") else (name, None)
         parts = (getattr(self, key + end) for end in ("", "_dot", "_ddot"))
-        parts = [np.zeros_like(self.length) if part is None else part for part in parts]
+        parts = [np.zeros(self.length.shape) if part is None else part for part in parts]
         if place is None or self.gamma is None:
             return parts[0], parts[1], parts[2]
         return parts[0][..., place], parts[1][..., place], parts[2][..., place]

@@ -154,6 +154,8 @@ def nearest(jacobians: Array) -> NearestSingularity:
     for stride in STRIDES:
         at = np.arange(0, len(j), stride)
         at = at[bound[at] < best]
+        if not at.size:
+            continue
         singular[at] = np.linalg.svd(j[at], compute_uv=False)
         sign[at] = np.signbit(_determinant(j[at], singular[at]))
         bound[at], best = singular[at, -1], min(best, float(singular[at, -1].min(initial=np.inf)))

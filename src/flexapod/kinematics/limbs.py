@@ -105,6 +105,11 @@ class Limbs:
         return np.isin(self.state, (FREE, DRIVEN))
 
     @cached_property
+    def given(self) -> Mask:
+        """Coordinates that joints or drives hold, (n, 8)."""
+        return np.isin(self.state, (HELD, DRIVEN))
+
+    @cached_property
     def plain(self) -> bool:
         """Whether all legs are of the kind UPS, whose kinematics has a closed form."""
         angles = self.state[:, [COORDINATES.index("alpha"), COORDINATES.index("beta")]]

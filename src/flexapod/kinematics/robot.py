@@ -204,7 +204,7 @@ def poses_from_home(robot: Robot, values: Array, named: Mask | None = None) -> P
     legs, still, pivot = rigid_limbs(robot), np.zeros_like(values), np.zeros(3)
     law = Law(values, still, still)
     if not legs.guides:
-        return trajectory.poses_from_coordinates(home_pose(robot), law)
+        return Poses.at_rest(*trajectory.places(home_pose(robot), law, pivot))
     moved = (values != 0).any(axis=0) if named is None else named
     return _following(robot, motions.independent_axes(legs, moved, pivot, found=_mobility(robot)), law, pivot)
 
@@ -226,6 +226,12 @@ def inverse_kinematics(robot: Robot, path: Poses) -> LegState:
     if rigid_limbs(robot).plain:
         return inverse.state_of(_leg_map(robot), path)
     return mechanism.leg_state(rigid_limbs(robot), path)
+
+
+def refuse_folded(robot: Robot, path: Poses, found: Reach) -> None:
+    """Raise as `inverse_kinematics` of poses that legs reach, if one of their joints folds."""
+    if not rigid_limbs(robot).plain or (found.angles["universal joint"] > inverse.BETA_LIMIT).any():
+        inverse_kinematics(robot, path)
 
 
 def drive_positions(robot: Robot, path: Poses) -> Array:
@@ -287,6 +293,11 @@ def singularity(robot: Robot, path: Poses) -> jacobian.SingularityPath:
     return jacobian.along_path(_scaled_jacobian(robot, path))
 
 
+def determinants(robot: Robot, path: Poses) -> Array:
+    """Of what six locked legs hold of the six motions of their platform, (T,)."""
+    return np.asarray(np.linalg.det(_scaled_jacobian(robot, path)), dtype=np.float64)
+
+
 def nearest_singularity(robot: Robot, path: Poses) -> jacobian.NearestSingularity:
     """The pose of a path that is nearest to a singularity; see `jacobian.nearest`."""
     return jacobian.nearest(_scaled_jacobian(robot, path))
@@ -327,10 +338,16 @@ def postures(robot: Robot, lengths: ArrayLike) -> forward.Postures:
 
 def strokes(robot: Robot, t: ArrayLike, length: Array) -> list[workspace.Excess]:
     """Legs that leave their stroke on a path of lengths (T, 6) at instants `t` (T,); empty if none does."""
-    limits = [(leg.stroke.min, leg.stroke.max) if leg.stroke else (0.0, np.inf) for leg in robot.legs]
-    return workspace.stroke_excess(t, length, np.array(limits))
+    return workspace.stroke_excess(t, length, _limits(robot))
 
 
+@once
+def _limits(robot: Robot) -> Array:
+    """Least and largest lengths of the legs (n, 2) [m]."""
+    return np.array([(leg.stroke.min, leg.stroke.max) if leg.stroke else (0.0, np.inf) for leg in robot.legs])
+
+
+@once
 def carriage_limits(robot: Robot) -> Array:
     """Least and largest place of the carriages (n, 2) [m, of a crank rad]; infinite without a limit."""
     travels = [leg.carriage.stroke if leg.carriage else None for leg in robot.legs]
@@ -345,19 +362,18 @@ def carriages(robot: Robot, t: ArrayLike, place: Array) -> list[workspace.Excess
 
 def pull_out(robot: Robot, t: ArrayLike, length: Array) -> list[workspace.Excess]:
     """Pistons that vanish in their cylinder, leave it or pass the universal joint; see `workspace.piston_excess`."""
-    mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
-    return workspace.piston_excess(t, length, mouth, _pistons(robot))
+    return workspace.piston_excess(t, length, *_pistons(robot))
 
 
 def reachable(robot: Robot, path: Poses) -> Mask:
     """Whether each of T poses keeps legs and carriages within their strokes and pistons in their cylinders, (T,)."""
     found, ways = reach(robot, path), carriage_limits(robot)
-    limits = [(leg.stroke.min, leg.stroke.max) if leg.stroke else (0.0, np.inf) for leg in robot.legs]
-    mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
     within = np.all((found.carriage >= ways[:, 0]) & (found.carriage <= ways[:, 1]), axis=1)
-    return workspace.reachable(found.length, np.array(limits), mouth, _pistons(robot)) & within & ~found.lost
+    return workspace.reachable(found.length, _limits(robot), *_pistons(robot)) & within & ~found.lost
 
 
-def _pistons(robot: Robot) -> Array:
-    """Lengths of the pistons (n,) [m]; a strut leaves no cylinder."""
-    return np.array([leg.piston.length if leg.strut is None else np.inf for leg in robot.legs])
+@once
+def _pistons(robot: Robot) -> tuple[Array, Array]:
+    """Mouths of the cylinders and lengths of the pistons (n,) [m]; a strut leaves no cylinder."""
+    mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
+    return mouth, np.array([leg.piston.length if leg.strut is None else np.inf for leg in robot.legs])

@@ -12,12 +12,22 @@ from flexapod.arrays import Array
 
 def canonical(e: Array) -> Array:
     """The same rotations by unit quaternions (..., 4) with w >= 0."""
-    return np.copysign(1 / np.linalg.norm(e, axis=-1, keepdims=True), e[..., :1]) * e
+    return np.copysign(1 / _size(e), e[..., :1]) * e
+
+
+def _size(vectors: Array) -> Array:
+    """Norms (..., 1) of vectors (..., k)."""
+    return np.sqrt(np.add.reduce(vectors * vectors, axis=-1, keepdims=True))
+
+
+def _parts(vectors: Array) -> tuple[Array, ...]:
+    """Components (...) of vectors (..., k)."""
+    return tuple(vectors[..., k] for k in range(vectors.shape[-1]))
 
 
 def matrix(e: Array) -> Array:
     """Rotation matrices (..., 3, 3) of quaternions (..., 4), brought to unit length, Eq. (T4.1)."""
-    w, x, y, z = np.moveaxis(e / np.linalg.norm(e, axis=-1, keepdims=True), -1, 0)
+    w, x, y, z = _parts(e / _size(e))
     R = np.empty((*np.shape(w), 3, 3))
     R[..., 0, 0], R[..., 0, 1], R[..., 0, 2] = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
     R[..., 1, 0], R[..., 1, 1], R[..., 1, 2] = 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)
@@ -34,29 +44,29 @@ def quaternion(R: Array) -> Array:
     xx, yy, zz = R[..., 0, 0], R[..., 1, 1], R[..., 2, 2]
     wx, wy, wz = R[..., 2, 1] - R[..., 1, 2], R[..., 0, 2] - R[..., 2, 0], R[..., 1, 0] - R[..., 0, 1]
     xy, xz, yz = R[..., 0, 1] + R[..., 1, 0], R[..., 0, 2] + R[..., 2, 0], R[..., 1, 2] + R[..., 2, 1]
-    rows = [
-        [1 + xx + yy + zz, wx, wy, wz],
-        [wx, 1 + xx - yy - zz, xy, xz],
-        [wy, xy, 1 - xx + yy - zz, yz],
-        [wz, xz, yz, 1 - xx - yy + zz],
-    ]
-    products = np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    rows = (
+        (1 + xx + yy + zz, wx, wy, wz),
+        (wx, 1 + xx - yy - zz, xy, xz),
+        (wy, xy, 1 - xx + yy - zz, yz),
+        (wz, xz, yz, 1 - xx - yy + zz),
+    )
+    products = np.empty((*R.shape[:-2], 4, 4))
+    for i, row in enumerate(rows):
+        for j, x in enumerate(row):
+            products[..., i, j] = x
     largest = np.argmax(np.diagonal(products, axis1=-2, axis2=-1), axis=-1)
     return canonical(np.take_along_axis(products, largest[..., None, None], axis=-2)[..., 0, :])
 
 
 def product(a: Array, b: Array) -> Array:
     """Quaternions (..., 4) of the rotation b followed by the rotation a."""
-    (w, x, y, z), (s, i, j, k) = np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0)
-    return np.stack(
-        [
-            w * s - x * i - y * j - z * k,
-            w * i + x * s + y * k - z * j,
-            w * j - x * k + y * s + z * i,
-            w * k + x * j - y * i + z * s,
-        ],
-        axis=-1,
-    )
+    (w, x, y, z), (s, i, j, k) = _parts(a), _parts(b)
+    e = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    e[..., 0] = w * s - x * i - y * j - z * k
+    e[..., 1] = w * i + x * s + y * k - z * j
+    e[..., 2] = w * j - x * k + y * s + z * i
+    e[..., 3] = w * k + x * j - y * i + z * s
+    return e
 
 
 def difference(a: Array, b: Array) -> Array:
@@ -67,7 +77,7 @@ def difference(a: Array, b: Array) -> Array:
 def rotation_vector(e: Array) -> Array:
     """Rotation vectors (..., 3) [rad], at most pi long, of quaternions (..., 4): Eq. (T6.2) backwards."""
     e = canonical(e)
-    sine = np.linalg.norm(e[..., 1:], axis=-1, keepdims=True)
+    sine = _size(e[..., 1:])
     angle = 2 * np.arctan2(sine, e[..., :1])
     return np.divide(angle, sine, out=np.full_like(sine, 2.0), where=sine > 0) * e[..., 1:]
 
@@ -75,7 +85,7 @@ def rotation_vector(e: Array) -> Array:
 def exponential(turn: Array) -> Array:
     """Rotation matrices of rotation vectors (..., 3) [rad], shape (..., 3, 3), Eq. (T2.40)."""
     angle = np.linalg.norm(turn, axis=-1)[..., None, None]
-    x, y, z = np.moveaxis(turn, -1, 0)
+    x, y, z = _parts(turn)
     zero = np.zeros_like(x)
     k = np.stack([np.stack(r, axis=-1) for r in ([zero, -z, y], [z, zero, -x], [-y, x, zero])], axis=-2)
     half = np.sinc(angle / (2 * np.pi))  # sin(angle / 2) / (angle / 2)
@@ -84,8 +94,8 @@ def exponential(turn: Array) -> Array:
 
 def turned(pose: Array, step: Array) -> Array:
     """Poses (..., 7) moved by steps (..., 6): x + dx, R exp(theta^), Eqs. (T4.3) and (T6.2)."""
-    half = 0.5 * np.linalg.norm(step[..., 3:], axis=-1, keepdims=True)
+    half = 0.5 * _size(step[..., 3:])
     turn = np.concatenate([np.cos(half), 0.5 * np.sinc(half / np.pi) * step[..., 3:]], axis=-1)
     e = product(pose[..., 3:], turn)
-    e /= np.linalg.norm(e, axis=-1, keepdims=True)
+    e /= _size(e)
     return np.concatenate([pose[..., :3] + step[..., :3], e], axis=-1)

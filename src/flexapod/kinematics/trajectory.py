@@ -50,16 +50,13 @@ class Poses:
     @classmethod
     def at_rest(cls, position: ArrayLike, rotation: ArrayLike) -> Poses:
         """Poses without rates: `position` (T, 3) or (3,), `rotation` (T, 3, 3) or (3, 3)."""
-        p = np.array(np.atleast_2d(np.asarray(position, dtype=float)))
-        r = np.array(np.broadcast_to(np.asarray(rotation, dtype=float), (len(p), 3, 3)))
+        p = np.array(position, dtype=float, ndmin=2)
+        r = np.empty((len(p), 3, 3))
+        r[...] = rotation
+        still = np.zeros((4, *p.shape))
         return cls(
-            position=p,
-            rotation=r,
-            velocity=np.zeros_like(p),
-            omega=np.zeros_like(p),
-            acceleration=np.zeros_like(p),
-            alpha=np.zeros_like(p),
-        )
+            position=p, rotation=r, velocity=still[0], omega=still[1], acceleration=still[2], alpha=still[3]
+        )  # fmt: skip
 
     def part(self, where: slice | NDArray[np.intp]) -> Poses:
         """The poses of a range, or those chosen."""

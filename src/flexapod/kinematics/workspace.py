@@ -73,8 +73,10 @@ def _worst(t: ArrayLike, length: Array, limit: Array, side: int, kind: str, fata
     """Per leg the largest excess of `side * length` over `side * limit`, if there is one."""
     t = np.asarray(t, dtype=float)
     over = side * (length - limit)
-    found = []
+    found: list[Excess] = []
     beyond = over > ROUNDING * np.abs(limit)
+    if not beyond.any():
+        return found
     for leg in np.flatnonzero(np.any(beyond, axis=0)):
         k = int(np.argmax(over[:, leg]))
         found.append(

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import lru_cache
+from typing import cast
 
 from flexapod.model.actuator import Actuator
 from flexapod.model.drive import ServoDrive
@@ -19,6 +22,10 @@ _RATIO = 0.1  # damping ratio of the advice for a drive without damping
 
 def robot_remarks(robot: Robot) -> tuple[str, ...]:
     """Remarks on a robot's legs; the same remark for several legs is made once."""
+    return _remarks_on(robot)
+
+
+def _remarks(robot: Robot) -> tuple[str, ...]:
     numbers: dict[str, list[int]] = {}
     driven = sum(bool(leg.driven) for leg in robot.legs)
     share = 0.0 if robot.payload is None or not driven else robot.payload.mass / driven
@@ -32,6 +39,9 @@ def robot_remarks(robot: Robot) -> tuple[str, ...]:
             numbers.setdefault(what, []).append(i)
     told = (f"{_legs(which, robot.count)}: {remark}" for remark, which in numbers.items())
     return (*told, *(() if robot.heat is None else _cold(robot.heat)), *_straight(robot))
+
+
+_remarks_on = cast("Callable[[Robot], tuple[str, ...]]", lru_cache(maxsize=64)(_remarks))
 
 
 def _straight(robot: Robot) -> list[str]:

@@ -9,7 +9,7 @@ import numpy as np
 from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.errors import ComputationError
-from flexapod.kinematics.limbs import COORDINATES, DRIVEN, HELD
+from flexapod.kinematics.limbs import COORDINATES
 from flexapod.kinematics.mechanism import coordinates_of
 from flexapod.kinematics.screws import screws
 from flexapod.model import Robot
@@ -52,13 +52,16 @@ def sensitivity(robot: Robot, path: kinematics.Poses) -> Sensitivity:
     q = coordinates_of(kinematics.inverse_kinematics(robot, kinematics.Poses.at_rest(path.position, path.rotation)))
     by = _by_coordinate(robot, path)
     columns, takes = screws(legs, q).columns, closing(legs)
-    held = np.isin(legs.state, (HELD, DRIVEN))
+    held = legs.given
     base = np.zeros((*q.shape[:2], 3, 6))
-    for i in range(len(legs)):
-        rows = 6 if legs.pose_closure[i] else 3
+    kinds = np.column_stack([legs.pose_closure, takes, held])
+    for kind in set(map(tuple, kinds.tolist())):
+        alike = np.flatnonzero((kinds == kind).all(axis=1))
+        i, rows = alike[0], 6 if kind[0] else 3
         # the drawn leg that reaches as far as the shifted one has other held coordinates: (T16.9)
-        change = np.linalg.solve(columns[:, i, :rows][..., takes[i]], np.eye(rows, 3))
-        base[:, i] = np.einsum("pkj,pkx->pjx", change[:, held[i, takes[i]]], by[:, i][:, takes[i] & held[i]])
+        change = np.linalg.solve(columns[:, alike, :rows][..., takes[i]], np.eye(rows, 3))
+        given = by[:, alike][:, :, takes[i] & held[i]]
+        base[:, alike] = np.einsum("pikj,pikx->pijx", change[:, :, held[i, takes[i]]], given)
     platform = -np.einsum("pji,pnjx->pnix", path.rotation, base)
     return Sensitivity(coordinate=by, base=base, platform=platform, q=q)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.arrays import Array
-from flexapod.kinematics.limbs import COORDINATES, DRIVEN, HELD
+from flexapod.kinematics.limbs import COORDINATES, DRIVEN
 from flexapod.kinematics.rotations import quaternion, rotation_vector
 from flexapod.model import Robot
 from flexapod.pose_errors.imperfect import by_bending_stiffness, by_bow, softness
@@ -97,7 +97,7 @@ def _weights(robot: Robot, name: str, at: Sensitivity, push: Array) -> Array:
     found = np.zeros_like(q)
     if name != "lead":
         longer = _longer(robot, at, name, push)[0]
-        found[..., L] = np.where(np.isin(legs.state[:, L], (HELD, DRIVEN)), longer, 0.0)
+        found[..., L] = np.where(legs.given[:, L], longer, 0.0)
     else:
         driven = (legs.state[:, [CHI, L]] == DRIVEN) & [legs.carriage != "crank", True]
         driven &= np.array([[leg.measured == "rotor"] for leg in robot.legs])

@@ -153,4 +153,4 @@ def _check_reachable(robot: model.Robot, pose: kinematics.Poses) -> None:
             allowed="poses within the strokes",
             next_step="Choose another pose, or widen leg.stroke",
         )
-    kinematics.inverse_kinematics(robot, pose)
+    kinematics.refuse_folded(robot, pose, found)

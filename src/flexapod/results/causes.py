@@ -14,12 +14,12 @@ from flexapod.elements.flexure import Flexures
 from flexapod.elements.springs import Place
 from flexapod.errors import ComputationError
 from flexapod.kinematics.closures import Task, close
-from flexapod.kinematics.limbs import COORDINATES, DRIVEN, FREE, HELD, Limbs
+from flexapod.kinematics.limbs import COORDINATES, DRIVEN, FREE, Limbs
 from flexapod.kinematics.robot import once
 from flexapod.kinematics.screws import screws
 from flexapod.model import Robot
 from flexapod.results.cause_words import CAUSES
-from flexapod.results.elongations import elongations, frame_names, part_names
+from flexapod.results.elongations import elongations, frame_names, in_gap, part_names
 from flexapod.results.inside import tip_moves
 from flexapod.results.legs import stretch
 from flexapod.results.path import RigidPath
@@ -81,7 +81,7 @@ def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | Re
         if any(part.base.any() or part.platform.any() for part in parts):
             after = _straight(robot, kinematics.built_limbs(robot, found, done), at, q)
         more[name], before = before - after + longer, after  # (T16.7)
-    counts, own, axial = np.isin(found.state, (HELD, DRIVEN)), command.copy(), np.zeros_like(q)
+    counts, own, axial = found.given, command.copy(), np.zeros_like(q)
     own[..., (CHI, L)] = q[..., (CHI, L)]
     axial[..., L] = stretch(shapes, record.q)  # (T8.2)
     bending, drive = before - (own + axial), own - command  # (T8.3)-(T8.4)
@@ -93,12 +93,15 @@ def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | Re
         place: np.array([leg.closed_about == place for leg in robot.legs]) for place in ("stroke", "joint-to-joint")
     }
     ends = inside["joint-to-joint"]  # (T23.56)
+    played = in_gap(system, record.q)
     drive[..., L] += axial[..., L] * ends
     axial[..., L] *= ~ends
     for places, whole in behind:  # (T15.14)
-        for name, give in elongations(robot, system, record.q, places).items():
+        for name, give in elongations(robot, system, record.q, places, played).items():
             seen = ends if whole is bending else ends | inside["stroke"]
-            causes.setdefault(name, np.zeros_like(q))[..., L] += give * ~seen
+            if name not in causes:
+                causes[name] = np.zeros(q.shape)
+            causes[name][..., L] += give * ~seen
             whole[..., L] -= give
             drive[..., L] += give * seen
     if "drive" in places_with_friction(robot):

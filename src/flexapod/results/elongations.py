@@ -32,16 +32,20 @@ def frame_names(robot: Robot) -> tuple[str, ...]:
 
 
 def elongations(
-    robot: Robot, system: System, q: Array, places: Sequence[Place] = ("base", "nut", "platform")
+    robot: Robot,
+    system: System,
+    q: Array,
+    places: Sequence[Place] = ("base", "nut", "platform"),
+    played: Array | None = None,
 ) -> dict[str, Array]:
     """What each spring along the legs at some places adds to their lengths, (..., legs) [m], by name.
 
     Springs in series, a servo's among them, share the elongation of their coordinate by their compliances at the leg's
-    length.
+    length. `played`: `in_gap`, where it is known.
     """
     shapes = system.kernel.shapes
     found = {name: np.zeros(q.shape[:-1]) for name in part_names(robot)}
-    length, played = q[..., shapes.l_index], in_gap(system, q)
+    length, played = q[..., shapes.l_index], in_gap(system, q) if played is None else played
     for i, leg in enumerate(robot.legs):
         springs = springs_along(leg)
         if leg.gives and isinstance(leg.drive, ServoDrive):
@@ -87,4 +91,5 @@ def _gives(system: System, q: Array) -> dict[Place, Array]:
 
 def _shares(springs: list[Spring], length: Array) -> list[Array]:
     softness = [spring.at_length(length) for spring in springs]
-    return [x / np.sum(softness, axis=0) for x in softness]
+    whole = sum(softness)
+    return [x / whole for x in softness]

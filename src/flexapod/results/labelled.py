@@ -1,4 +1,4 @@
-"""Variables and coordinates of a Dataset, also of arrays that nobody has asked for yet."""
+"""Datasets of variables and labels, also of arrays that nobody has asked for yet."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from functools import lru_cache
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
-from xarray import Coordinates, Variable
+from xarray import Dataset, Variable
 from xarray.core.indexing import LazilyIndexedArray, NumpyIndexingAdapter
 from xarray.indexes import PandasIndex
 
 from flexapod.arrays import Array
 
-__all__ = ["awaited", "coordinates", "variable"]
+__all__ = ["awaited", "labelled", "variable"]
 
 
 def variable(dims: tuple[str, ...], given: ArrayLike, attrs: dict[str, str]) -> Variable:
@@ -63,12 +63,17 @@ def _index(dim: str, given: object) -> PandasIndex:
 _of_words = lru_cache(maxsize=64)(_index)
 
 
-def coordinates(labels: Mapping[str, tuple[object, dict[str, str]]]) -> Coordinates:
-    """Indexed coordinates from labels and attributes; made from arrays, xarray would first import pint and others."""
-    variables, indexes = {}, {}
-    for dim, (given, attrs) in labels.items():
-        index = _of_words(dim, tuple(given)) if isinstance(given, list) else _index(dim, given)
+def labelled(
+    data: Mapping[str, Variable], labels: Mapping[str, tuple[object, dict[str, str]]], attrs: Mapping[str, object]
+) -> Dataset:
+    """Dataset of variables, and of coordinates from labels and attributes by dimension.
+
+    Put together of its parts: of arrays xarray would first import pint and others, and what is one already it would
+    compare and merge, which takes longer than all else in a Dataset.
+    """
+    variables, indexes = dict(data), {}
+    for dim, (given, words) in labels.items():
+        indexes[dim] = index = _of_words(dim, tuple(given)) if isinstance(given, list) else _index(dim, given)
         variables[dim] = index.create_variables()[dim]
-        variables[dim].attrs = dict(attrs)
-        indexes[dim] = index
-    return Coordinates(variables, indexes)
+        variables[dim].attrs = words
+    return Dataset._construct_direct(variables, set(labels), attrs=dict(attrs), indexes=indexes)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from flexapod import kinematics, model
 from flexapod.arrays import Array
 from flexapod.kinematics.rotations import matrix, quaternion
 from flexapod.mechanics.layout import Shapes, columns, leg_parameters
+from flexapod.results.asked import Asked
 from flexapod.results.inside import off_axis
 from flexapod.results.legs import base_points, bending_basis, lateral
 from flexapod.solve.modal.modes import RobotModes
@@ -80,8 +83,18 @@ def _form(vectors: Array, matrix: Array) -> Array:
 
 def _forms(legs: Array, matrices: Array, chosen: list[int]) -> Array:
     """Quadratic forms of each leg (m, legs) in some of its coordinates, of vectors (m, legs, n)."""
-    part = legs[..., chosen]
-    return np.einsum("mli,lij,mlj->ml", part, matrices[:, chosen][..., chosen], part, optimize=True)
+    part, between = legs[..., chosen], matrices[:, chosen][..., chosen]
+    return np.einsum(_FORM, part, between, part, optimize=_order(part.shape, between.shape))
+
+
+_FORM = "mli,lij,mlj->ml"
+
+
+@lru_cache(maxsize=64)
+def _order(part: tuple[int, ...], between: tuple[int, ...]) -> list[object]:
+    """In which order factors of such shapes are multiplied."""
+    some = np.zeros(part)
+    return np.einsum_path(_FORM, some, np.zeros(between), some, optimize=True)[0]
 
 
 def _kinds(kinetic: Array, energies: dict[str, Array], payload: Array) -> Array:
@@ -98,24 +111,27 @@ def _kinds(kinetic: Array, energies: dict[str, Array], payload: Array) -> Array:
 STATIONS = np.linspace(0.0, 1.0, 41)
 
 
-def mode_values(robot: model.Robot, found: RobotModes, path: kinematics.Poses) -> dict[str, Array]:
+def mode_values(robot: model.Robot, found: RobotModes, path: kinematics.Poses) -> Asked:
     """Variables of `flexapod.modes` at one pose, by name; ``path`` is the rigid pose."""
-    at, R, com = found.equilibrium.state.pose, matrix(found.equilibrium.state.pose[3:]), robot.com
+    at, com = found.equilibrium.state.pose, robot.com
+    R = matrix(at[3:])
     platform = np.concatenate([found.shapes[:, -6:-3], found.shapes[:, -3:] @ R.T], axis=1)
     kind, of_payload, of_legs = _named(found)
-    return {
-        "frequency": found.frequency,
-        "damping_ratio": found.damping_ratio,
-        "kind": np.array(kind),
-        "payload_share": of_payload,
-        "leg_share": of_legs,
-        "platform_shape": platform,
-        "leg_shape": _leg_shapes(robot, found),
-        "leg_stretch": _stretch(robot, found, platform),
-        "platform_position": at[:3] - R @ com,
-        "platform_quaternion": quaternion(R),
-        "com_sag": at[:3] - path.point(com)[0][0],
-    }
+    return Asked(
+        {
+            "frequency": found.frequency,
+            "damping_ratio": lambda: found.damping_ratio,
+            "kind": np.array(kind),
+            "payload_share": of_payload,
+            "leg_share": of_legs,
+            "platform_shape": platform,
+            "leg_shape": lambda: _leg_shapes(robot, found),
+            "leg_stretch": lambda: _stretch(robot, found, platform),
+            "platform_position": at[:3] - R @ com,
+            "platform_quaternion": quaternion(R),
+            "com_sag": at[:3] - path.point(com)[0][0],
+        }
+    )
 
 
 def _leg_shapes(robot: model.Robot, found: RobotModes) -> Array:

@@ -328,7 +328,7 @@ AT_A_POSE = {name: form._replace(dims=form.dims[1:]) for name, form in _PLAY.ite
 def fixed_labels(sizes: Mapping[str, int]) -> dict[str, tuple[object, str]]:
     """Labels of those of some dimensions that need no others from a study, and what they stand for; legs by number."""
     found: dict[str, tuple[object, str]] = {dim: COORDINATES[dim] for dim in COORDINATES if dim in sizes}
-    return {"leg": (np.arange(1, sizes["leg"] + 1), "leg"), **found} if "leg" in sizes else found
+    return {"leg": (list(range(1, sizes["leg"] + 1)), "leg"), **found} if "leg" in sizes else found
 
 
 def dataset(
@@ -342,7 +342,8 @@ def dataset(
     Parameters
     ----------
     values : mapping
-        Arrays by name; of `Asked` what nobody has asked for yet is made when it is read.
+        Arrays by name; of `Asked` what nobody has asked for yet is made when it is read; its sizes are then those of
+        ``coords`` and of the arrays before it.
     coords : mapping, optional
         Labels of `time`, `mode`, `station` where these dimensions occur.
     attrs : mapping, optional
@@ -351,26 +352,24 @@ def dataset(
         Entries that replace those of `VARIABLES`.
     """
     loaded("xarray")
-    import xarray as xr
+    from flexapod.results.labelled import awaited, labelled, variable
 
-    from flexapod.results.labelled import awaited, coordinates, variable
-
-    table = {**VARIABLES, **(forms or {})}
+    forms = forms or {}
     known = {dim: len(given) for dim, (given, _) in COORDINATES.items()} | {"pair": 2}
     known |= {dim: np.size(given) for dim, given in (coords or {}).items()}
     data, sizes = {}, {}
     for name in values:
-        dims, units, long_name = table[name]
+        dims, units, long_name = forms[name] if name in forms else VARIABLES[name]
         described = {"units": units, "long_name": long_name}
         if isinstance(values, Asked) and values.there(name) is None:
-            own = {dim: known[dim] for dim in dims}
+            own = {dim: (known | sizes)[dim] for dim in dims}
             data[name] = awaited(values, name, own, int if name in _WHOLE else float, described)
         else:
             data[name] = variable(dims, values[name], described)
         sizes |= data[name].sizes
     labels = {dim: (given, {"long_name": words}) for dim, (given, words) in fixed_labels(sizes).items()}
-    labels |= {dim: (given, _COORDINATE_ATTRS.get(dim, {})) for dim, given in (coords or {}).items()}
-    return xr.Dataset(data, coords=coordinates(labels), attrs=dict(attrs or {}))
+    labels |= {dim: (given, dict(_COORDINATE_ATTRS.get(dim, {}))) for dim, given in (coords or {}).items()}
+    return labelled(data, labels, attrs or {})
 
 
 _COORDINATE_ATTRS = {

@@ -54,5 +54,5 @@ def by_name(rows: Array, layout: tuple[tuple[str, int], ...]) -> SimpleNamespace
     found, start = {}, 0
     for name, size in layout:
         part = rows[..., start : start + size]
-        found[name], start = part[..., 0] if size == 1 else np.moveaxis(part, -1, 0), start + size
+        found[name], start = part[..., 0] if size == 1 else part.transpose(-1, *range(part.ndim - 1)), start + size
     return SimpleNamespace(**found)

@@ -168,6 +168,8 @@ def _refuse_off_the_screw(robot: Robot, t: Array, length: Array) -> None:
             _refuse_out_of_oil(i, leg.cylinder_of_oil, t, along)
         if leg.screw is None:
             continue
+        if along.min() >= 0 and along.max() <= leg.screw.length:
+            continue
         low, high = first_least(along), first_largest(along)
         k = low if -along[low] > along[high] - leg.screw.length else high
         if 0 <= along[k] <= leg.screw.length:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from functools import lru_cache
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +19,7 @@ from flexapod.results.legs import base_motion, of_drives
 from flexapod.results.path import RigidPath
 from flexapod.review.columns import stepped_buckling
 from flexapod.solve.modal.modes import RobotModes
-from flexapod.solve.rigid_motion import rigid_motion
+from flexapod.solve.rigid_motion import rigid_rates
 from flexapod.solve.statics.buckling import leg_loads
 from flexapod.solve.statics.drive_forces import feed_forward
 from flexapod.solve.system import System
@@ -35,8 +37,15 @@ class BendingSection:
 
 def piston_section(piston: Piston) -> BendingSection:
     """Section of a piston: a tube where its bore is known, else the full round bar with its EI and EA."""
+    return _section_of(piston)
+
+
+def _section(piston: Piston) -> BendingSection:
     tube = Tube(diameter=piston.diameter or 1.0, inner_diameter=piston.inner_diameter)
     return BendingSection(gyration=math.sqrt(piston.EI / piston.EA), kappa=tube.cowper(POISSON))
+
+
+_section_of = cast("Callable[[Piston], BendingSection]", lru_cache(maxsize=64)(_section))
 
 
 def beam_section(actuator: Actuator) -> BendingSection | None:
@@ -250,7 +259,7 @@ def residual_vibration(
     shapes, omega = modes.shapes[keep], 2 * np.pi * frequency
     damped = omega * np.sqrt(1 - ratio**2)
     mass = modes.system.matrices(modes.equilibrium.state, np.zeros(6)).M
-    rates = _rigid_rates(robot, modes, path)
+    rates = rigid_rates(modes.system, robot, path)
     before = np.zeros(rates.shape[1]) if from_rest else rates[0]
     steps = np.diff(rates, axis=0, prepend=before[None], append=np.zeros((1, rates.shape[1])))
     impulse = (
@@ -280,12 +289,6 @@ def _rung_on(impulse: Array, rate: NDArray[Any], t: Array) -> NDArray[Any]:
     of_rows = rows.reshape(modes, row, row) @ np.ascontiguousarray(late.T)[..., None].view(float)
     inside = (early.T * of_rows.view(complex)[..., 0]).sum(axis=1)
     return impulse[0] * np.exp(rate * (t[-1] - t[0])) + inside + impulse[-1]
-
-
-def _rigid_rates(robot: Robot, modes: RobotModes, path: kinematics.Poses) -> Array:
-    """Rates of the rigid path in the flat coordinates of the modes, (T, N)."""
-    rates = rigid_motion(modes.system, robot, path)[1]
-    return np.concatenate([rates.v.reshape(len(path), -1), rates.u], axis=1)
 
 
 def _fed_forward(robot: Robot, t: Array, path: kinematics.Poses) -> Array:

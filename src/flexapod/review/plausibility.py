@@ -36,6 +36,7 @@ SLENDERNESS = 10.0  # free length over width below which shear is no longer smal
 STROKE_ROUNDING = 1e-9  # excess over a stroke that is rounding or solver residual [m]
 NEAR_BUCKLING = 0.5  # share of the Euler load from which stiffness has changed by half
 STATIONS = np.linspace(0.0, 1.0, 21)
+KINDS = {"slope", "stroke", "buckling", "nut", "slenderness", "yield"}  # of remarks on a leg
 
 
 @dataclass(frozen=True)
@@ -66,44 +67,52 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
     own = system if shapes.beam.a.count or shapes.beam.b.count else None
     loads = buckling_loads(robot, record.q[..., shapes.l_index], own) if inside.any() else None
     low, high, most_thrust = record.q.min(axis=0), record.q.max(axis=0), np.abs(compression).max(axis=0)
+    amplitude = np.sqrt(2) * lateral(shapes, np.maximum(high, -low)).max(axis=1)  # of both directions together
+    slope, curved = amplitude @ np.abs(basis.tip_slope), amplitude @ np.abs(_curvatures(basis)).max(axis=1, initial=0.0)
     for i, leg in enumerate(robot.legs):
-        if not inside.any() and _within(leg, shapes, low[i], high[i], most_thrust[i]):
+        load = None if loads is None else loads[:, i]
+        lengths = (low[i, shapes.l_index], high[i, shapes.l_index])
+        closer = leg.piston.sections or shapes.beam.shear
+        doubt = KINDS if closer else _in_doubt(leg, lengths, (slope[i], curved[i]), most_thrust[i], load)
+        if not doubt:
             continue
-        length = record.q[:, i, shapes.l_index]
+        length, push = record.q[:, i, shapes.l_index], compression[:, i]
         free, bent = length - leg.cylinder.mouth, bending(leg, shapes, record.q[:, i])
-        found += [
-            (i, *remark)
-            for remark in (
-                *_slope(leg_values(leg, basis, free, np.ones(1), 1)[:, :, 0] / free, bent, when),
-                *_stroke(leg, length, when),
-                *_axial(leg, free, compression[:, i], when, None if loads is None else loads[:, i]),
-                *_nut(leg, compression[:, i], when),
-                *_slender(leg, basis, free, when),
-                *_stress(leg, basis, bent, free, compression[:, i], when),
-            )
-        ]
+        remarks: list[_Remark] = []
+        if "slope" in doubt:
+            remarks += _slope(leg_values(leg, basis, free, np.ones(1), 1)[:, :, 0] / free, bent, when)
+        remarks += _stroke(leg, length, when) if "stroke" in doubt else []
+        remarks += _axial(leg, free, push, when, load) if "buckling" in doubt else []
+        remarks += _nut(leg, push, when) if "nut" in doubt else []
+        remarks += _slender(leg, basis, free, when) if "slenderness" in doubt else []
+        remarks += _stress(leg, basis, bent, free, push, when) if "yield" in doubt else []
+        found += [(i, *remark) for remark in remarks]
     return worst_of_each(found)
 
 
-def _within(leg: Leg, shapes: Shapes, low: Array, high: Array, thrust: float) -> bool:
-    """Whether extremes of a leg's coordinates (n,) and its largest thrust [N] alone tell that there are no remarks."""
-    piston, basis, limit = leg.piston, bending_basis(shapes), leg.stroke
-    if piston.sections or shapes.beam.shear:
-        return False
-    shortest, longest = low[shapes.l_index] - leg.cylinder.mouth, high[shapes.l_index] - leg.cylinder.mouth
-    amplitude = np.sqrt(2) * lateral(shapes, np.maximum(high, -low)).max(axis=0)  # of both directions together
+def _in_doubt(
+    leg: Leg, lengths: tuple[float, float], bent: tuple[float, float], thrust: float, load: Array | None
+) -> set[str]:
+    """Kinds of remarks that extremes of a leg alone do not exclude.
+
+    `lengths`: least and largest [m]; `bent`: bounds of slope and curvature of a free length of one [m]; `thrust`: the
+    largest [N]; `load`: Euler loads (T,) [N], where more than its piston gives way.
+    """
+    piston, limit, (low, high) = leg.piston, leg.stroke, lengths
+    shortest, longest = low - leg.cylinder.mouth, high - leg.cylinder.mouth
     stress = 0.0
     if piston.E is not None and piston.depth is not None:
-        curvature = (np.abs(_curvatures(basis)).max(axis=1, initial=0.0) @ amplitude) / shortest**2
-        stress = piston.E * (thrust / piston.EA + curvature * piston.depth / 2)
-    return bool(
-        np.abs(basis.tip_slope) @ amplitude <= SLOPE * shortest
-        and (limit is None or (low[shapes.l_index] >= limit.min and high[shapes.l_index] <= limit.max))
-        and thrust * longest**2 <= NEAR_BUCKLING * piston.least_EI * (np.pi / 2) ** 2
-        and (leg.screw is None or thrust <= leg.screw.nut.linear_to)
-        and (piston.shear or shortest >= SLENDERNESS * piston.width)
-        and (piston.yield_stress is None or stress <= piston.yield_stress)
-    )
+        stress = piston.E * (thrust / piston.EA + bent[1] / shortest**2 * piston.depth / 2)
+    push, most = (thrust * longest**2, piston.least_EI * (np.pi / 2) ** 2) if load is None else (thrust, load.min())
+    excluded = {
+        "slope": bent[0] <= SLOPE * shortest,
+        "stroke": limit is None or (low >= limit.min and high <= limit.max),
+        "buckling": push <= NEAR_BUCKLING * most,
+        "nut": leg.screw is None or thrust <= leg.screw.nut.linear_to,
+        "slenderness": piston.shear or shortest >= SLENDERNESS * piston.width,
+        "yield": piston.yield_stress is None or stress <= piston.yield_stress,
+    }
+    return {kind for kind in KINDS if not excluded[kind]}
 
 
 def actuator_warnings(actuator: Actuator, shapes: Shapes, record: Record) -> list[str]:

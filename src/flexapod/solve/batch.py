@@ -100,7 +100,7 @@ def residual_at_rest(
     ``command``, ``force`` (P, legs, ports): what springs of the drives are to reach, and feed-forward forces;
     ``wrench`` (6,) at the tool.
     """
-    r, payload, g = residual(system, x, command, np.zeros_like(command), wrench)
+    r, payload, g = residual(system, x, command, np.zeros(command.shape), wrench)
     r[..., system.ports] -= force + x.drive
     return r, payload, g
 
@@ -127,11 +127,13 @@ def residual(
     ``command``, ``rate`` (P, legs, ports): what springs of the drives follow; ``wrench`` (6,) or (P, 6).
     """
     P, legs, shapes = len(x), system.legs, system.kernel.shapes
-    pose = np.repeat(x.pose, system.legs, axis=0)
+    pose = x.pose.repeat(legs, axis=0)
     at = rates or Rates(v=np.zeros(system.n), v_dot=np.zeros(system.n), u=np.zeros(6), u_dot=np.zeros(6))
-    springs = system.spring_commands(np.stack([command, rate], axis=-1))
+    count = shapes.commands
+    springs = np.empty((*command.shape[:-1], count))
+    springs[..., ::2], springs[..., 1::2] = command[..., : count // 2], rate[..., : count // 2]
     around = _around(system, pose, wrench)
-    arguments, drive = [x.q, at.v, at.v_dot, x.lam, springs, system.leg_p, *around], (springs.shape[-1] // 2,)
+    arguments, drive = [x.q, at.v, at.v_dot, x.lam, springs, system.leg_p, *around], (count // 2,)
     net = np.zeros((legs * P, 6))
     if shapes.posed:
         outputs = [(system.n,), (system.rows,), (6,), (2,), drive]
@@ -185,7 +187,7 @@ def port_forces(system: System, x: RestStates, command: Array, force: Array) -> 
 def matrices_at_rest(system: System, x: RestStates, wrench: Array) -> RestMatrices:
     """Matrices with geometric stiffness; see `System.matrices`."""
     P, legs, n, rows = len(x), system.legs, system.n, system.rows
-    pose = np.repeat(x.pose, legs, axis=0)
+    pose = x.pose.repeat(legs, axis=0)
     arguments, outputs = [x.q, x.lam, system.leg_p, *_around(system, pose, wrench)], [(n, n)] * 3 + [(rows, n)]
     moving, H, X = np.zeros((legs * P, rows, 0)), np.zeros((legs * P, 0, 0)), None
     if system.kernel.shapes.posed:

@@ -12,12 +12,13 @@ from flexapod.kinematics.limbs import COORDINATES, HELD, Limbs
 from flexapod.kinematics.mechanism import leg_state
 from flexapod.kinematics.rotations import quaternion
 from flexapod.kinematics.screws import screws
+from flexapod.kinematics.vectors import cross
 from flexapod.mechanics.layout import Shapes
 from flexapod.model import Robot
 from flexapod.solve.batch import Rates, RestStates
 from flexapod.solve.system import Index, State, System
 
-__all__ = ["built_state", "leg_coordinates", "rigid_motion", "rigid_rest", "rigid_state"]
+__all__ = ["built_state", "leg_coordinates", "rigid_motion", "rigid_rates", "rigid_rest", "rigid_state"]
 
 GAMMA = slice(COORDINATES.index("gamma1"), None)
 
@@ -36,27 +37,45 @@ def rigid_motion(
     `legs`: at these poses, of a robot that is not as drawn.
     """
     legs = kinematics.inverse_kinematics(robot, path) if legs is None else legs
-    T, (q, v, v_dot) = len(path), _undeformed(system, robot, path, legs)
+    q, v, v_dot = _undeformed(system, robot, path, legs, 3)
     R, w, w_dot = path.rotation, path.omega, path.alpha
     arm, inverse = R @ robot.com, R.swapaxes(1, 2)
-    turning = np.cross(w, arm)
-    velocity, acceleration = path.velocity + turning, path.acceleration + np.cross(w_dot, arm) + np.cross(w, turning)
-    states = RestStates(
-        q=q,
-        pose=np.concatenate([path.position + arm, quaternion(R)], axis=1),
-        lam=np.zeros((T, system.legs, system.rows)),
-        drive=np.zeros((T, system.legs, system.ports.size)),
-    )
+    turning = _cross(w, arm)
+    velocity, acceleration = path.velocity + turning, path.acceleration + _cross(w_dot, arm) + _cross(w, turning)
     u, u_dot = (
         np.concatenate([linear, (inverse @ angular[..., None])[..., 0]], axis=1)
         for linear, angular in ((velocity, w), (acceleration, w_dot))
     )
-    return states, Rates(v=v, v_dot=v_dot, u=u, u_dot=u_dot)
+    return _without_forces(system, robot, path, q), Rates(v=v, v_dot=v_dot, u=u, u_dot=u_dot)
 
 
 def rigid_rest(system: System, robot: Robot, path: kinematics.Poses) -> RestStates:
     """States of the undeformed robot at the poses of a path, without forces."""
-    return rigid_motion(system, robot, path)[0]
+    q = _undeformed(system, robot, path, kinematics.inverse_kinematics(robot, path), 1)[0]
+    return _without_forces(system, robot, path, q)
+
+
+def rigid_rates(system: System, robot: Robot, path: kinematics.Poses) -> Array:
+    """Rates of the undeformed robot in its flat coordinates at the instants of a path, (T, size)."""
+    v = _undeformed(system, robot, path, kinematics.inverse_kinematics(robot, path), 2)[1]
+    velocity = path.velocity + _cross(path.omega, path.rotation @ robot.com)
+    turn = (path.rotation.swapaxes(1, 2) @ path.omega[..., None])[..., 0]
+    return np.concatenate([v.reshape(len(path), -1), velocity, turn], axis=1)
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """Cross products of rows (T, 3)."""
+    return np.stack(cross(a.T, b.T), axis=-1)
+
+
+def _without_forces(system: System, robot: Robot, path: kinematics.Poses, q: Array) -> RestStates:
+    T, R = len(path), path.rotation
+    return RestStates(
+        q=q,
+        pose=np.concatenate([path.position + R @ robot.com, quaternion(R)], axis=1),
+        lam=np.zeros((T, system.legs, system.rows)),
+        drive=np.zeros((T, system.legs, system.ports.size)),
+    )
 
 
 def rigid_state(system: System, robot: Robot, path: kinematics.Poses) -> State:
@@ -81,12 +100,13 @@ def _with_rates(motion: tuple[RestStates, Rates]) -> State:
     return replace(states.state(0), v=v, v_dot=v_dot)
 
 
-def _undeformed(system: System, robot: Robot, path: kinematics.Poses, found: kinematics.LegState) -> Array:
-    """Coordinates of the undeformed legs on a path of T poses, rates and accelerations, (3, T, legs, n)."""
+def _undeformed(system: System, robot: Robot, path: kinematics.Poses, found: kinematics.LegState, orders: int) -> Array:
+    """Coordinates of the undeformed legs on a path of T poses, rates and accelerations, (orders, T, legs, n)."""
     legs, shapes = kinematics.built_limbs(robot, kinematics.robot_limbs(robot)), system.kernel.shapes
-    x = np.empty((3, *found.length.shape, len(COORDINATES)))
-    for k, name in enumerate(COORDINATES):
-        for order, values in enumerate(found.coordinate(name)):
+    x = np.zeros((orders, *found.length.shape, len(COORDINATES)))
+    there, at = leg_coordinates(shapes)
+    for k in range(len(COORDINATES)) if shapes.has("gamma1") else there:
+        for order, values in zip(range(orders), found.coordinate(COORDINATES[k]), strict=False):
             x[order, ..., k] = values
     held = legs.state == HELD  # welds, which the rigid path releases, too
     x[:, :, held] = 0.0
@@ -94,7 +114,6 @@ def _undeformed(system: System, robot: Robot, path: kinematics.Poses, found: kin
     if shapes.has("gamma1"):
         _turn_balls(legs, x, path)
     q = np.zeros((*x.shape[:3], system.n))
-    there, at = leg_coordinates(shapes)
     q[..., at] = x[..., there]
     for element in shapes.elements:
         has = [element.of(leg) is not None for leg in robot.legs]
@@ -118,7 +137,7 @@ def _turn_balls(legs: Limbs, x: Array, path: kinematics.Poses) -> None:
     x[0][:, balls, GAMMA] = angles[:, balls]
     chain = screws(legs, x[0])
     turns = chain.columns[:, :, 3:]
-    for order, whole in ((1, path.omega), (2, path.alpha)):
+    for order, whole in ((1, path.omega), (2, path.alpha))[: len(x) - 1]:
         rest = whole[:, None, :, None] - turns @ x[order][..., None]
         if order == 2:
             rest = rest - chain.bias(x[1])[..., 3:, None]

@@ -6,7 +6,7 @@ from flexapod.arrays import Array, Mask
 from flexapod.bases.eigen import finite
 from flexapod.errors import ComputationError
 
-__all__ = ["cholesky_each", "saddle_solve", "solve_each"]
+__all__ = ["cholesky_each", "inverse_each", "saddle_solve", "solve_each"]
 
 
 def saddle_solve(A: Array, G: Array, r: Array, g: Array) -> tuple[Array, Array]:
@@ -44,6 +44,14 @@ def solve_each(A: Array, b: Array) -> Array:
             return np.full(b.shape, np.nan)
         half = len(A) // 2
         return np.concatenate([solve_each(A[:half], b[:half]), solve_each(A[half:], b[half:])])
+
+
+def inverse_each(A: Array) -> Array:
+    """Inverses of stacked matrices; NaN where one is singular."""
+    try:
+        return np.asarray(np.linalg.inv(A), dtype=np.float64)
+    except np.linalg.LinAlgError:
+        return solve_each(A, np.broadcast_to(np.eye(A.shape[-1]), A.shape))
 
 
 def cholesky_each(A: Array) -> tuple[Array, Mask]:

@@ -130,7 +130,7 @@ def _shape_rows(
     """Everything, pose by pose."""
     found = []
     for k in np.flatnonzero(kept).tolist():
-        found.append(mode_values(robot, modes.one(locked, k), poses_of(path, locked.at[k : k + 1])))
+        found.append(dict(mode_values(robot, modes.one(locked, k), poses_of(path, locked.at[k : k + 1]))))
     if not found:
         return _no_rows(modes.frequency.shape[1], len(robot.legs))
     return {name: np.stack([values[name] for values in found]) for name in found[0]}

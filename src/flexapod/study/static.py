@@ -92,7 +92,7 @@ def modes(
     study, path = _problem(robot, pose, load, settings)
     found = robot_modes(study.robot, study.simulation, path, study.load)
     values = mode_values(study.robot, found, path)
-    coords = {"mode": np.arange(1, len(values["frequency"]) + 1), "station": STATIONS}
+    coords = {"mode": list(range(1, len(values["frequency"]) + 1)), "station": STATIONS}
     state, loops = found.equilibrium.state, unstable_words(found.growth)
     return dataset(values, coords, _attributes(study, path, found.system, state, loops), ONE_POSE_FORMS)
 

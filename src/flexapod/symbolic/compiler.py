@@ -87,6 +87,14 @@ def _say_passed_over(chosen: str, found: str) -> None:
     _log.warning("CC = %s is passed over: there is no such program. Used instead: %s", chosen, found or "none")
 
 
+def address(array: Array) -> int:
+    """Where an array begins; by its buffer, which takes a tenth of the time of `ndarray.ctypes`, where that can be."""
+    return ctypes.addressof(_BUFFER.from_buffer(array.data)) if array.flags.carray else array.ctypes.data
+
+
+_BUFFER = ctypes.c_char * 0
+
+
 class CompiledFunction:
     """One generated C function called on arrays."""
 
@@ -101,7 +109,7 @@ class CompiledFunction:
         if [a.size for a in inputs] != self._sizes:
             raise ValueError(f"expected input sizes {self._sizes}, got {[a.size for a in inputs]}")
         outputs = [np.zeros(shape, order="F") for shape in self._shapes]
-        pointers = [(ctypes.c_void_p * max(len(x), 1))(*[a.ctypes.data for a in x]) for x in (inputs, outputs)]
+        pointers = [(ctypes.c_void_p * max(len(x), 1))(*map(address, x)) for x in (inputs, outputs)]
         rows = (ctypes.c_long * len(inputs))(*[1] * len(inputs))
         self._function(ctypes.c_long(1), pointers[0], rows, pointers[1])
         return tuple(y[:, 0] if y.shape[1] == 1 else y for y in outputs)
@@ -127,7 +135,7 @@ class CompiledFunction:
         if given != known:
             raise ValueError(f"expected sizes of inputs and outputs {known}, got {given}")
         out = [np.zeros((count, *shape[::-1])) for shape in shapes]
-        pointers = [(ctypes.c_void_p * max(len(x), 1))(*[a.ctypes.data for a in x]) for x in (rows, out)]
+        pointers = [(ctypes.c_void_p * max(len(x), 1))(*map(address, x)) for x in (rows, out)]
         self._function(ctypes.c_long(count), pointers[0], (ctypes.c_long * len(rows))(*map(len, rows)), pointers[1])
         return out
 

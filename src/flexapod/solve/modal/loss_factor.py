@@ -52,7 +52,7 @@ def loss_frequency(robot: Robot, simulation: Simulation) -> float:
     if not (lossy or any(joints) or any(guides) or any(mounts)):
         return 0.0
     # rigid legs have springs, too, and are locked by prescribed strokes
-    sliding = simulation.replace(friction="sliding")
+    sliding = simulation if simulation.friction == "sliding" else simulation.replace(friction="sliding")
     return _first(robot, sliding.replace(fidelity="lumped") if simulation.fidelity == "rigid" else sliding)
 
 

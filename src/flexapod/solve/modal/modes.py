@@ -1,6 +1,8 @@
 """Undamped and damped modes of the locked robot about its static equilibrium, Eqs. (T7.2)-(T7.5), (T7.16)-(T7.17)."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -22,44 +24,54 @@ from flexapod.solve.system import System
 class RobotModes:
     """Modes about an equilibrium, ascending.
 
-    ``frequency`` (m,) [Hz] undamped; ``damping_ratio`` (m,) of the damped modes; ``shapes`` (m, N), mass-normalised, in
-    the flat coordinates of `system.System` (legs, then CoM in the world frame and rotation in platform axes); ``m``:
-    matrices at the equilibrium, of one pose; ``growth``: rate at which the fastest of them grows, if any does [1/s].
+    ``frequency`` (m,) [Hz] undamped; ``shapes`` (m, N), mass-normalised, in the flat coordinates of `system.System`
+    (legs, then CoM in the world frame and rotation in platform axes); ``m``: matrices at the equilibrium, of one pose;
+    ``ratio``: finds their damping ratios; ``growth``: rate at which the fastest of them grows, if any does [1/s].
     """
 
     frequency: Array
-    damping_ratio: Array
     shapes: Array
     equilibrium: Equilibrium
     system: System
     m: RestMatrices
+    ratio: Callable[[], Array]
     growth: float = 0.0
+
+    @cached_property
+    def damping_ratio(self) -> Array:
+        """Of the damped modes, (m,); an eigenproblem of twice as many, solved when it is asked for."""
+        return self.ratio()
 
 
 @dataclass(frozen=True, kw_only=True)
 class ManyModes:
     """Modes about the equilibria found in `LockedPoses`, p of them, ascending; NaN where masses are not `positive`.
 
-    ``frequency`` (p, m) [Hz], NaN last for what has no mass; ``positive`` (p,); ``damping_ratio`` (p, m) and ``shapes``
-    (p, m, N) as in `RobotModes`, empty unless asked for; ``growth`` (p,): rate at which the fastest of them grows
-    [1/s], None of robots without loops that can.
+    ``frequency`` (p, m) [Hz], NaN last for what has no mass; ``positive`` (p,); ``shapes`` (p, m, N) as in
+    `RobotModes`, empty unless asked for; ``ratio``: finds damping ratios (m,) of the k-th, NaN without shapes;
+    ``growth`` (p,): rate at which the fastest of them grows [1/s], None of robots without loops that can.
     """
 
     frequency: Array
     positive: Mask
-    damping_ratio: Array
     shapes: Array
+    ratio: Callable[[int], Array]
     growth: Array | None = None
+
+    @cached_property
+    def damping_ratio(self) -> Array:
+        """Of the damped modes, (p, m)."""
+        return np.array([self.ratio(k) for k in range(len(self.frequency))]).reshape(self.frequency.shape)
 
     def one(self, locked: LockedPoses, k: int, count: int | None = None) -> RobotModes:
         """The first modes, all if no ``count`` is given, at the k-th equilibrium; ``self`` with shapes."""
         return RobotModes(
             frequency=self.frequency[k, :count],
-            damping_ratio=self.damping_ratio[k, :count],
             shapes=self.shapes[k, :count],
             equilibrium=locked.equilibria.one(int(locked.at[k])),
             system=locked.system,
             m=locked.equilibria.m[np.array([k])],
+            ratio=lambda: self.ratio(k)[:count],
             growth=0.0 if self.growth is None else float(self.growth[k]),
         )
 
@@ -131,16 +143,17 @@ def modes_of(locked: LockedPoses, *, shapes: bool = False, loops: bool = True) -
     omega, flat = found.omega, found.flat
     frequency = np.where(np.isfinite(omega), omega / (2 * np.pi), np.nan)
     if not shapes:
-        nothing = np.zeros((0, omega.shape[1]))
-        return ManyModes(frequency=frequency, positive=found.positive, damping_ratio=nothing, shapes=nothing)
+        nothing, unknown = np.zeros((0, omega.shape[1])), np.full(omega.shape[1], np.nan)
+        return ManyModes(frequency=frequency, positive=found.positive, shapes=nothing, ratio=lambda _: unknown)
     damping = modal_damping(locked, flat)
-    ratio = [w if np.isnan(w).any() else damping_ratios(w, d) for w, d in zip(omega, damping, strict=True)]
-    return ManyModes(
-        frequency=frequency,
-        positive=found.positive,
-        damping_ratio=np.where(np.isfinite(frequency), np.array(ratio).reshape(omega.shape), np.nan),
-        shapes=(flat * (2 * np.pi * frequency)[:, None]).swapaxes(1, 2),
-    )
+    finite(damping[found.positive])
+
+    def ratio(k: int) -> Array:
+        found = omega[k] if np.isnan(omega[k]).any() else damping_ratios(omega[k], damping[k])
+        return np.where(np.isfinite(frequency[k]), found, np.nan)
+
+    shapes_of_mass = (flat * (2 * np.pi * frequency)[:, None]).swapaxes(1, 2)
+    return ManyModes(frequency=frequency, positive=found.positive, shapes=shapes_of_mass, ratio=ratio)
 
 
 def _looping(locked: LockedPoses) -> ManyModes:
@@ -162,7 +175,8 @@ def _looping(locked: LockedPoses) -> ManyModes:
         z = (z * np.exp(-0.5j * np.angle((slow**2).sum(axis=0)))).real
         mass = np.sqrt(((z / found.omega[k][:, None]) ** 2).sum(axis=0))
         flat[k, :n] = (found.flat[k] @ (z / mass)).T
-    return ManyModes(frequency=frequency, positive=found.positive, damping_ratio=ratio, shapes=flat, growth=rates)
+    ratios = ratio.__getitem__
+    return ManyModes(frequency=frequency, positive=found.positive, shapes=flat, ratio=ratios, growth=rates)
 
 
 def loops_of(locked: LockedPoses) -> list[ModalLoops]:

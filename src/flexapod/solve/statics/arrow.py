@@ -9,8 +9,8 @@ import numpy as np
 from flexapod.arrays import Array
 from flexapod.solve.batch import RestMatrices
 from flexapod.solve.saddle import solve_each
-from flexapod.solve.statics.elimination import LegBases, leg_bases
-from flexapod.solve.statics.reduction import of_border, reduced
+from flexapod.solve.statics.elimination import LegBases, leg_bases, of_border
+from flexapod.solve.statics.reduction import reduced
 from flexapod.solve.system import System
 
 __all__ = ["ArrowStep", "arrow_solve"]
@@ -66,17 +66,19 @@ def arrow_solve(system: System, m: RestMatrices, r: Array, r_payload: Array, g: 
     bases = leg_bases(system, m)
     A = reduced(system, bases, m)
     groups = [_eliminated(system, b, A.B[k], A.C[k], m, r, g, gap) for k, b in enumerate(bases)]
-    r_border = np.concatenate([r_payload, np.zeros((len(r), system.shared.size))], axis=1)[:, system.border]
+    r_border = of_border(system, r_payload)
     y, forces = _border(groups, A.S, r_border, gap, open_forces=system.open)
-    dq, dlam, balance, dy = np.zeros_like(r), np.zeros_like(g), r.copy(), np.zeros((len(r), m.P.shape[-1]))
+    dq, dlam, balance, dy = np.zeros(r.shape), np.zeros(g.shape), np.zeros(r.shape), np.zeros((len(r), m.P.shape[-1]))
     dy[:, system.hub_free] = y[:, : system.hub_free.size]
     for group, f in zip(groups, forces, strict=True):
         b = group.bases
         z = group.free - group.by_payload @ y[:, None, :, None] + group.by_force @ f[..., None]
-        dq[:, b.legs] = group.given + (b.N @ z + b.Y @ y[:, None, :, None])[..., 0]
-        turning = 0.0 if m.X is None else (m.X[:, b.legs] @ dy[:, None, :, None])[..., 0]
-        balance[:, b.legs] += (m.K[:, b.legs] @ dq[:, b.legs, :, None])[..., 0] + turning
-        left = balance[:, b.legs]
+        moved = group.given + (b.N @ z + b.Y @ y[:, None, :, None])[..., 0]
+        push = (m.K[:, b.legs] @ moved[..., None])[..., 0]
+        if m.X is not None:
+            push += (m.X[:, b.legs] @ dy[:, None, :, None])[..., 0]
+        dq[:, b.legs], left = moved, r[:, b.legs] + push
+        balance[:, b.legs] = left
         left[..., b.border] -= f
         dlam[:, b.legs] = -(b.inverse.swapaxes(-1, -2) @ left[..., b.pivot, None])[..., 0]
     force = balance + (m.J.swapaxes(-1, -2) @ dlam[..., None])[..., 0]  # (T6.9)  of what is held
@@ -127,7 +129,7 @@ def _border(
         if not h:
             continue
         D, Y = b.N[..., b.border, :], b.Y[..., b.border, :]
-        full[:, :f, rows] = np.moveaxis(group.E @ group.by_force - Y.swapaxes(-1, -2), 2, 1)
+        full[:, :f, rows] = (group.E @ group.by_force - Y.swapaxes(-1, -2)).swapaxes(1, 2)
         full[:, rows, :f] = Y - D @ group.by_payload
         full[:, rows[:, :, None], rows[:, None, :]] = D @ group.by_force
         side[:, rows] = -gap[:, b.legs][..., b.border] - group.given[..., b.border] - (D @ group.free)[..., 0]

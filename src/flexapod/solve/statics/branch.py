@@ -8,7 +8,6 @@ from flexapod import kinematics
 from flexapod.arrays import Array, Mask
 from flexapod.errors import ComputationError
 from flexapod.kinematics.closures import turned_over
-from flexapod.kinematics.limbs import DRIVEN, HELD
 from flexapod.kinematics.rotations import matrix
 from flexapod.kinematics.screws import screws
 from flexapod.model import Robot
@@ -35,7 +34,7 @@ def fallen(system: System, robot: Robot, start: RestStates, states: RestStates) 
         return np.zeros(0, dtype=bool)
     if kinematics.rigid_limbs(robot).plain and system.legs == system.hub_free.size == 6:
         both = platform_poses(robot, np.concatenate([start.pose, states.pose]))
-        before, after = np.split(kinematics.singularity(robot, both).determinant, 2)
+        before, after = np.split(kinematics.determinants(robot, both), 2)
     else:
         before, after = (_determinant(system, robot, x) for x in (start, states))
     return (np.sign(before) != np.sign(after)) | flipped(system, robot, states.q, states.pose).any(axis=1)
@@ -56,7 +55,7 @@ def _determinant(system: System, robot: Robot, x: RestStates) -> Array:
     """Of the rates of what the rigid robot holds by steps of the payload, (P,); 1 where it is held in excess."""
     there, at = leg_coordinates(system.kernel.shapes)
     holds = np.zeros_like(system.held)
-    holds[:, at] = np.isin(kinematics.rigid_limbs(robot).state[:, there], (HELD, DRIVEN))
+    holds[:, at] = kinematics.rigid_limbs(robot).given[:, there]
     rows = []
     for b in leg_bases(system, matrices_at_rest(system, x, np.zeros(6))):
         for i, leg in enumerate(b.legs):

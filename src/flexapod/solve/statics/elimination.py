@@ -13,10 +13,10 @@ import numpy as np
 
 from flexapod.arrays import Array, Mask
 from flexapod.solve.batch import RestMatrices
-from flexapod.solve.saddle import solve_each
+from flexapod.solve.saddle import inverse_each, solve_each
 from flexapod.solve.system import Index, System
 
-__all__ = ["LegBases", "closed", "leg_bases"]
+__all__ = ["LegBases", "closed", "leg_bases", "of_border"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,17 +50,24 @@ def leg_bases(system: System, m: RestMatrices) -> list[LegBases]:
 
 
 def _bases(system: System, m: RestMatrices, legs: Index, held: Mask, rest: Index) -> LegBases:
-    pivot, n = np.array(system.kernel.shapes.pivots, dtype=np.intp), system.n
-    J = m.J[:, legs]
-    P = np.concatenate([m.P[:, legs][..., system.hub_free], -J[..., system.shared]], axis=-1)
-    inverse = solve_each(J[..., pivot], np.broadcast_to(np.eye(pivot.size), (*J.shape[:2], pivot.size, pivot.size)))
+    pivot, n, shared = np.array(system.kernel.shapes.pivots, dtype=np.intp), system.n, system.shared
+    J, P = m.J[:, legs], of_border(system, m.P[:, legs])
+    P[..., system.hub_free.size :] = -J[..., shared]
+    inverse = inverse_each(J[..., pivot])
     N, Y = np.zeros((*J.shape[:2], n, rest.size)), np.zeros((*J.shape[:2], n, P.shape[-1]))
     N[..., pivot, :] = -inverse @ J[..., rest]
     N[..., rest, np.arange(rest.size)] = 1.0
     Y[..., pivot, :] = inverse @ P
-    Y[..., system.shared, P.shape[-1] - system.shared.size + np.arange(system.shared.size)] = 1.0
-    each, border, most = np.tile(rest, (legs.size, 1)), pivot[held[pivot]], np.zeros(len(J))
+    Y[..., shared, P.shape[-1] - shared.size + np.arange(shared.size)] = 1.0
+    each, border, most = rest[None].repeat(legs.size, axis=0), pivot[held[pivot]], np.zeros(len(J))
     return LegBases(legs=legs, pivot=pivot, rest=each, border=border, inverse=inverse, N=N, Y=Y, most=most)
+
+
+def of_border(system: System, x: Array) -> Array:
+    """Columns (..., 6) by the payload's steps as columns by the border's coordinates, (..., f)."""
+    found, free = np.zeros((*x.shape[:-1], system.border.size)), system.hub_free
+    found[..., : free.size] = x[..., free]
+    return found
 
 
 def closed(system: System, bases: list[LegBases]) -> list[LegBases]:

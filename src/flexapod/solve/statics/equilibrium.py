@@ -173,12 +173,12 @@ def _newton(system: System, x: RestStates, acts: _Acts) -> tuple[RestStates, np.
 def _newton_step(system: System, x: RestStates, acts: _Acts) -> tuple[RestStates, Array]:
     """States after a step, and the largest coordinate of the step (P,); NaN where the stiffness is singular."""
     r, r_payload, g = residual_at_rest(system, x, acts.command, acts.force, acts.wrench)
-    gap = np.zeros_like(x.q)
-    gap[..., system.ports] = x.q[..., system.ports] - acts.command
-    gap = np.where(system.held, gap, 0.0)
+    gap = np.zeros(x.q.shape)
+    gap[..., system.ports] = np.where(system.held[:, system.ports], x.q[..., system.ports] - acts.command, 0.0)
     step = arrow_solve(system, matrices_at_rest(system, x, acts.wrench), r, r_payload, g - acts.kept, gap)
     largest = np.maximum(np.abs(step.dq).max(axis=(1, 2)), np.abs(step.dy).max(axis=1, initial=0.0))
-    moved = x.moved(step.dq, np.nan_to_num(step.dy))  # no rotation by NaN
+    dy = step.dy if np.isfinite(largest).all() else np.nan_to_num(step.dy)  # no rotation by NaN
+    moved = x.moved(step.dq, dy)
     return replace(moved, lam=x.lam + step.dlam, drive=x.drive + step.drive), largest
 
 

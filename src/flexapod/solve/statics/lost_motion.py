@@ -9,6 +9,7 @@ import numpy as np
 from flexapod.arrays import Array
 from flexapod.elements.known import kinds_of, slots_of
 from flexapod.elements.springs import before_piston, twist_share
+from flexapod.kinematics.robot import once
 from flexapod.model import ForceDrive, Leg, Robot
 from flexapod.solve.batch import matrices_at_rest
 from flexapod.solve.friction import numbers, sliding
@@ -45,6 +46,7 @@ def reversal(locked: LockedPoses) -> dict[str, Array]:
     return found
 
 
+@once
 def places_with_friction(robot: Robot) -> tuple[str, ...]:
     """Where something rubs in a robot, in the order of `reversal`."""
     kinds = (kind for kind in kinds_of(robot.legs) if any(map(kind.rubs, robot.legs)))

@@ -9,7 +9,7 @@ import numpy as np
 from flexapod.arrays import Array
 from flexapod.solve.batch import RestMatrices
 from flexapod.solve.saddle import solve_each
-from flexapod.solve.statics.elimination import LegBases, closed, leg_bases
+from flexapod.solve.statics.elimination import LegBases, closed, leg_bases, of_border
 from flexapod.solve.system import Index, System
 
 __all__ = [
@@ -20,7 +20,6 @@ __all__ = [
     "flat_columns",
     "hub_motion",
     "independent",
-    "of_border",
     "reduced",
     "reduced_legs",
 ]
@@ -105,12 +104,6 @@ def reduced_legs(system: System, b: LegBases, m: RestMatrices) -> tuple[Array, A
         return Nt @ (K @ b.N), Nt @ KY, Yt @ KY
     X = of_border(system, m.X[:, b.legs])
     return Nt @ (K @ b.N), Nt @ (KY + X), Yt @ (KY + X) + X.swapaxes(-1, -2) @ b.Y
-
-
-def of_border(system: System, x: Array) -> Array:
-    """Columns (..., 6) by the payload's steps as columns by the border's coordinates, (..., f)."""
-    more = np.zeros((*x.shape[:-1], system.shared.size))
-    return np.concatenate([x[..., system.hub_free], more], axis=-1)
 
 
 def hub_motion(system: System, flat: Array) -> Array:

@@ -9,7 +9,7 @@ from flexapod.bases.eigen import finite
 from flexapod.errors import InputError
 from flexapod.kinematics.rotations import matrix
 from flexapod.model import Robot
-from flexapod.solve.saddle import solve_each
+from flexapod.solve.saddle import inverse_each, solve_each
 from flexapod.solve.statics.equilibrium import Equilibrium
 from flexapod.solve.statics.locked import LockedPoses
 from flexapod.solve.statics.reduction import reduced_legs
@@ -104,7 +104,9 @@ def displacement(locked: LockedPoses, loads: Array, on_payload: Array) -> Array:
     """
     system, m, free = locked.system, locked.m, locked.system.border
     S = m.payload_K[:, free[:, None], free]
-    side = np.pad(on_payload, ((0, 0), (0, 6 + system.shared.size - on_payload.shape[1]), (0, 0)))[:, free]
+    side = np.zeros((len(on_payload), 6 + system.shared.size, on_payload.shape[2]))
+    side[:, : on_payload.shape[1]] = on_payload
+    side = side[:, free]
     for b in locked.motions.bases:
         B, C, own = reduced_legs(system, b, m)
         f, width = loads[:, b.legs], C.shape[-1]
@@ -127,7 +129,7 @@ def compliance(total: Array) -> Array:
     """
     free = np.flatnonzero(~np.isposinf(np.diagonal(total, axis1=1, axis2=2)).any(axis=0))
     part, found = total[:, free[:, None], free], np.zeros_like(total)
-    inverse = solve_each(part, np.broadcast_to(np.eye(free.size), part.shape))
+    inverse = inverse_each(part)
     finite(part, inverse)
     found[:, free[:, None], free] = 0.5 * (inverse + inverse.swapaxes(-1, -2))
     return found

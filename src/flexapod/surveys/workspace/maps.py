@@ -70,7 +70,7 @@ def workspace_map(
     frequencies : int
         How many of the lowest.
     budget : bool
-        Also `error_worst` and `error_by_part`, from an error budget of each pose: 5 ms a pose, with disturbances 25 ms.
+        Also `error_worst` and `error_by_part`, from an error budget of each pose: 1 ms a pose, with disturbances 25 ms.
         A vibration without damping has no size, and is not in the first.
     load, fidelity, modes, axial_modes, basis
         As for `flexapod.modes`.
