@@ -120,6 +120,8 @@ def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str
     from flexapod.report.figures import Drawn, drawing
     from flexapod.report.page import write_report
 
+    if formats:
+        _without_help()
     data.load()  # what nobody has asked for yet each copy of this process would make for itself
     figures: list[Drawn] = []
     processes = PROCESSES if data.sizes["time"] >= MANY else 1
@@ -136,3 +138,10 @@ def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str
 
         page = write_report(data, folder, waited)
     return [*files, *(path for figure in figures for path in figure.files), page]
+
+
+def _without_help() -> None:
+    """Matplotlib writes help on the keywords of each of its classes as it is imported: nobody reads it in a command."""
+    from matplotlib.artist import Artist
+
+    Artist._update_set_signature_and_docstring = classmethod(lambda _: None)  # type: ignore[attr-defined]
