@@ -7,7 +7,7 @@ matplotlib's own from the start. What is drawn is the same.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator
 from contextlib import contextmanager, nullcontext
 from copy import copy
 from typing import Any
@@ -17,8 +17,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis, Tick, XAxis, YAxis
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from matplotlib.ticker import NullLocator
 
+from flexapod.arrays import Array
 from flexapod.plot.settings import are_set, settings
 
 _LISTS = ("majorTicks", "minorTicks")
@@ -80,11 +82,11 @@ class Plain(Axis):
         if len(self.majorTicks) > 1 or not isinstance(self.get_minor_locator(), NullLocator):
             return None
         tick = self.majorTicks[0]
-        if tick.tick2line.get_visible() or tick.label2.get_visible() or tick.label1.get_rotation():
+        if tick.tick2line.get_visible() or tick.label2.get_visible() or _is_dressed(tick.label1):
             return None
         places = np.asarray(self.get_majorticklocs())
         words = self.major.formatter.format_ticks(places)
-        if any("$" in word for word in words):
+        if any("$" in word or "\n" in word for word in words):
             return None
         low, high = self.get_transform().transform(sorted(self.get_view_interval()))
         near = 1e-10 * (high - low)
@@ -110,22 +112,23 @@ class Plain(Axis):
         return self._found(f"boxes {len(ticks)}", lambda: self._boxes(ticks, renderer))
 
     def _boxes(self, ticks: list[Tick], renderer: Any) -> Any:
-        places = self._places()
-        if not places or len(ticks) != 1:
+        if not self._places() or len(ticks) != 1:
             return super()._get_ticklabel_bboxes(ticks, renderer)
-        label = self.majorTicks[0].label1
-        if not label.get_visible() or not label.get_in_layout():
+        if not ticks[0].label1.get_visible() or not ticks[0].label1.get_in_layout():
             return [], []
-        return [word.get_window_extent(renderer) for word in self._words(places)], []
+        return [box.translated(x, y) for _, (x, y), (box, _) in self._words(renderer)], []
 
-    def _words(self, places: Places) -> Iterator[Any]:
-        """The label, at each place in turn."""
-        label = copy(self.majorTicks[0].label1)
-        at = label.set_x if self.axis_name == "x" else label.set_y
-        for place, word in places:
-            at(place)
-            label.set_text(word)
-            yield label
+    def _words(self, renderer: Any) -> list[tuple[str, Array, tuple[Any, tuple[float, float]]]]:
+        """Numbers, their places on the canvas, and how each lies there: its box, and where its letters begin."""
+        return self._found("words", lambda: self._set(renderer))
+
+    def _set(self, renderer: Any) -> list[tuple[str, Array, tuple[Any, tuple[float, float]]]]:
+        label, places = self.majorTicks[0].label1, self._places() or []
+        at = np.tile(np.array(label.get_position(), dtype=float), (len(places), 1))
+        at[:, "xy".index(self.axis_name)] = [place for place, _ in places]
+        style = self.axis_name, hash(label.get_fontproperties()), label.get_ha(), label.get_va(), self.axes.figure.dpi
+        words = [(word, _lies(label, word, style, renderer)) for _, word in places]
+        return [(word, xy, lies) for xy, (word, lies) in zip(label.get_transform().transform(at), words, strict=True)]
 
     def draw(self, renderer: Any) -> None:
         places = self._places() if self.get_visible() else None
@@ -155,8 +158,39 @@ class Plain(Axis):
         grid.draw(renderer)
         marks.draw(renderer)
         if tick.label1.get_visible():
-            for word in self._words(places):
-                word.draw(renderer)
+            self._draw_words(renderer, tick.label1)
+
+    def _draw_words(self, renderer: Any, label: Text) -> None:
+        gc, (_, high) = renderer.new_gc(), renderer.get_canvas_width_height()
+        gc.set_foreground(label.get_color())
+        gc.set_alpha(label.get_alpha())
+        for word, (x, y), (_, (right, up)) in self._words(renderer):
+            down = high - (y + up) if renderer.flipy() else y + up
+            renderer.draw_text(gc, x + right, down, word, label.get_fontproperties(), 0, mtext=label)
+        gc.restore()
+
+
+def _is_dressed(label: Text) -> bool:
+    """Whether more than plain letters is asked for."""
+    asked = label.get_rotation(), label.get_path_effects(), label.get_bbox_patch(), label.get_usetex(), label.get_wrap()
+    return any(asked) or label.get_url() is not None
+
+
+_LIE: dict[Any, tuple[Any, tuple[float, float]]] = {}
+MOST = 4096  # words whose room is kept
+
+
+def _lies(label: Text, word: str, style: Hashable, renderer: Any) -> tuple[Any, tuple[float, float]]:
+    """The box of a word about its place, and where its letters begin; once in a process for words of a style."""
+    key = (word, style, type(renderer))
+    if key not in _LIE:
+        if len(_LIE) >= MOST:
+            _LIE.clear()
+        one = copy(label)
+        one.set_text(word)
+        box, ((_, _, *begin), *_), *_ = one._get_layout(renderer)
+        _LIE[key] = box, begin[0] if len(begin) == 1 else (begin[0], begin[1])
+    return _LIE[key]
 
 
 class _X(Plain, XAxis):
