@@ -18,7 +18,8 @@ def png(colors: NDArray[np.uint8], dpi: float, words: Mapping[str, str | None]) 
     """A picture (row, column, at least red, green, blue) as a PNG file, with its dots per inch and words about it."""
     high, wide = colors.shape[:2]
     rows = np.zeros((high, 1 + 3 * wide), dtype=np.uint8)  # each begins with 0: no filter
-    rows[:, 1:].reshape(high, wide, 3)[...] = colors[:, :, :3]
+    for part in range(3):  # a colour at a time: in a third of the time that pixels take
+        rows[:, 1 + part :: 3] = colors[:, :, part]
     metre = round(dpi / INCH)
     said = (_part(b"tEXt", f"{key}\0{value}".encode("latin-1")) for key, value in words.items())
     return b"".join(
