@@ -56,7 +56,7 @@ def unfinished(folder):
 def test_a_run_that_is_killed_while_it_draws(study, folder):
     """A copy that draws slept for ever in its pipe, 210 MB each."""
     file = study(*SHORT)
-    place = "from flexapod.cli import options\noptions.PROCESSES = 3\noptions.write_data = stay"
+    place = "from flexapod.cli import options\noptions.PROCESSES, options.MANY = 3, 0\noptions.write_data = stay"
     killed(place, "run", file, "--quiet", others=2)
 
 

@@ -7,7 +7,7 @@ from docs.site import commands, gallery, python, stage, studyfile, variables
 from tests.golden.refusals import READERS, rows, samples, unpacked
 
 import flexapod as fx
-from flexapod.cli.cli import _ALL
+from flexapod.cli.cli import HOMES
 from flexapod.cli.examples import titles
 from flexapod.errors import InputError
 from flexapod.results.names import VARIABLES
@@ -28,7 +28,7 @@ def test_every_public_name_is_on_a_page_and_nothing_else_is_public():
 
 
 def test_every_command_has_a_page():
-    assert len(commands.pages()) == len(_ALL) + 1
+    assert len(commands.pages()) == len(HOMES) + 1
     text = commands.pages()[commands.FOLDER / "run.md"]
     assert "`--format FORMATS`" in text and "`png,svg`" in text
 

@@ -430,3 +430,22 @@ def test_all_uses_of_a_robot_share_one_library(folder):
     _at_rest.cache_clear()  # a robot that is known keeps the kernel that it had
     made = robot_system(study.robot, study.simulation, 0.0).kernel
     assert locked_poses(study.robot, study.simulation, home_pose(study.robot)).system.kernel is made
+
+
+def test_a_text_is_made_once_and_again_where_it_is_damaged_or_others_may_write(folder):
+    made = []
+
+    def text() -> str:
+        return cache.kept_text("what it is made from", lambda: made.append(0) or "a long text\nof two lines")
+
+    folder.mkdir(mode=0o700, exist_ok=True)
+    assert {text(), text()} == {"a long text\nof two lines"} and len(made) == 1
+    (kept,) = folder.glob("*.kept")
+    assert kept.stat().st_mode & 0o777 == 0o600
+    kept.write_bytes(kept.read_bytes()[:-1])
+    assert text().endswith("lines") and len(made) == 2
+    folder.chmod(0o722)
+    assert text().endswith("lines") and len(made) == 3
+    folder.chmod(0o700)
+    cache.clear_cache()
+    assert not list(folder.glob("*.kept"))

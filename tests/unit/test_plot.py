@@ -9,7 +9,7 @@ import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib.axis import Axis
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex, to_rgb, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.image import imread
@@ -22,6 +22,8 @@ from flexapod.model import load, preset
 from flexapod.page.charts import charts
 from flexapod.plot import style
 from flexapod.plot.narrow import narrowed
+from flexapod.plot.panel import Panel, Plain
+from flexapod.plot.settings import settings
 from flexapod.plot.style import figure as page_figure
 from flexapod.plot.style import ink
 from flexapod.report.figures import draw
@@ -189,17 +191,36 @@ def test_files_are_replaced_whole(robot, tmp_path):
     assert sorted(p.name for p in (tmp_path / "new").iterdir()) == ["path.png", "path.svg"]
 
 
-def test_files_are_what_matplotlib_draws_with_its_ticks_found_once(robot, tmp_path, monkeypatch):
-    """The other side is matplotlib's own drawing, layout and all; ticks: two sizes of a panel, two files."""
-    found, find = [], Axis._update_ticks
-    monkeypatch.setattr(Axis, "_update_ticks", lambda axis: found.append(axis) or find(axis))
-    png, _ = plot.save(plot.actuator_forces(robot), tmp_path / "ours")
-    most = max(Counter(map(id, found)).values())
-    assert most <= 4
-    with matplotlib.rc_context(style._RC):
-        plot.actuator_forces(robot).savefig(tmp_path / "theirs.png", dpi=200)
-    assert max(Counter(map(id, found)).values()) > 2 * most
-    assert np.array_equal(imread(png), imread(tmp_path / "theirs.png"))
+@pytest.mark.parametrize("name", ["actuator_forces", "deviation_by_cause", "robot_3d"])
+def test_files_are_what_matplotlib_draws(robot, tmp_path, monkeypatch, name):
+    """The other side is matplotlib's own drawing with its own panels, ticks, words and layout."""
+    png, _ = plot.save(getattr(plot, name)(robot), tmp_path / "ours")
+    monkeypatch.setattr(style, "Panels", Figure)
+    monkeypatch.setattr(style, "Canvas", FigureCanvasAgg)
+    with matplotlib.rc_context(settings()):
+        theirs = getattr(plot, name)(robot)
+        theirs.savefig(tmp_path / "theirs.png", dpi=200)
+    assert type(theirs.axes[0]) is not Panel
+    assert np.array_equal(imread(png), imread(tmp_path / "theirs.png")[:, :, :3])
+
+
+def test_ticks_are_found_once_in_a_panel_of_one_size(robot, tmp_path, monkeypatch):
+    found, find = [], Plain._look
+    monkeypatch.setattr(Plain, "_look", lambda axis: found.append(axis) or find(axis))
+    plot.save(plot.actuator_forces(robot), tmp_path / "ours")
+    assert max(Counter(map(id, found)).values()) <= 3  # in two turns of the layout, and as it is drawn
+
+
+def test_ticks_are_those_of_matplotlib_for_who_asks(robot):
+    """What users do with ticks finds matplotlib's own: all of them, at their places, with their words."""
+    axes = plot.energies(robot).axes[0]
+    axes.figure.draw_without_rendering()
+    words = [label.get_text() for label in axes.get_yticklabels()]
+    assert len(words) == len(axes.get_yticks()) > 1
+    assert words == axes.yaxis.get_major_formatter().format_ticks(axes.get_yticks())
+    axes.get_yticklabels()[1].set_color("red")
+    axes.figure.draw_without_rendering()
+    assert [label.get_color() for label in axes.get_yticklabels()].count("red") == 1
 
 
 def test_formats_and_their_refusal(robot, tmp_path):

@@ -1,4 +1,4 @@
-"""The command `flexapod`: each command lives in its own module and imports what it needs when it runs."""
+"""The command `flexapod`: each command lives in a module that is imported, and imports what it needs, when it runs."""
 
 from __future__ import annotations
 
@@ -6,25 +6,19 @@ import gc
 import io
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from typing import Annotated, Any
+from importlib import import_module
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
-from flexapod.cli.commands_budget import budget
-from flexapod.cli.commands_export import export
-from flexapod.cli.commands_linear import damp, frf
-from flexapod.cli.commands_map import workspace_map
-from flexapod.cli.commands_poses import modes
-from flexapod.cli.commands_proof import replicate, verify
-from flexapod.cli.commands_run import actuator, cache, run
-from flexapod.cli.commands_study import check, keys, new
-from flexapod.cli.commands_surveys import converge, sweep
-from flexapod.cli.commands_view import view
 from flexapod.cli.failures import INTERRUPTED, heed_signals, print_parts, say_full, stop_code
 from flexapod.version import __version__
+
+if TYPE_CHECKING:
+    app: typer.Typer
 
 _USAGE: Any = typer.BadParameter.__mro__[1]  # its base, click's UsageError, of which typer may have a copy of its own
 
@@ -59,24 +53,12 @@ class _Commands(TyperGroup):
         return code
 
 
-app: typer.Typer = typer.Typer(
-    name="flexapod",
-    cls=_Commands,
-    add_completion=False,
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    rich_markup_mode="rich",
-    epilog="Exit codes: 0 done, 1 a computation failed, 2 bad input, 130 stopped by Ctrl-C, 143 by SIGTERM.",
-)
-
-
 def _version(wanted: bool) -> None:
     if wanted:
         print(f"flexapod {__version__}")
         raise typer.Exit
 
 
-@app.callback()
 def flexapod(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and stop.")
@@ -90,31 +72,63 @@ def flexapod(
         os.environ["FLEXAPOD_DEBUG"] = "1"
 
 
-_ALL = (
-    replicate,
-    new,
-    keys,
-    check,
-    run,
-    actuator,
-    modes,
-    frf,
-    damp,
-    budget,
-    workspace_map,
-    converge,
-    sweep,
-    verify,
-    export,
-    cache,
-    view,
-)
-for _command in _ALL:
-    app.command("map" if _command is workspace_map else None)(_command)
+#: Commands in the order of the help, and the modules that they live in.
+HOMES = {
+    "replicate": "proof",
+    "new": "study",
+    "keys": "study",
+    "check": "study",
+    "run": "run",
+    "actuator": "run",
+    "modes": "poses",
+    "frf": "linear",
+    "damp": "linear",
+    "budget": "budget",
+    "map": "map",
+    "converge": "surveys",
+    "sweep": "surveys",
+    "verify": "proof",
+    "export": "export",
+    "cache": "run",
+    "view": "view",
+}
+_FUNCTIONS = {"map": "workspace_map"}  # where they are not named after the command
+
+
+def program(names: Iterable[str] = HOMES) -> typer.Typer:
+    """The command with these commands of its own; the modules of others are not imported."""
+    made = typer.Typer(
+        name="flexapod",
+        cls=_Commands,
+        add_completion=False,
+        no_args_is_help=True,
+        pretty_exceptions_enable=False,
+        rich_markup_mode="rich",
+        epilog="Exit codes: 0 done, 1 a computation failed, 2 bad input, 130 stopped by Ctrl-C, 143 by SIGTERM.",
+    )
+    made.callback()(flexapod)
+    for name in names:
+        home = import_module(f"flexapod.cli.commands_{HOMES[name]}")
+        made.command(name)(getattr(home, _FUNCTIONS.get(name, name)))
+    return made
+
+
+def __getattr__(name: str) -> typer.Typer:
+    """`app`: the command with all of its commands."""
+    if name != "app":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = program()
+    return globals()[name]
+
+
+def _asked_for() -> Iterable[str]:
+    """The command that the words of this process begin with; all where they begin otherwise, as for their help."""
+    return sys.argv[1:2] if sys.argv[1:2] and sys.argv[1] in HOMES else HOMES
 
 
 def main() -> None:
     """Entry point of the command."""
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # it would look for some in all packages that are here
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # our matrices are small: threads only cost, a factor of six
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
@@ -133,7 +147,7 @@ def main() -> None:
 def _whole() -> int:
     """Run the command, and wait until what it says is out; its exit code."""
     try:
-        app()
+        program(_asked_for())()
     except SystemExit as end:
         code = end.code
     except KeyboardInterrupt:  # before the command itself began

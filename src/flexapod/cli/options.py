@@ -65,7 +65,8 @@ def refuse_existing(file: Path, force: bool) -> None:
 
 
 FORMATS = ("png", "svg", "pdf")  # of figures
-PROCESSES = min(os.cpu_count() or 1, 4)  # that draw them
+PROCESSES = min(os.cpu_count() or 1, 4)  # that draw them, where there are
+MANY = 10_000  # instants: with fewer, a copy of this process costs a third of what it takes off
 
 
 def parse_formats(text: str) -> tuple[str, ...]:
@@ -119,9 +120,12 @@ def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str
     from flexapod.report.figures import Drawn, drawing
     from flexapod.report.page import write_report
 
+    if formats:
+        _without_help()
     data.load()  # what nobody has asked for yet each copy of this process would make for itself
     figures: list[Drawn] = []
-    with drawing(data, folder, formats, PROCESSES) if formats else nullcontext(list[Drawn]) as drawn:
+    processes = PROCESSES if data.sizes["time"] >= MANY else 1
+    with drawing(data, folder, formats, processes) if formats else nullcontext(list[Drawn]) as drawn:
         report("writing results", 0.90)
         files = write_data(data, folder)
 
@@ -134,3 +138,10 @@ def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str
 
         page = write_report(data, folder, waited)
     return [*files, *(path for figure in figures for path in figure.files), page]
+
+
+def _without_help() -> None:
+    """Matplotlib writes help on the keywords of each of its classes as it is imported: nobody reads it in a command."""
+    from matplotlib.artist import Artist
+
+    Artist._update_set_signature_and_docstring = classmethod(lambda _: None)  # type: ignore[attr-defined]

@@ -11,8 +11,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from importlib.resources import files
 from itertools import repeat
+from pathlib import Path
 
 from flexapod.document.parts import Bullets, Chapter, Item, Lines, Remarks, Text, TextTable
+from flexapod.symbolic.cache import kept_text
 from flexapod.words import brief
 
 # What a browser may do with a page: run and show what is in it, and fetch nothing.
@@ -20,6 +22,7 @@ _POLICY = (
     "default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; script-src 'unsafe-inline'; font-src data:; "
     "base-uri 'none'; form-action 'none'"
 )
+LEVEL = 4  # of deflating
 _QUANTITY = re.compile(
     r"(?<=\d) (?=(?:[µnmkc]?m|[kM]?N|[mk]?J|Hz|deg|ms|s|%|GPa|MPa)(?![\w]))|(?<=\d N) (?=m²?(?!\w)|s/m)"
     r"|(?<=\b[xyz]) (?=\d)"
@@ -51,9 +54,17 @@ def _asset(name: str) -> str:
 
 @cache
 def library() -> str:
-    """The script of plotly, deflated, in base64: 2 MB in place of 4.8; the last 4 % of that would double the time."""
-    script = files("plotly").joinpath("package_data", "plotly.min.js").read_bytes()
-    return base64.b64encode(zlib.compress(script, 4)).decode("ascii")
+    """The script of plotly, deflated, in base64: 2 MB in place of 4.8; the last 4 % of that would double the time.
+
+    It is kept from one process to the next.
+    """
+    place = Path(str(files("plotly").joinpath("package_data", "plotly.min.js")))
+    found = place.stat()
+    return kept_text(f"{place} {found.st_size} {found.st_mtime_ns} {LEVEL}", lambda: _deflated(place.read_bytes()))
+
+
+def _deflated(script: bytes) -> str:
+    return base64.b64encode(zlib.compress(script, LEVEL)).decode("ascii")
 
 
 class Html(str):

@@ -8,78 +8,52 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from functools import partial, wraps
+from contextlib import ExitStack, contextmanager, suppress
+from functools import wraps
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from flexapod.arrays import Array
 from flexapod.errors import InputError
+from flexapod.plot.letters import Canvas
 from flexapod.plot.narrow import narrowed
+from flexapod.plot.panel import Panels, keeping
+from flexapod.plot.png import png
+from flexapod.plot.settings import NOTE as NOTE
+from flexapod.plot.settings import SMALL as SMALL
+from flexapod.plot.settings import TEXT as TEXT
+from flexapod.plot.settings import settings
+from flexapod.plot.twice import Unsuited, draw_both
 from flexapod.runtime.files import replacing
 
 P = ParamSpec("P")
 T = TypeVar("T")
 
 LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (3, 1)), (0, (1, 3)), (0, (7, 2)))
-GRID = "#DDDDDD"
 COLORS = "cividis"  # of maps: even in lightness, and for colour-blind readers
 COLUMN, PAGE = 3.35, 6.7  # widths of a column and of a page [in]: 85 and 170 mm
-TEXT, NOTE, SMALL = 8.5, 7.5, 7.0  # sizes of letters [points]
 
 CONTRAST = 4.6  # of words; a little above what is asked for, as colours are rounded
 INCH = 0.0254  # [m]
 # What files say of themselves: no dates, so that the same figure is the same file.
-_TICKS = ("_update_ticks", "_get_ticklabel_bboxes")  # of matplotlib's axes, where it has them: nothing public does this
 _METADATA: dict[str, dict[str, str | None]] = {
     "png": {"Software": "flexapod"},
     "svg": {"Date": None, "Creator": "flexapod"},
     "pdf": {"CreationDate": None, "Creator": "flexapod", "Producer": None},
 }
-_RC = {
-    "font.family": "DejaVu Sans",
-    "font.size": TEXT,
-    "axes.titlesize": 9.0,
-    "axes.titleweight": "bold",
-    "axes.titlelocation": "left",
-    "axes.titley": 1.0,  # above the panel: nothing else is there, and to look for it takes a third of the drawing
-    "axes.labelsize": TEXT,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "xtick.labelsize": NOTE,
-    "ytick.labelsize": NOTE,
-    "axes.axisbelow": True,
-    "axes.formatter.useoffset": False,
-    "axes.formatter.limits": (-4, 5),
-    "grid.color": GRID,
-    "grid.linewidth": 0.6,
-    "lines.linewidth": 1.3,
-    "legend.frameon": False,
-    "legend.fontsize": NOTE,
-    "legend.title_fontsize": NOTE,
-    "pdf.fonttype": 42,
-    "svg.fonttype": "path",
-    "svg.hashsalt": "flexapod",
-    "figure.facecolor": "white",
-    "savefig.facecolor": "white",
-    "path.simplify_threshold": 0.2,
-}
 
 
 def figure(width: float = PAGE, height: float = 4.0, gap: float = 0.02) -> Figure:
     """Empty figure [in] on the Agg canvas, without pyplot's global state; `gap` between columns, as a share of one."""
-    made = Figure(figsize=(width, height), layout=ConstrainedLayoutEngine(wspace=gap))
-    FigureCanvasAgg(made)
+    made = Panels(figsize=(width, height), layout=ConstrainedLayoutEngine(wspace=gap))
+    Canvas(made)
     return made
 
 
@@ -111,15 +85,10 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
 
     @wraps(draw)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> Figure:
-        with matplotlib.rc_context(_rc()):
+        with matplotlib.rc_context(settings()):
             return draw(*args, **kwargs)
 
     return wrapper
-
-
-def _rc() -> Any:
-    defaults = {name: value for name, value in matplotlib.rcParamsDefault.items() if name != "backend"}
-    return defaults | _RC  # asked for its backend, matplotlib would import pyplot
 
 
 def flat_on_the_scale_of_others(panels: Sequence[Axes], sizes: Sequence[float]) -> None:
@@ -208,14 +177,40 @@ def save(
         raise InputError("is not a width", key="width", value=width, allowed="above 0 m, as 0.085 or 0.17")
     logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)
     written = [stem.with_name(f"{stem.name}.{name}") for name in formats]
-    with matplotlib.rc_context(_rc()):
+    with matplotlib.rc_context(settings()):
         shown = fig if width is None else narrowed(fig, width / INCH)
         with _laid_out(shown, dpi):
-            for path, name in zip(written, formats, strict=True):
-                with replacing(path) as temporary:
-                    more: dict[str, Any] = {"pil_kwargs": {"compress_level": 3}} if name == "png" else {}
-                    shown.savefig(temporary, dpi=dpi, format=name, metadata=_METADATA[name], **more)
+            _write(shown, dict(zip(formats, written, strict=True)), dpi)
     return tuple(written)
+
+
+def _write(fig: Figure, files: Mapping[str, Path], dpi: int) -> None:
+    """All files of a figure that has its places; picture and SVG file from one drawing, where they can be."""
+    with ExitStack() as stack:
+        places = {name: stack.enter_context(replacing(path)) for name, path in files.items()}
+        if "png" in places:
+            svg = _draw(fig, places.get("svg"))
+            picture = np.asarray(fig.canvas.buffer_rgba())  # type: ignore[attr-defined]  # of Agg
+            places.pop("png").write_bytes(png(picture, dpi, _METADATA["png"]))
+            if svg:
+                del places["svg"]
+        for name, place in places.items():
+            fig.savefig(place, dpi=dpi, format=name, metadata=_METADATA[name])
+
+
+def _draw(fig: Figure, svg: Path | None) -> bool:
+    """Draw a figure on its canvas of Agg, and into an SVG file on the way; whether that could be done."""
+    canvas, face = fig.canvas, fig.get_facecolor()
+    fig.set_facecolor(matplotlib.rcParams["savefig.facecolor"])
+    try:
+        with suppress(Unsuited):
+            if svg is not None:
+                draw_both(fig, svg, _METADATA["svg"])
+                return True
+        canvas.draw()
+    finally:
+        fig.set_facecolor(face)
+    return False
 
 
 def check_formats(formats: Sequence[str]) -> None:
@@ -233,45 +228,17 @@ def check_formats(formats: Sequence[str]) -> None:
 
 @contextmanager
 def _laid_out(fig: Figure, dpi: float) -> Iterator[None]:
-    """The figure with its places found, once for all of its files: that takes longer than to draw it."""
+    """The figure on a canvas of Agg with its places found, once for all of its files: that takes as long as drawing."""
     engine, before = fig.get_layout_engine(), fig.dpi
-    with _ticks_kept(fig):
-        if engine is not None:
-            fig.dpi = dpi  # widths of letters depend on it a little
-            engine.execute(fig)
-            fig.dpi = before
-        fig.set_layout_engine(None)
+    if type(fig.canvas) is not Canvas:
+        Canvas(fig)
+    fig.dpi = dpi  # widths of letters depend on it a little
+    with keeping(fig):
         try:
+            if engine is not None:
+                engine.execute(fig)
+            fig.set_layout_engine(None)
             yield
         finally:
             fig.set_layout_engine(engine)
-
-
-@contextmanager
-def _ticks_kept(fig: Figure) -> Iterator[None]:
-    """Ticks and the room of their numbers are looked for once in a panel of one size, not anew for every neighbour.
-
-    Matplotlib does so twenty times a panel where labels are aligned, which takes a quarter of the drawing.
-    """
-    axes = [axis for panel in fig.axes if panel.name == "rectilinear" for axis in (panel.xaxis, panel.yaxis)]
-    for axis in axes:
-        for name in filter(partial(hasattr, axis), _TICKS):
-            setattr(axis, name, _kept(axis, getattr(axis, name)))
-    try:
-        yield
-    finally:
-        for axis in axes:
-            for name in _TICKS:
-                vars(axis).pop(name, None)
-
-
-def _kept(axis: Axis, find: Callable[..., T]) -> Callable[..., T]:
-    found: dict[Any, T] = {}
-
-    def kept(*of: Any) -> T:
-        seen = (axis.axes.bbox.bounds, *axis.get_view_interval(), *(type(part) for part in of))
-        if seen not in found:
-            found[seen] = find(*of)
-        return found[seen]
-
-    return kept
+            fig.dpi = before

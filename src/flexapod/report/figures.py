@@ -79,14 +79,28 @@ def store(figure: Figure, title: str, stem: Path, formats: Sequence[str] = ("png
 
 
 def _picture(figure: Figure) -> bytes:
-    """The drawing of a figure's PNG file in 128 colours: a third of its size, and no difference to the eye."""
+    """The drawing of a figure's PNG file in 128 colours: a third of its size, and no difference to the eye.
+
+    Colours are chosen among the first pixels of runs of one colour, a twentieth of them all.
+    """
     import numpy as np
     from PIL import Image
 
+    drawn = np.asarray(figure.canvas.buffer_rgba())  # type: ignore[attr-defined]  # of Agg: as last drawn
+    pixels = drawn.view(np.uint32).ravel()
+    starts = np.flatnonzero(np.concatenate([[True], pixels[1:] != pixels[:-1]]))
+    lengths = np.diff(starts, append=len(pixels))
+    colors = pixels[starts].view(np.uint8).reshape(1, -1, 4)[:, :, :3]
+    few = Image.fromarray(np.ascontiguousarray(colors)).quantize(
+        128, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE
+    )
+    chosen = np.asarray(few).ravel()
+    sums = [np.bincount(chosen, lengths * part, 128) for part in (1, *colors[0].T)]
+    mean = np.round(np.array(sums[1:]) / np.maximum(sums[0], 1)).astype(np.uint8)  # of the pixels that it stands for
+    page = Image.fromarray(np.repeat(chosen, lengths).reshape(drawn.shape[:2]))
+    page.putpalette(mean.T.tobytes())
     made = BytesIO()
-    drawn = Image.fromarray(np.asarray(figure.canvas.buffer_rgba()))  # type: ignore[attr-defined]  # of Agg: as last drawn
-    few = drawn.convert("RGB").quantize(128, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
-    few.save(made, "PNG", compress_level=FAST)
+    page.save(made, "PNG", compress_level=FAST)
     return made.getvalue()
 
 

@@ -10,6 +10,7 @@ import os
 import re
 import sys
 import tempfile
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +24,7 @@ __all__ = [
     "cache_directory",
     "clear_cache",
     "intact_libraries",
+    "kept_text",
     "known_text",
     "open_cache",
     "remember_text",
@@ -40,6 +42,8 @@ LARGEST = 100_000_000
 LIBRARY = re.compile(r"[0-9a-f]{32}-[0-9a-f]{16}\.so")
 #: What a key of equations has given before: a file named after the key, with the hash of their C text.
 TEXT = re.compile(r"[0-9a-f]{32}\.text")
+#: A text that takes long to make: a file named after the hash of what it is made from, which begins with its own hash.
+KEPT = re.compile(r"[0-9a-f]{32}\.kept")
 SLACK = 60e9  # by how much longer than kernels these are kept [ns]
 _log = logging.getLogger("flexapod")
 
@@ -174,6 +178,26 @@ def remember_text(folder: Path, source: str, text: str) -> None:
         unfinished.write_bytes(text.encode("ascii"))
 
 
+def kept_text(source: str, make: Callable[[], str]) -> str:
+    """The ASCII text that `make` gives, kept here under what it is made from, where there is a folder to be trusted."""
+    folder = cache_directory()
+    path = folder / f"{hashlib.sha256(source.encode()).hexdigest()[:32]}.kept"
+    with suppress(OSError, ValueError):
+        found, _, text = read_bytes(path, LARGEST).decode("ascii").partition("\n")
+        if found == _digest(text) and not _distrust(folder) and not _distrust(path):
+            return text
+    text = make()
+    with suppress(OSError):
+        if not _distrust(folder):
+            with whole(path, mode=0o600) as unfinished:
+                unfinished.write_bytes(f"{_digest(text)}\n{text}".encode("ascii"))
+    return text
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode("ascii")).hexdigest()
+
+
 def _intact(key: str, path: Path) -> bool:
     try:
         return path.name == _name(key, path) and not _distrust(path)
@@ -234,7 +258,8 @@ def clear_cache() -> CacheContent:
         Some could not be removed.
     """
     before = cache_content()
-    for path in (*_matching(before.folder, LIBRARY), *_matching(before.folder, TEXT), *before.folder.glob(UNFINISHED)):
+    ours = (path for pattern in (LIBRARY, TEXT, KEPT) for path in _matching(before.folder, pattern))
+    for path in (*ours, *before.folder.glob(UNFINISHED)):
         _remove(path)
     if left := cache_content().kernels:
         raise ComputationError(
