@@ -13,6 +13,7 @@ from flexapod.model import override, preset
 
 ELEMENTS, STEP = 12, 5e-5
 LENGTH, FEED = 1.83, 0.1
+pytestmark = pytest.mark.optimised  # 700,000 steps
 TIP_MM = [5, 1.46875, 2.52914, 3.4969, -9.29794, 3.92053, -8.32143, -9.74686, -4.10753, -1.73481, -2.7728]
 
 

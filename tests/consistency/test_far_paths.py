@@ -83,7 +83,7 @@ def test_poses_within_reach_are_those_beside_far_ones(name):
     """What a far pose asks for changes nothing of the near ones."""
     robot = ROBOTS[name]()
     alone = fx.modes(robot, {"heave": np.array([0.0, 0.03])}, fidelity="lumped").frequency.values
-    beside = fx.modes(robot, {"heave": np.array([0.0, 0.03, 500.0])}, fidelity="lumped").frequency.values[:2]
+    beside = fx.modes(robot, {"heave": np.array([0.0, 0.03, 50.0])}, fidelity="lumped").frequency.values[:2]
     np.testing.assert_allclose(beside[:, : alone.shape[1]], alone, rtol=1e-9)
 
 

@@ -52,9 +52,9 @@ PRESSED = """async () => {
 
 
 @pytest.mark.parametrize("name", PAGES)
-def test_no_control_asks_for_anything_beyond_the_file(browser, reports, name):
+def test_a_page_has_no_barriers_and_asks_for_nothing_beyond_its_file(browser, reports, axe, name):
     """plotly 7.1 offered "Share chart...", which sends the chart to its makers' cloud."""
-    context = browser.new_context(viewport={"width": 1100, "height": 900})
+    context = browser.new_context(viewport={"width": 1100, "height": 900}, color_scheme="light")
     file, seen = reports[name].as_uri(), []
     context.route("**/*", lambda route: route.continue_() if route.request.url == file else route.abort())
     context.on("request", lambda request: seen.append(request.url))
@@ -75,6 +75,7 @@ def test_no_control_asks_for_anything_beyond_the_file(browser, reports, name):
         assert buttons == ["Download plot as a PNG", "Zoom", "Pan", "Zoom in", "Zoom out", "Reset axes"]
         settings = "plot => [plot._context.showSendToCloud, plot._context.plotlyServerURL]"
         assert charts.first.locator(".plot").evaluate(settings) == [False, ""]
+    assert axe(page) == []
     pressed = page.evaluate(PRESSED)
     assert len(pressed) >= {"verification": 1}.get(name, 20), pressed
     assert not [words for words in pressed if "hare" in words or "loud" in words]
@@ -83,18 +84,4 @@ def test_no_control_asks_for_anything_beyond_the_file(browser, reports, name):
     assert {url for url in seen if not url.startswith(inside)} == {file}
     assert context.pages == [page]
     assert page.evaluate("[...document.querySelectorAll('a[href]')].every((a) => a.getAttribute('href')[0] === '#')")
-    context.close()
-
-
-@pytest.mark.parametrize("name", PAGES)
-def test_no_serious_finding_of_axe_in_a_report(browser, reports, axe, name):
-    context = browser.new_context(viewport={"width": 1100, "height": 900}, color_scheme="light")
-    page = context.new_page()
-    page.set_default_timeout(300_000)
-    page.goto(reports[name].as_uri())
-    if name != "verification":
-        page.locator("html[data-ready=yes]").wait_for(state="attached")
-        page.locator("figure.chart").first.scroll_into_view_if_needed()
-        page.locator("figure.chart .main-svg").first.wait_for()
-    assert axe(page) == []
     context.close()

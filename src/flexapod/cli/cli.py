@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from importlib import import_module
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TextIO
 
 import typer
 from typer.core import TyperGroup
@@ -139,8 +139,12 @@ def main() -> None:
         code = _whole()
     except OSError as error:
         say_full(error)
-        _let_go()
+        _let_go(sys.stdout)
         code = 1
+    try:
+        _flushed(sys.stderr)
+    except OSError:  # the exit code says it
+        _let_go(sys.stderr)
     sys.exit(stop_code(code) if code == INTERRUPTED else code)
 
 
@@ -154,15 +158,18 @@ def _whole() -> int:
         code = INTERRUPTED
     else:
         code = 0
-    for stream in (sys.stdout, sys.stderr):
-        if stream is not None:
-            stream.flush()
+    _flushed(sys.stdout)
     return code if isinstance(code, int) else int(code is not None)
 
 
-def _let_go() -> None:
+def _flushed(stream: TextIO | None) -> None:
+    if stream is not None:
+        stream.flush()
+
+
+def _let_go(stream: TextIO) -> None:
     """What could not be written is given up, so that the end of the process does not try again."""
     with suppress(OSError, ValueError):
         nothing = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nothing, sys.stdout.fileno())
+        os.dup2(nothing, stream.fileno())
         os.close(nothing)

@@ -43,11 +43,16 @@ __all__ = ["CompiledFunction", "compiled_library", "compiler", "lanes", "shared_
 COMMON = ("-fPIC", "-std=gnu11", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off")
 #: -O1 runs straight-line code as fast as -O2 and compiles it in half the time; what is written by hand has loops.
 FLAGS, LOOPS = ("-O1",), ("-O3",)
-#: Operations stay in the order in which they are written: where gcc puts them together to expressions it needs more
-#: values at a time than there are registers, and straight-line code takes a tenth longer. No number depends on it.
-STRAIGHT = '#if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC optimize("no-tree-ter")\n#endif'
+#: gcc leaves out what finds nothing to do in straight-line code, a quarter of its time. Operations stay in the order in
+#: which they are written: put together to expressions they need more values at a time than there are registers, and
+#: take a tenth longer. No number depends on it.
+STRAIGHT = """#if defined(__OPTIMIZE__) && defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("Og", "no-tree-ter")
+#endif"""
 #: Equations are compiled in so many units side by side, each of so many characters or more.
 UNITS, WORTH_IT = 2, 60_000
+#: What a function takes a compiler grows with this power of its length, to share functions out to units.
+GROWTH = 1.5
 #: Vectors as wide as the processor has them; left out where the compiler does not know it, or `CC` names a target.
 NATIVE = "-march=native"
 LONGEST = 300.0  # seconds that a compiler may take: usual are 2 to 20
@@ -218,7 +223,7 @@ def _generated(functions: list, callers: str) -> list[str]:
     texts = sorted(map(c_source, functions), key=len, reverse=True)
     units += [[] for _ in range(min(UNITS, sum(map(len, texts)) // WORTH_IT + 1) - 1) if not callers]
     for text in texts:
-        min(units, key=lambda unit: sum(map(len, unit))).append(text)
+        min(units, key=lambda unit: sum(len(x) ** GROWTH for x in unit)).append(text)
     units[0].append(callers)
     return ["\n".join([PRELUDE.read_text(), STRAIGHT, *unit]) for unit in units]
 

