@@ -63,6 +63,13 @@ def test_a_limit_at_no_end_of_frequencies():
     assert below == 0 and above == pytest.approx(4.0, rel=1e-9) and np.isinf(hertz)
 
 
+def test_a_loop_with_poles_near_the_fastest_frequencies_that_are_taken():
+    """x' = -w x - w k x with w of 10 MHz: a lag alone has no limit."""
+    w = 2 * np.pi * 1e7
+    (below, above), _ = limits(fc.margins(system([[-w]], [[w]], [[1.0]], [[0.0]]), number(-1.0)))
+    assert below == 0 and np.isinf(above)
+
+
 def growing(plant, law, factors, sampled):
     """Poles that grow of u = diag(factors) K y, by the matrix of the closed loop."""
     A, B, C, D = plant

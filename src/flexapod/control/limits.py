@@ -18,6 +18,7 @@ from flexapod.control.poles import damping_of, swings_of
 from flexapod.control.sampling import law_beside
 from flexapod.control.state_space import a_system
 from flexapod.errors import ComputationError, InputError
+from flexapod.units import DIMENSIONS
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -145,7 +146,7 @@ def _ends(
     if sample is not None:
         ends.append((hz[-1], hz[-1]))
     elif not delay:
-        ends.append((np.inf, hz[-1] / BESIDE))
+        ends.append((np.inf, min(hz[-1] / BESIDE, DIMENSIONS["frequency"].most)))
     found = []
     for f, near in ends:
         L = loops(np.array([near, near if near == f else near * 2 if f == 0.0 else near / 2]))
