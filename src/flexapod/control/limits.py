@@ -208,7 +208,7 @@ def _frequencies(poles: Complex, sample: float | None) -> Array:
     known = frequency[frequency > FINEST * frequency.max(initial=0.0)]
     if not known.size:
         raise ComputationError("nothing in the loop has a frequency", next_step="Give the controller a filter")
-    top = SPAN * known.max() if sample is None else 0.5 / sample
+    top = min(SPAN * known.max(), DIMENSIONS["frequency"].most) if sample is None else 0.5 / sample
     low = min(known.min(), top) / SPAN
     spread = np.geomspace(low, top, int(STEPS * np.log10(top / low)) + 2)
     sharp = (ratio < 0.3) & (frequency > 0) & (s.imag > 0)
