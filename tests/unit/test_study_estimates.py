@@ -258,7 +258,7 @@ def test_damping_shortens_the_vibration_as_duhamel_says():
     j = int(np.abs(modes.shapes[:, -4]).argmax())
     omega, ratios = 2 * np.pi * modes.frequency[j], np.zeros_like(modes.damping_ratio)
     ratios[j] = ratio
-    found = residual_vibration(robot, replace(modes, damping_ratio=ratios), t, path, band=1e-9)
+    found = residual_vibration(robot, replace(modes, ratio=lambda: ratios), t, path, band=1e-9)
 
     def rates(time, y):
         """One damped oscillator under the same acceleration, as an initial value problem."""
@@ -273,7 +273,7 @@ def test_damping_shortens_the_vibration_as_duhamel_says():
 
 def test_overdamped_modes_do_not_vibrate():
     robot, modes, t, path = single_mode(0.05)
-    found = residual_vibration(robot, replace(modes, damping_ratio=np.full_like(modes.frequency, 1.5)), t, path)
+    found = residual_vibration(robot, replace(modes, ratio=lambda: np.full_like(modes.frequency, 1.5)), t, path)
     assert len(found.frequency) == 0
     assert found.total == 0.0
     assert found.time_to_band() == 0.0

@@ -40,9 +40,12 @@ class Budget:
         return tuple(self._numbers)
 
     @cached_property
-    def _sums(self) -> list[tuple[ErrorRow, Array]]:
-        """What each row adds up to over the legs by the rule of its kind, (6,)."""
-        return [(row, combined(row.kind, row.by_leg)) for row in self.rows]
+    def _sums(self) -> dict[str, list[tuple[ErrorRow, Array]]]:
+        """The rows of each kind with what they add up to over the legs by its rule, (6,)."""
+        found: dict[str, list[tuple[ErrorRow, Array]]] = {kind: [] for kind in KINDS}
+        for row in self.rows:
+            found[row.kind].append((row, combined(row.kind, row.by_leg)))
+        return found
 
     @cached_property
     def _numbers(self) -> dict[str, int]:
@@ -52,12 +55,13 @@ class Budget:
     @cached_property
     def _by_part(self) -> dict[str, Array]:
         """What each part adds to each of all kinds, (parts, 6)."""
-        rows: dict[tuple[str, str], list[Array]] = {}
-        for row, x in self._sums:
-            rows.setdefault((row.kind, row.part), [np.zeros(6)]).append(x)
         found = {kind: np.zeros((len(self._numbers), 6)) for kind in KINDS}
-        for (kind, part), parts in rows.items():
-            found[kind][self._numbers[part]] = combined(kind, np.array(parts))
+        for kind, rows in self._sums.items():
+            parts: dict[str, list[Array]] = {}
+            for row, x in rows:
+                parts.setdefault(row.part, [np.zeros(6)]).append(x)
+            for part, of_rows in parts.items():
+                found[kind][self._numbers[part]] = combined(kind, np.array(of_rows))
         return found
 
     @property
@@ -67,7 +71,7 @@ class Budget:
 
     def rule(self, kind: str, chosen: Callable[[ErrorRow], bool] = lambda row: True) -> Array:
         """Sum (6,) of the rows of a kind, or of some of them, by its rule; without what is left out of first order."""
-        found = [x for row, x in self._sums if row.kind == kind and chosen(row)]
+        found = [x for row, x in self._sums[kind] if chosen(row)]
         return combined(kind, np.array([np.zeros(6), *found]))
 
     def of(self, part: str, kind: str) -> Array:

@@ -57,7 +57,9 @@ def elongations(
         if "nut" in gives:
             gives["nut"] = gives["nut"] - played[..., i]
         for at, give in gives.items():
-            here = [spring for spring in springs if spring.at == at and at in places]
+            if at not in places:
+                continue
+            here = [spring for spring in springs if spring.at == at]
             for spring, share in zip(here, _shares(here, length[..., i]), strict=True):
                 if spring.name != "drive":
                     found[spring.name][..., i] += share * give

@@ -10,6 +10,7 @@ from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.kinematics.limbs import COORDINATES, HELD, Limbs
 from flexapod.kinematics.mechanism import leg_state
+from flexapod.kinematics.robot import once
 from flexapod.kinematics.rotations import quaternion
 from flexapod.kinematics.screws import screws
 from flexapod.kinematics.vectors import cross
@@ -102,7 +103,7 @@ def _with_rates(motion: tuple[RestStates, Rates]) -> State:
 
 def _undeformed(system: System, robot: Robot, path: kinematics.Poses, found: kinematics.LegState, orders: int) -> Array:
     """Coordinates of the undeformed legs on a path of T poses, rates and accelerations, (orders, T, legs, n)."""
-    legs, shapes = kinematics.built_limbs(robot, kinematics.robot_limbs(robot)), system.kernel.shapes
+    legs, shapes = _as_built(robot), system.kernel.shapes
     x = np.zeros((orders, *found.length.shape, len(COORDINATES)))
     there, at = leg_coordinates(shapes)
     for k in range(len(COORDINATES)) if shapes.has("gamma1") else there:
@@ -120,6 +121,11 @@ def _undeformed(system: System, robot: Robot, path: kinematics.Poses, found: kin
         for name, other in element.follows.items():
             q[..., shapes.index(name)] = np.where(has, q[..., shapes.index(other)], 0.0)
     return q
+
+
+@once
+def _as_built(robot: Robot) -> Limbs:
+    return kinematics.built_limbs(robot, kinematics.robot_limbs(robot))
 
 
 def _turn_balls(legs: Limbs, x: Array, path: kinematics.Poses) -> None:
