@@ -30,7 +30,9 @@ class Twice(RendererBase):
 
     def _in_points(self, gc: GraphicsContextBase) -> GraphicsContextBase:
         """What a line looks like, with its clipping in points; widths are in points already."""
-        place, (path, placed) = gc.get_clip_rectangle(), gc.get_clip_path()
+        place, clip = gc.get_clip_rectangle(), gc.get_clip_path()
+        path: Any = clip[0]
+        placed: Any = clip[1]
         if place is None and path is None:
             return gc
         made = self.points.new_gc()
@@ -40,7 +42,8 @@ class Twice(RendererBase):
                 self._clip = place, Bbox(place.get_points() * POINTS / self.dpi)
             made.set_clip_rectangle(self._clip[1])
         if path is not None:
-            made.set_clip_path(TransformedPath(path, placed + self.smaller))
+            inner: Any = TransformedPath(path, placed + self.smaller)
+            made.set_clip_path(inner)
         return made
 
     def draw_path(self, gc: Any, path: Any, transform: Any, rgbFace: Any = None) -> None:
