@@ -76,6 +76,8 @@ def _is_plain(text: Any) -> bool:
 class Canvas(FigureCanvasAgg):
     """A canvas of such an Agg."""
 
+    renderer: Letters
+
     def get_renderer(self) -> Letters:
         size = (*self.get_width_height(physical=True), self.figure.dpi)
         if self._lastKey != size:

@@ -28,7 +28,7 @@ Places = list[tuple[float, str]]
 _AXIS: Any = Axis  # much of what is used of it is private
 
 
-class Plain(_AXIS):
+class _Plain(_AXIS):
     """An axis that looks for its places once in a layout (`kept`), and draws them together."""
 
     kept: dict[Any, Any] | None = None  # what was found for a panel of one size, while a figure is saved
@@ -195,16 +195,19 @@ def _lies(label: Text, word: str, style: Hashable, renderer: Any) -> tuple[Any, 
     return _LIE[key]
 
 
-class _X(Plain, XAxis):
+class _X(_Plain, XAxis):
     pass
 
 
-class _Y(Plain, YAxis):
+class _Y(_Plain, YAxis):
     pass
 
 
 class Panel(Axes):
     """Axes with such ticks."""
+
+    xaxis: XAxis
+    yaxis: YAxis
 
     def _init_axis(self) -> None:
         self.xaxis, self.yaxis = _X(self, clear=False), _Y(self, clear=False)

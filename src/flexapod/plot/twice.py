@@ -21,6 +21,10 @@ class Unsuited(Exception):
 class Twice(RendererBase):
     """Passes what is drawn on Agg on to an SVG file, in points."""
 
+    pixels: Letters
+    points: Points
+    smaller: Affine2D
+
     def __init__(self, pixels: Letters, points: Points, dpi: float) -> None:
         super().__init__()
         self.pixels, self.points = pixels, points
@@ -96,7 +100,17 @@ class Twice(RendererBase):
     def draw_image(self, *_: Any, **__: Any) -> None:
         raise Unsuited
 
-    draw_tex = draw_quad_mesh = draw_gouraud_triangles = start_rasterizing = draw_image  # type: ignore[assignment]
+    def draw_tex(self, *_: Any, **__: Any) -> None:
+        raise Unsuited
+
+    def draw_quad_mesh(self, *_: Any, **__: Any) -> None:
+        raise Unsuited
+
+    def draw_gouraud_triangles(self, *_: Any, **__: Any) -> None:
+        raise Unsuited
+
+    def start_rasterizing(self) -> None:
+        raise Unsuited
 
 
 def draw_both(fig: Figure, file: Path, metadata: dict[str, str | None]) -> None:
