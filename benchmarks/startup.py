@@ -50,7 +50,7 @@ def startup() -> list[Section]:
         ["import flexapod.study", f"{study:.2f} s", ""],
         ["flexapod --help", f"{helped:.3f} s", goal(helped, 0.5, "0.5 s")],
         ["flexapod check, preset paper-robot", f"{check:.2f} s", ""],
-        ["flexapod run of it: figures, report, all cores", f"{ran:.2f} s", goal(ran, 3.5, "3.5 s")],
+        ["flexapod run of it: figures, report", f"{ran:.2f} s", goal(ran, 3.5, "3.5 s")],
         ["first roll ever, all compiled, whole process", f"{cold:.2f} s", goal(cold, 10.0, "10 s")],
         ["first roll of a new kind of robot, equations compiled", f"{new:.2f} s", goal(new, 2.5, "2.5 s")],
         ["2 s roll at 0.5 ms, warm, whole process", f"{warm:.2f} s", goal(warm, 1.0, "1 s")],

@@ -22,7 +22,7 @@ from flexapod.model import load, preset
 from flexapod.page.charts import charts
 from flexapod.plot import style
 from flexapod.plot.narrow import narrowed
-from flexapod.plot.panel import Panel, Plain
+from flexapod.plot.panel import Panel, _Plain
 from flexapod.plot.settings import settings
 from flexapod.plot.style import figure as page_figure
 from flexapod.plot.style import ink
@@ -205,8 +205,8 @@ def test_files_are_what_matplotlib_draws(robot, tmp_path, monkeypatch, name):
 
 
 def test_ticks_are_found_once_in_a_panel_of_one_size(robot, tmp_path, monkeypatch):
-    found, find = [], Plain._look
-    monkeypatch.setattr(Plain, "_look", lambda axis: found.append(axis) or find(axis))
+    found, find = [], _Plain._look
+    monkeypatch.setattr(_Plain, "_look", lambda axis: found.append(axis) or find(axis))
     plot.save(plot.actuator_forces(robot), tmp_path / "ours")
     assert max(Counter(map(id, found)).values()) <= 3  # in two turns of the layout, and as it is drawn
 

@@ -48,9 +48,9 @@ class Letters(RendererAgg):
         self, gc: Any, x: float, y: float, s: str, prop: FontProperties, angle: float, ismath: Any = False,
         mtext: Any = None,
     ) -> None:  # fmt: skip
-        letters = None
+        letters, flags = None, get_hinting_flag()
+        font: Any = self._prepare_font(prop)
         if _BY_LETTER and not ismath and not angle and gc.get_antialiased() and _is_plain(mtext):
-            font, flags = self._prepare_font(prop), get_hinting_flag()
             letters = _letters(font, s, prop.get_size_in_points(), self.dpi, flags)
         if letters is None:
             super().draw_text(gc, x, y, s, prop, angle, ismath, mtext)
@@ -75,6 +75,8 @@ def _is_plain(text: Any) -> bool:
 
 class Canvas(FigureCanvasAgg):
     """A canvas of such an Agg."""
+
+    renderer: Letters
 
     def get_renderer(self) -> Letters:
         size = (*self.get_width_height(physical=True), self.figure.dpi)
@@ -106,7 +108,8 @@ class Points(RendererSVG):
             super()._draw_text_as_path(gc, x, y, s, prop, angle, ismath, mtext)
             return
         size = prop.get_size_in_points() / self._text2path.FONT_SCALE
-        uses, outlines = _outlines(self._text2path._get_font(prop), s, self._text2path)
+        text2path: Any = self._text2path
+        uses, outlines = _outlines(text2path._get_font(prop), s, text2path)
         self._update_glyph_map_defs({name: path for name, path in outlines.items() if name not in self._glyph_map})
         self.writer.comment(s)
         turned = f" rotate({-angle:g})" if angle else ""

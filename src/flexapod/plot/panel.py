@@ -25,9 +25,10 @@ from flexapod.plot.settings import are_set, settings
 
 _LISTS = ("majorTicks", "minorTicks")
 Places = list[tuple[float, str]]
+_AXIS: Any = Axis  # much of what is used of it is private
 
 
-class Plain(Axis):
+class _Plain(_AXIS):
     """An axis that looks for its places once in a layout (`kept`), and draws them together."""
 
     kept: dict[Any, Any] | None = None  # what was found for a panel of one size, while a figure is saved
@@ -37,13 +38,13 @@ class Plain(Axis):
         """Ticks that nobody has asked for are not made in order to be changed: they are made as they should be."""
         missing = [name for name in _LISTS if name not in vars(self)]
         for name in missing:
-            vars(self)[name] = []
+            setattr(self, name, [])
         try:
             yield
         finally:
             for name in missing:
                 if not vars(self).get(name, True):
-                    del vars(self)[name]
+                    delattr(self, name)
 
     def set_tick_params(self, *args: Any, **kwargs: Any) -> None:
         with self._unmade():
@@ -123,7 +124,8 @@ class Plain(Axis):
         return self._found("words", lambda: self._set(renderer))
 
     def _set(self, renderer: Any) -> list[tuple[str, Array, tuple[Any, tuple[float, float]]]]:
-        label, places = self.majorTicks[0].label1, self._places() or []
+        places = self._places() or []
+        label: Any = self.majorTicks[0].label1
         at = np.tile(np.array(label.get_position(), dtype=float), (len(places), 1))
         at[:, "xy".index(self.axis_name)] = [place for place, _ in places]
         style = self.axis_name, hash(label.get_fontproperties()), label.get_ha(), label.get_va(), self.axes.figure.dpi
@@ -186,23 +188,26 @@ def _lies(label: Text, word: str, style: Hashable, renderer: Any) -> tuple[Any, 
     if key not in _LIE:
         if len(_LIE) >= MOST:
             _LIE.clear()
-        one = copy(label)
+        one: Any = copy(label)
         one.set_text(word)
         box, ((_, _, *begin), *_), *_ = one._get_layout(renderer)
         _LIE[key] = box, begin[0] if len(begin) == 1 else (begin[0], begin[1])
     return _LIE[key]
 
 
-class _X(Plain, XAxis):
+class _X(_Plain, XAxis):
     pass
 
 
-class _Y(Plain, YAxis):
+class _Y(_Plain, YAxis):
     pass
 
 
 class Panel(Axes):
     """Axes with such ticks."""
+
+    xaxis: XAxis
+    yaxis: YAxis
 
     def _init_axis(self) -> None:
         self.xaxis, self.yaxis = _X(self, clear=False), _Y(self, clear=False)
@@ -223,7 +228,7 @@ class Panels(Figure):
 @contextmanager
 def keeping(fig: Figure) -> Iterator[None]:
     """Ticks and the room of their numbers are looked for once in a panel of one size, not anew for every neighbour."""
-    axes = [axis for panel in fig.axes if isinstance(panel, Panel) for axis in (panel.xaxis, panel.yaxis)]
+    axes: list[Any] = [axis for panel in fig.axes if isinstance(panel, Panel) for axis in (panel.xaxis, panel.yaxis)]
     for axis in axes:
         axis.kept = {}
         if isinstance(axis.get_minor_locator(), NullLocator):

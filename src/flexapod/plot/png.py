@@ -28,7 +28,7 @@ def png(colors: NDArray[np.uint8], dpi: float, words: Mapping[str, str | None]) 
             _part(b"IHDR", pack(">IIBBBBB", wide, high, 8, _RGB, 0, 0, 0)),
             *said,
             _part(b"pHYs", pack(">IIB", metre, metre, 1)),
-            _part(b"IDAT", zlib.compress(rows, LEVEL)),
+            _part(b"IDAT", zlib.compress(rows.data, LEVEL)),
             _part(b"IEND", b""),
         ]
     )

@@ -41,11 +41,13 @@ _RC = {
 
 
 @cache
-def settings() -> dict[str, Any]:
+def settings() -> Any:
     """The defaults of matplotlib, and ours."""
     defaults = {name: value for name, value in matplotlib.rcParamsDefault.items() if name != "backend"}
-    with matplotlib.rc_context(defaults | _RC):  # asked for its backend, matplotlib would import pyplot
-        return {name: matplotlib.rcParams[name] for name in defaults}
+    ours: Any = defaults | _RC
+    with matplotlib.rc_context(ours):  # asked for its backend, matplotlib would import pyplot
+        now: Any = matplotlib.rcParams
+        return {name: now[name] for name in defaults}
 
 
 def are_set() -> bool:

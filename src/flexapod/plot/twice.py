@@ -21,6 +21,10 @@ class Unsuited(Exception):
 class Twice(RendererBase):
     """Passes what is drawn on Agg on to an SVG file, in points."""
 
+    pixels: Letters
+    points: Points
+    smaller: Affine2D
+
     def __init__(self, pixels: Letters, points: Points, dpi: float) -> None:
         super().__init__()
         self.pixels, self.points = pixels, points
@@ -30,7 +34,9 @@ class Twice(RendererBase):
 
     def _in_points(self, gc: GraphicsContextBase) -> GraphicsContextBase:
         """What a line looks like, with its clipping in points; widths are in points already."""
-        place, (path, placed) = gc.get_clip_rectangle(), gc.get_clip_path()
+        place, clip = gc.get_clip_rectangle(), gc.get_clip_path()
+        path: Any = clip[0]
+        placed: Any = clip[1]
         if place is None and path is None:
             return gc
         made = self.points.new_gc()
@@ -40,7 +46,8 @@ class Twice(RendererBase):
                 self._clip = place, Bbox(place.get_points() * POINTS / self.dpi)
             made.set_clip_rectangle(self._clip[1])
         if path is not None:
-            made.set_clip_path(TransformedPath(path, placed + self.smaller))
+            inner: Any = TransformedPath(path, placed + self.smaller)
+            made.set_clip_path(inner)
         return made
 
     def draw_path(self, gc: Any, path: Any, transform: Any, rgbFace: Any = None) -> None:
@@ -93,7 +100,17 @@ class Twice(RendererBase):
     def draw_image(self, *_: Any, **__: Any) -> None:
         raise Unsuited
 
-    draw_tex = draw_quad_mesh = draw_gouraud_triangles = start_rasterizing = draw_image  # type: ignore[assignment]
+    def draw_tex(self, *_: Any, **__: Any) -> None:
+        raise Unsuited
+
+    def draw_quad_mesh(self, *_: Any, **__: Any) -> None:
+        raise Unsuited
+
+    def draw_gouraud_triangles(self, *_: Any, **__: Any) -> None:
+        raise Unsuited
+
+    def start_rasterizing(self) -> None:
+        raise Unsuited
 
 
 def draw_both(fig: Figure, file: Path, metadata: dict[str, str | None]) -> None:
