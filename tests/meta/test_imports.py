@@ -35,6 +35,15 @@ def test_the_command_loads_neither_page_nor_proof_nor_paper():
     assert python(code.format(part="paper.claims", names=engines)) == "[]"
 
 
+def test_a_command_says_of_itself_what_it_says_among_all():
+    """Only the module of the command that is asked for is imported; its help is the one among all commands."""
+    code = "import typer, flexapod.cli.cli as x; group = typer.main.get_command(x.program({names})); "
+    code += "print(group.get_command(typer.Context(group), 'check').get_help(typer.Context(group)))"
+    assert python(code.format(names="['check']")) == python(code.format(names="")) != ""
+    code = "import sys, flexapod.cli.cli as x; x.program(['check']); print('flexapod.cli.commands_run' in sys.modules)"
+    assert python(code) == "False"
+
+
 def test_parts_of_the_distribution_are_what_the_programs_ask_for():
     parts = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"][
         "optional-dependencies"
