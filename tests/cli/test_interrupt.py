@@ -122,7 +122,7 @@ def test_ctrl_c_before_a_command_begins_is_no_traceback(monkeypatch):
     def interrupted():
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(cli, "app", interrupted)
+    monkeypatch.setattr(cli, "program", lambda names: interrupted)
     monkeypatch.setattr(cli, "heed_signals", lambda: None)
     with pytest.raises(SystemExit) as end:
         cli.main()

@@ -61,7 +61,7 @@ def test_a_march_stops_there(turned):
     ):
         recorded = SimpleNamespace(time=np.array([0.5]), q=state.q[None], pose=state.pose[None])
         with pytest.raises(ComputationError, match=message) if message else nullcontext():
-            _Range(study, system)(recorded)
+            _Range(study, system, controlled=False)(recorded)
 
 
 def test_it_is_not_an_equilibrium(turned):
