@@ -36,7 +36,7 @@ def _letters(font: Any, words: str, points: float, dpi: float, flags: Any) -> li
     return [(item.glyph_index, item.x, item.y) for item in found] if all(x.ft_object is font for x in found) else None
 
 
-class Letters(RendererAgg):
+class WordsOnAgg(RendererAgg):
     """Agg that remembers how words are set."""
 
     def get_text_width_height_descent(self, s: str, prop: FontProperties, ismath: Any) -> tuple[float, float, float]:
@@ -76,12 +76,12 @@ def _is_plain(text: Any) -> bool:
 class Canvas(FigureCanvasAgg):
     """A canvas of such an Agg."""
 
-    renderer: Letters
+    renderer: WordsOnAgg
 
-    def get_renderer(self) -> Letters:
+    def get_renderer(self) -> WordsOnAgg:
         size = (*self.get_width_height(physical=True), self.figure.dpi)
         if self._lastKey != size:
-            self.renderer, self._lastKey = Letters(*size), size
+            self.renderer, self._lastKey = WordsOnAgg(*size), size
         return self.renderer
 
 
@@ -94,7 +94,7 @@ def _outlines(font: Any, words: str, text2path: Any) -> tuple[str, dict[str, Any
     return "".join(uses), outlines
 
 
-class Points(RendererSVG):
+class WordsInSvg(RendererSVG):
     """An SVG file in whose words the letters of a word are one line."""
 
     def __init__(self, width: float, height: float, file: TextIO, **more: Any) -> None:

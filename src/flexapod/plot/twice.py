@@ -9,7 +9,7 @@ from matplotlib.backend_bases import GraphicsContextBase, RendererBase
 from matplotlib.figure import Figure
 from matplotlib.transforms import Affine2D, Bbox, TransformedPath
 
-from flexapod.plot.letters import Letters, Points
+from flexapod.plot.letters import WordsInSvg, WordsOnAgg
 
 POINTS = 72  # of an inch: the unit of SVG files
 
@@ -21,11 +21,11 @@ class Unsuited(Exception):
 class Twice(RendererBase):
     """Passes what is drawn on Agg on to an SVG file, in points."""
 
-    pixels: Letters
-    points: Points
+    pixels: WordsOnAgg
+    points: WordsInSvg
     smaller: Affine2D
 
-    def __init__(self, pixels: Letters, points: Points, dpi: float) -> None:
+    def __init__(self, pixels: WordsOnAgg, points: WordsInSvg, dpi: float) -> None:
         super().__init__()
         self.pixels, self.points = pixels, points
         self.dpi = dpi
@@ -122,9 +122,9 @@ def draw_both(fig: Figure, file: Path, metadata: dict[str, str | None]) -> None:
         It has images or coloured cells; nothing is of use then.
     """
     width, height = (POINTS * float(size) for size in fig.get_size_inches())
-    pixels: Letters = fig.canvas.get_renderer()  # type: ignore[attr-defined]
+    pixels: WordsOnAgg = fig.canvas.get_renderer()  # type: ignore[attr-defined]
     pixels.clear()
     with file.open("w", encoding="utf-8") as text:
-        points = Points(width, height, text, image_dpi=fig.dpi, metadata=metadata)
+        points = WordsInSvg(width, height, text, image_dpi=fig.dpi, metadata=metadata)
         fig.draw(Twice(pixels, points, fig.dpi))
         points.finalize()
