@@ -62,7 +62,8 @@ typedef struct {                        /* flat coordinates: legs * n, then the 
    fast as one for all */
 #define BY_SIZES(s, part) \
   do { \
-    if ((s)->of->rows == 3 && (s)->of->common == 0) part(3, 0); \
+    if ((s)->of->rows == 0 && (s)->of->common == 0) part(0, 0); \
+    else if ((s)->of->rows == 3 && (s)->of->common == 0) part(3, 0); \
     else if ((s)->of->rows == 6 && (s)->of->common == 0) part(6, 0); \
     else part((s)->of->rows, (s)->of->common); \
   } while (0)
