@@ -15,10 +15,10 @@ import viser
 from flexapod.page.background import Latest, Threads
 from flexapod.page.door import Door
 from flexapod.page.logs import LOG
-from flexapod.page.memory import collect, few_arenas
 from flexapod.page.running import Cores
 from flexapod.page.visitor import Pool
 from flexapod.runtime.loading import loaded
+from flexapod.runtime.memory import collect, few_arenas
 
 if TYPE_CHECKING:
     from flexapod.page.opening import StudySource

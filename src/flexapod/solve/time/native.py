@@ -12,6 +12,7 @@ import numpy as np
 from flexapod.arrays import Array
 from flexapod.errors import ComputationError
 from flexapod.integration import GeneralizedAlpha
+from flexapod.runtime.memory import keep_freed
 from flexapod.solve.kernel import Equations, Kernel
 from flexapod.solve.system import Flow, System
 from flexapod.solve.time.recording import Counters, record_width
@@ -120,6 +121,7 @@ def loops(kernel: Kernel) -> ctypes.CDLL:
 
 @cache
 def _loops(command: tuple[str, ...]) -> ctypes.CDLL:
+    keep_freed()
     library = written_library(SOURCES, list(command))
     library.march_memory.restype = library.radau_memory.restype = c_long
     library.record_state.restype = None
