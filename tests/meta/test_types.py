@@ -17,8 +17,8 @@ pytestmark = pytest.mark.skipif(PYRIGHT is None, reason="pyright is not installe
 
 
 def test_types_agree():
-    fewer_collections = os.environ | {"NODE_OPTIONS": "--max-semi-space-size=128"}  # of garbage: a twentieth of the time
-    found = subprocess.run([PYRIGHT, "src"], cwd=ROOT, env=fewer_collections, capture_output=True, text=True, check=False)
+    roomy = os.environ | {"NODE_OPTIONS": "--max-semi-space-size=128"}  # garbage is collected less often: a twentieth
+    found = subprocess.run([PYRIGHT, "src"], cwd=ROOT, env=roomy, capture_output=True, text=True, check=False)
     assert found.returncode == 0, found.stdout
 
 
