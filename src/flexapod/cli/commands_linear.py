@@ -25,6 +25,7 @@ from flexapod.cli.options import (
 from flexapod.document.terminal import tell
 from flexapod.errors import InputError
 from flexapod.runtime.files import write_text
+from flexapod.runtime.loading import without
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -63,18 +64,19 @@ def frf(
     json: Json = False,
 ) -> None:  # fmt: skip
     """Responses of outputs to inputs over frequency, about the static equilibrium at a pose."""
-    from flexapod.document.linear import frf_as_dict, frf_items
-
     check_writable(out)
     for path, key in ((uff, "--uff"), (mat, "--mat")):
         if path is not None:
             _check_file(path, key, force)
     hz = _frequencies(lowest, highest, points)
-    model = _model(file, pose, drives, friction, (input, output))
-    data = model.frequency_response(hz)
-    files = _write(model, data, out, uff, mat, figure=not no_figures)
-    items = chain(frf_items(data, pose, drives), map("Written: {}".format, files))
-    tell(items, lambda: frf_as_dict(data, files), json=json)
+    with without("dask"):
+        from flexapod.document.linear import frf_as_dict, frf_items
+
+        model = _model(file, pose, drives, friction, (input, output))
+        data = model.frequency_response(hz)
+        files = _write(model, data, out, uff, mat, figure=not no_figures)
+        items = chain(frf_items(data, pose, drives), map("Written: {}".format, files))
+        tell(items, lambda: frf_as_dict(data, files), json=json)
 
 
 @guarded
@@ -83,10 +85,11 @@ def damp(
     json: Json = False,
 ) -> None:  # fmt: skip
     """Poles about the static equilibrium at a pose: frequencies, damping, and whether they grow."""
-    from flexapod.document.linear import damp_as_dict, damp_items
+    with without("dask"):
+        from flexapod.document.linear import damp_as_dict, damp_items
 
-    data = _model(file, pose, drives, friction).damp()
-    tell(damp_items(data, pose, drives, count), lambda: damp_as_dict(data), json=json)
+        data = _model(file, pose, drives, friction).damp()
+        tell(damp_items(data, pose, drives, count), lambda: damp_as_dict(data), json=json)
 
 
 def _model(

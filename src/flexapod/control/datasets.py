@@ -7,14 +7,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from flexapod.arrays import Array
 from flexapod.control.arguments import frequencies
 from flexapod.control.poles import swings_of
+from flexapod.labelled import composed
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from flexapod.control.state_space import StateSpace
     from flexapod.solve.linear.random_vibration import RandomVibration
 
@@ -107,7 +109,7 @@ def response_dataset(
     frequency = frequencies(hz)
     name, long_name, unit = words
     attrs = {"long_name": long_name, "units": unit}
-    return xr.Dataset(
+    return composed(
         {name: (("output", "input", "frequency", "part"), in_parts(values), attrs)},
         channel_labels(system, "output", "input")
         | {"frequency": ("frequency", frequency, {"units": "Hz"}), "part": ("part", PARTS)},
@@ -137,7 +139,7 @@ def h2_dataset(system: StateSpace, values: Array, why: dict[tuple[int, int], str
         reason[at] = words
     lines = [f"{system.outputs[i]} by {system.inputs[j]} is infinite: {words}" for (i, j), words in why.items()]
     attrs = {"long_name": "H2 norm", "units": "output_units / input_units * Hz**0.5"}
-    return xr.Dataset(
+    return composed(
         {
             "h2_norm": (("output", "input"), values, attrs),
             "reason": (("output", "input"), reason.astype(str), {"long_name": "why the norm is infinite"}),
@@ -149,7 +151,7 @@ def h2_dataset(system: StateSpace, values: Array, why: dict[tuple[int, int], str
 
 def hinf_dataset(value: float, hertz: float) -> xr.Dataset:
     """`hinf_norm` and the `frequency` of it."""
-    return xr.Dataset(
+    return composed(
         {
             "hinf_norm": ((), value, {"long_name": "largest singular value over frequency"}),
             "frequency": ((), hertz, {"units": "Hz", "long_name": "frequency of the largest singular value"}),
@@ -163,7 +165,7 @@ def vibration_dataset(system: StateSpace, found: RandomVibration, error: float) 
     labels["output_b"] = ("output_b", list(system.outputs))
     f = ("spectrum_frequency", found.frequency, {"units": "Hz"})
     along = ("spectrum_frequency", "output")
-    return xr.Dataset(
+    return composed(
         {
             "psd": (along, found.psd, {"units": "output_units**2 / Hz", "long_name": "one-sided spectral density"}),
             "cumulative_rms": (along, found.cumulative, {"units": "output_units", "long_name": "rms from here up"}),
@@ -178,7 +180,7 @@ def vibration_dataset(system: StateSpace, found: RandomVibration, error: float) 
 def source_dataset(system: StateSpace, found: RandomVibration, error: float) -> xr.Dataset:
     """`rms_by_source` (source, output), whose squares add up to those of `rms`."""
     words = {"units": "output_units", "long_name": "standard deviation by source"}
-    return xr.Dataset(
+    return composed(
         {
             "rms_by_source": (("source", "output"), found.by_source, words),
             "rms": ("output", found.rms, {"units": "output_units", "long_name": "standard deviation"}),
@@ -193,7 +195,7 @@ def history_dataset(system: StateSpace, time: Array, values: Array, name: str) -
     words = {"long_name": name.replace("_", " "), "units": "output_units / input_units"}
     if name.startswith("impulse"):
         words |= {"units": "output_units / (input_units s)", "feed_through": "its impulse at 0 is left out"}
-    return xr.Dataset(
+    return composed(
         {name: (("output", "input", "time"), values, words)},
         channel_labels(system, "output", "input") | {"time": ("time", time, {"units": "s"})},
     )
@@ -210,7 +212,7 @@ def impedance_dataset(
         pair = f"spring and damper in {name}"
         found[f"{name}_stiffness"] = ("frequency", stiffness, {"units": "N/m", "long_name": f"spring of a {pair}"})
         found[f"{name}_damping"] = ("frequency", damping, {"units": "N s/m", "long_name": f"damper of a {pair}"})
-    return xr.Dataset(found, {"frequency": ("frequency", frequency, {"units": "Hz"}), "part": PARTS})
+    return composed(found, {"frequency": ("frequency", frequency, {"units": "Hz"}), "part": PARTS})
 
 
 def system_dataset(system: StateSpace) -> xr.Dataset:
@@ -219,14 +221,14 @@ def system_dataset(system: StateSpace) -> xr.Dataset:
     labels |= {name: (name, list(system.states)) for name in ("state", "state_b")}
     dims = {"A": ("state", "state_b"), "B": ("state", "input"), "C": ("output", "state"), "D": ("output", "input")}
     found = {name: (dim, getattr(system, name)) for name, dim in dims.items()}
-    return xr.Dataset(found, labels, {"sample": system.sample or 0.0, "sample_units": "s"})
+    return composed(found, labels, {"sample": system.sample or 0.0, "sample_units": "s"})
 
 
 def locus_dataset(factors: Array, poles: Complex, zeros: Complex, sample: float | None) -> xr.Dataset:
     """`pole`, `frequency`, `damping_ratio` over `gain` and `branch`, `open_zero`, where branches end."""
     _, frequency, ratio = swings_of(poles, sample)
     names = {"units": "s-1" if sample is None else "1"}
-    return xr.Dataset(
+    return composed(
         {
             "pole": (("gain", "branch", "part"), in_parts(poles), names | {"long_name": "pole of the loop"}),
             "frequency": (("gain", "branch"), frequency, {"units": "Hz", "long_name": "size over 2 pi"}),
@@ -241,7 +243,7 @@ def locus_dataset(factors: Array, poles: Complex, zeros: Complex, sample: float 
 def best_dataset(gain: float, ratio: float, frequency: float, factors: Array, ratios: Array) -> xr.Dataset:
     """`gain`, `damping_ratio`, `frequency` of the best, `least_damping_ratio` over `factor`."""
     ratio_words = {"units": "1", "long_name": "least damping ratio of the poles"}
-    return xr.Dataset(
+    return composed(
         {
             "gain": ((), gain, {"long_name": "factor on the controller"}),
             "damping_ratio": ((), ratio, ratio_words),
@@ -272,12 +274,12 @@ def margins_dataset(
         found[name] = ("actuator", values[:, 0], {"units": unit, "long_name": words})
         found[f"{name}_frequency"] = ("actuator", values[:, 1], at)
     labels = {"actuator": list(actuators), "side": ["below", "above"]}
-    return xr.Dataset(found, labels, {"unstable_poles": unstable})
+    return composed(found, labels, {"unstable_poles": unstable})
 
 
 def damping_dataset(poles: Complex, frequency: Array, ratio: Array) -> xr.Dataset:
     """`frequency`, `damping_ratio`, `pole` (mode, part) of poles that are sorted by frequency."""
-    return xr.Dataset(
+    return composed(
         {
             "frequency": ("mode", frequency, {"units": "Hz", "long_name": "size of the pole over 2 pi"}),
             "damping_ratio": ("mode", ratio, {"units": "1", "long_name": "damping ratio"}),

@@ -352,7 +352,7 @@ def dataset(
         Entries that replace those of `VARIABLES`.
     """
     loaded("xarray")
-    from flexapod.results.labelled import awaited, labelled, variable
+    from flexapod.labelled import awaited, labelled, variable
 
     forms = forms or {}
     known = {dim: len(given) for dim, (given, _) in COORDINATES.items()} | {"pair": 2}

@@ -49,13 +49,13 @@ def motion_end(data: Dataset) -> float | None:
 
 def motion_coordinates(data: Dataset) -> Dataset:
     """Commanded surge, sway, heave [m], roll, pitch, yaw [rad], their rates and accelerations (time, coordinate)."""
-    import xarray as xr
+    from flexapod.labelled import composed
 
     dims, parts = ("time", "coordinate"), {}
     for name, ending in (("position", ""), ("rate", "_rate"), ("acceleration", "_acceleration")):
         both = [data[f"{kind}_command{ending}"].values for kind in ("translation", "rotation")]
         parts[name] = (dims, np.concatenate(both, axis=1))
-    return xr.Dataset(parts, coords={"time": data.time, "coordinate": list(model.AXES)})
+    return composed(parts, {"time": data.time, "coordinate": list(model.AXES)})
 
 
 def scene(data: Dataset, time: float = 0.0, magnify: float = 1.0) -> Scene:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, cast
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 
@@ -31,6 +31,7 @@ from flexapod.units import DIMENSIONS, to_si
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
 
 __all__ = ["MATRICES", "LinearModel", "linearize", "model_of", "plant_of", "study_about_rest"]
 
@@ -218,7 +219,7 @@ def _grid(
     load: LoadLike,
 ) -> Dataset:
     """Matrices on motions at many poses."""
-    import xarray as xr
+    from flexapod.labelled import composed
 
     found = study_about_rest(study, load, drives, friction)
     path = as_many(found.robot, pose)
@@ -240,17 +241,16 @@ def _grid(
             parts.setdefault(name, np.full((len(path), *value.shape[1:]), np.nan))
             parts[name][at[~fell]] = value[~fell]
     units = units_of(found.robot, [*given, *seen])
-    labels = {"pose": np.arange(len(path)), "coordinate": list(model.AXES), "motion": list(motions)}
+    labels: dict[str, Any] = {"pose": np.arange(len(path)), "coordinate": list(model.AXES), "motion": list(motions)}
     labels |= {"motion_by": list(motions), "input": [c.name for c in given], "output": [c.name for c in seen]}
-    data = xr.Dataset(
+    for name, channels in (("input", given), ("output", seen)):
+        labels[f"{name}_units"] = (name, [units[c.name] for c in channels])
+    return composed(
         {name: (MATRICES[name][1], value, {"long_name": MATRICES[name][2]}) for name, value in parts.items()}
         | {"pose_from_home": (("pose", "coordinate"), coordinates_of(found.robot, path), {"long_name": FROM_HOME})}
         | {"reason": ("pose", reason, {"long_name": "why a pose has none", **flags()})},
         labels,
         {"study": _name(found), "drives": drives, "friction": found.simulation.friction, "free_motions": free},
-    )
-    return data.assign_coords(
-        {f"{x}_units": (x, [units[str(name)] for name in data[x].values]) for x in ("input", "output")}
     )
 
 

@@ -76,7 +76,7 @@ def _family_rows(found: Findings, name: str) -> list[SettingRow]:
 
 def rows_dataset(rows: list[SettingRow], quantities: Iterable[str], attrs: Mapping[str, object]) -> Dataset:
     """Rows as a Dataset along ``setting``."""
-    import xarray as xr
+    from flexapod.labelled import composed
 
     def column(values: Iterable[object], unit: str, words: str) -> tuple[str, object, dict[str, str]]:
         return "setting", np.array(list(values)), {"units": unit, "long_name": words}
@@ -101,12 +101,12 @@ def rows_dataset(rows: list[SettingRow], quantities: Iterable[str], attrs: Mappi
         data[f"peak_{q}"] = column((t.peak(q) for t in trials), "m", f"largest {words}")
         data[f"error_{q}"] = column((row.error[q] for row in rows), "1", f"relative error of the {words}")
         data[f"order_{q}"] = column((row.order[q] for row in rows), "1", f"observed order of the {words}")
-    return xr.Dataset(data, attrs=dict(attrs))
+    return composed(data, attrs=attrs)
 
 
 def _groups(found: Findings) -> Dataset:
     """What each family tells, along ``group``."""
-    import xarray as xr
+    from flexapod.labelled import composed
 
     families = [found.family(name) for name in FAMILIES if found.trials.get(name)]
     main = found.quantities[0]
@@ -118,7 +118,7 @@ def _groups(found: Findings) -> Dataset:
     for q in found.quantities:
         own = np.array([f.own_error(q) for f in families])
         data[f"own_error_{q}"] = ("group", own, {"units": "1", "long_name": f"{QUANTITIES[q]}: error of the reference"})
-    return xr.Dataset(data, coords={"group": [f.name for f in families]})
+    return composed(data, {"group": [f.name for f in families]})
 
 
 def _reference(family: Family) -> str:

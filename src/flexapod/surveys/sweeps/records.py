@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from xarray import Variable
 from xarray.backends import BackendArray
 from xarray.core import indexing
 
 from flexapod.surveys.sweeps.store import SweepStore
 
 
-def lazy(path: Path, name: str, shape: tuple[int, ...]) -> Any:
-    """A record of all points as data of a variable, kept in memory once it was read whole."""
+def lazy(
+    path: Path, name: str, dims: tuple[str, ...], shape: tuple[int, ...], attributes: Mapping[str, Any]
+) -> Variable:
+    """A record of all points as a variable, kept in memory once it was read whole."""
     array: Any = indexing.LazilyIndexedArray(_Record(path, name, shape))
-    return indexing.MemoryCachedArray(indexing.CopyOnWriteArray(array))
+    kept = indexing.MemoryCachedArray(indexing.CopyOnWriteArray(array))
+    return Variable(dims, kept, dict(attributes), fastpath=True)
 
 
 class _Record(BackendArray):

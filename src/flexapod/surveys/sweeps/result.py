@@ -50,8 +50,7 @@ def store_file(path: Path) -> Path:
 
 def as_dataset(store: SweepStore) -> Dataset:
     """The Dataset of an open store: whole records of one on disk stay there until they are used."""
-    import xarray as xr
-
+    from flexapod.labelled import composed
     from flexapod.surveys.sweeps.records import lazy
 
     known = store.known
@@ -68,8 +67,10 @@ def as_dataset(store: SweepStore) -> Dataset:
     for (name, (dims, shape, attributes, _)), begin, end in zip(scalars.items(), ends[:-1], ends[1:], strict=True):
         made[name] = (dims, np.ascontiguousarray(numbers[:, begin:end]).reshape(shape), attributes)
     for name, (dims, shape, attributes, _) in known.kept(records=True).items():
-        values = lazy(store.path, name, shape) if store.path else store.record(name, range(known.size), shape[1:])
-        made[name] = (dims, values, attributes)
+        if store.path:
+            made[name] = lazy(store.path, name, dims, shape, attributes)
+        else:
+            made[name] = (dims, store.record(name, range(known.size), shape[1:]), attributes)
     made["status"] = ("point", states, {"long_name": "state of the point"})
     made["message"] = ("point", words[FAILED], {"long_name": "why there is no result"})
     made["remarks"] = ("point", words[COMPUTED], {"long_name": "remarks on the result, a line each"})
@@ -78,7 +79,7 @@ def as_dataset(store: SweepStore) -> Dataset:
         for name, (dims, _, attributes, values) in known.arrays.items()
         if values is not None
     }
-    return xr.Dataset(made, coords=coordinates, attrs=known.header)
+    return composed(made, coordinates, known.header)
 
 
 def unstacked(data: Dataset) -> Dataset:
@@ -100,10 +101,10 @@ def unstacked(data: Dataset) -> Dataset:
             at = tuple(slice(None) if axis == own else 0 for axis in names)
             whole, dims = whole[at], [own, *array.dims[1:]]
         made[str(name)] = (dims, whole, array.attrs)
-    import xarray as xr
+    from flexapod.labelled import composed
 
     coords = {name: made.pop(str(name)) for name in data.coords}
-    return xr.Dataset(made, coords=coords, attrs=data.attrs)
+    return composed(made, coords, data.attrs)
 
 
 def save_table(data: Dataset, path: str | Path) -> Path:
