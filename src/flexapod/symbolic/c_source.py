@@ -11,8 +11,8 @@ from flexapod.symbolic.functions import NamedFunction
 __all__ = ["c_source", "of_one_unit"]
 
 #: Statements beyond which a C function is written in parts, and those of a part: the time and memory of a compiler grow
-#: faster than the text, while a function in parts is slower, by how much depends on where the stack begins.
-WHOLE, LONGEST = 15_000, 5000
+#: faster than the text, while a residual in parts takes some per cent longer.
+WHOLE, LONGEST = 6000, 2500
 #: Operations beyond which a function is a table: as statements each costs a compiler 0.2 ms.
 TABLED = 30_000
 _VALUE = re.compile(r"\b[tsc]\d+\b")
