@@ -135,29 +135,52 @@ def shaft(omega: float, leg: UniformLeg) -> Stiffness:
 
 def robot(omega: float, legs: Sequence[UniformLeg], body: LockedPayload) -> Stiffness:
     """Return the stiffness on the payload's coordinates and the turns of each leg's ends, Eq. (T7.13)."""
+    return assembled(legs, body)(omega)
+
+
+def assembled(legs: Sequence[UniformLeg], body: LockedPayload) -> Callable[[float], Stiffness]:
+    """Return `robot` as a function of omega: where its legs stand is found once."""
     free, turns = len(body.free), [sum(map(len, leg.turns())) for leg in legs]
     twist, mass = np.zeros((6, free + sum(turns))), np.zeros((6, 6))
     twist[:, :free], mass[:3, :3], mass[3:, 3:] = body.free.T, body.mass * np.eye(3), body.inertia
-    K, count, at = -(omega**2) * twist.T @ mass @ twist, 0, free
-    for leg, own in zip(legs, turns, strict=True):
-        part, held = _leg(omega, leg, leg.tip - body.com, twist, at)
-        K, count, at = K + part, count + held, at + own
-    return K, count
+    starts = free + np.cumsum([0, *turns])[: len(turns)]
+    placed = [(leg, *_placed(leg, leg.tip - body.com, twist, at)) for leg, at in zip(legs, starts, strict=True)]
+
+    def at_frequency(omega: float) -> Stiffness:
+        K, count = -(omega**2) * twist.T @ mass @ twist, 0
+        for leg, inertia, cylinder, turn, moved in placed:
+            part, held = _leg(omega, leg, inertia, cylinder, turn, moved)
+            K, count = K + part, count + held
+        return K, count
+
+    return at_frequency
 
 
-def _leg(omega: float, leg: UniformLeg, arm: np.ndarray, twist: np.ndarray, at: int) -> Stiffness:
-    """One leg's part: its ends turn by the coordinates from `at` on, its tip is at `arm` from the centre of mass."""
+def _placed(
+    leg: UniformLeg, arm: np.ndarray, twist: np.ndarray, at: int
+) -> tuple[float, np.ndarray, np.ndarray, np.ndarray]:
+    """Inertia about the universal joint; turns of the cylinder and at the tip, and shifts of the tip, in leg axes.
+
+    Ends turn by the coordinates from `at` on; the tip is at `arm` from the centre of mass.
+    """
     base, tip = leg.turns()
     middle = at + len(base)
     cylinder, turn = np.zeros((3, twist.shape[1])), twist[3:].copy()
     cylinder[:, at:middle], turn[:, middle : middle + len(tip)] = base.T, tip.T
     moved = twist[:3] + np.cross(twist[3:], arm, axis=0)
-    cylinder, turn, moved = (leg.axes().T @ part for part in (cylinder, turn, moved))
+    axes = leg.axes().T
+    return leg.pivot_inertias()[0], axes @ cylinder, axes @ turn, axes @ moved
+
+
+def _leg(
+    omega: float, leg: UniformLeg, inertia: float, cylinder: np.ndarray, turn: np.ndarray, moved: np.ndarray
+) -> Stiffness:
+    """One leg's part, of what `_placed` gives."""
     along, count = bar(omega, leg)
     K = along * np.outer(moved[2], moved[2]) - omega**2 * leg.axial_inertia * np.outer(cylinder[2], cylinder[2])
     slopes = ((cylinder[1], turn[1]), (-cylinder[0], -turn[0]))
+    local, held = lateral(omega, leg, inertia)
     for plane in leg.planes:
-        local, held = lateral(omega, leg, leg.pivot_inertias()[0])
         place = np.stack([*slopes[plane], moved[plane]])
         K, count = K + place.T @ local @ place, count + held
     if leg.GJ:
@@ -194,4 +217,5 @@ def roots(count: Count, n: int, start: float = 1.0, tolerance: float = 1e-12) ->
 
 def robot_frequencies(legs: Sequence[UniformLeg], body: LockedPayload, n: int) -> np.ndarray:
     """Return the first n frequencies [Hz] of the robot."""
-    return roots(lambda omega: below(robot(omega, legs, body)), n)
+    stiffness = assembled(legs, body)
+    return roots(lambda omega: below(stiffness(omega)), n)
