@@ -92,19 +92,17 @@ def content(study):
     return study.replace(source_text="x", path=None, notes=())
 
 
-def same(text, path):
-    study = loads(text, path=path)
+def same(study, text, path):
     again = to_toml(study)
     assert letters(again) == letters(text)
     read = loads(again, path=path)
     assert content(read) == content(study)
     assert to_toml(read) == again == to_toml(pickle.loads(pickle.dumps(study)))
-    return study
 
 
 def test_presets_examples_and_the_examples_of_the_reference(texts):
     for text, path in texts.values():
-        same(text, path)
+        same(loads(text, path=path), text, path)
 
 
 def test_studies_in_other_words(texts):
@@ -114,10 +112,10 @@ def test_studies_in_other_words(texts):
         text, path = texts[r.choice(list(texts))]
         text = plain(respelled(r, tomllib.loads(text)), spelled(r))
         try:
-            loads(text, path=path)
+            study = loads(text, path=path)
         except InputError:
             continue
-        same(text, path)
+        same(study, text, path)
         taken += 1
         if taken == COUNT:
             return
