@@ -162,12 +162,14 @@ class Study(_Documented):
     def _sections(self) -> Self:
         basis = self.simulation.lateral_basis
         several = any(leg.piston.sections for leg in self.robot.legs)
-        if several and self.simulation.lateral_shapes and basis != "tip-load":
+        shear = any(leg.piston.shear for leg in self.robot.legs)
+        if (several or shear) and self.simulation.lateral_shapes and basis != "tip-load":
             raise InputError(
-                "does not know pistons of several sections",
+                f"does not know pistons {'of several sections' if several else 'that shear'}",
                 key="simulation.fidelity" if basis in OWN_BASIS.values() else "simulation.basis",
                 value=self.simulation.fidelity if basis in OWN_BASIS.values() else basis,
                 allowed='rigid, lumped, or assumed-modes with basis = "tip-load"',
+                next_step=None if several else "Choose one of them, or leave out leg.piston.shear",
             )
         return self
 
