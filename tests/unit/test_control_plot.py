@@ -50,6 +50,15 @@ def test_what_symmetry_makes_zero_is_not_drawn_as_noise():
     np.testing.assert_allclose(size.lines[0].get_ydata(), 1e-12 * np.abs(one.at(HZ)[0, 0]))
 
 
+@pytest.mark.parametrize("factor", [0.0, np.nan])
+def test_responses_without_a_size_are_refused(factor):
+    # Matplotlib has no axis of logarithms for them, and says so only when the figure is saved
+    data = mode().frequency_response(HZ)
+    data["frequency_response"] = data.frequency_response * factor
+    with pytest.raises(InputError, match="are 0 at all frequencies"):
+        plot.bode(data)
+
+
 def test_phases_jump_without_a_line():
     data = mode().frequency_response(HZ)
     y = plot.bode(data, "floor", "tool").axes[1].lines[0].get_ydata()

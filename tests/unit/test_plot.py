@@ -260,6 +260,13 @@ def test_legs_of_equal_commands_are_alike(robot):
         assert words in plot.leg_lengths(same).axes[0].get_title(loc="left")
 
 
+@pytest.mark.parametrize("name", ["com_path", "actuator_forces", "leg_lengths", "energies", "deviation_by_cause"])
+def test_results_without_instants_are_refused(robot, name):
+    with pytest.raises(InputError, match="time: has no instant"):
+        getattr(plot, name)(robot.isel(time=slice(0, 0)))
+    getattr(plot, name)(robot.isel(time=slice(0, 1))).draw_without_rendering()
+
+
 def test_a_figure_for_a_column_stays_as_it_was(robot, tmp_path):
     figure = plot.leg_lengths(robot)
     size, legend = tuple(figure.get_size_inches()), figure.legends[0]

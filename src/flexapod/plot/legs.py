@@ -22,6 +22,7 @@ _WORDS = {"rigid": "rigid legs", "lumped": "legs that stretch", "assumed-modes":
 
 
 @styled
+@needs()
 def actuator_forces(data: xr.Dataset) -> Figure:
     """Forces of the drives: rigid robot against the multibody model, with their difference below.
 
@@ -101,6 +102,7 @@ def _limits(values: np.ndarray) -> tuple[float, float]:
 
 
 @styled
+@needs()
 def leg_lengths(data: xr.Dataset) -> Figure:
     """What the drives command, lengths of legs or places of carriages, and how far the flexible robot is off.
 
