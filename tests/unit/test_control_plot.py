@@ -36,7 +36,7 @@ def test_bode_shows_named_channels_of_several_results():
 
 
 def test_what_symmetry_makes_zero_is_not_drawn_as_noise():
-    C = [[1.0, 0], [1e-12, 0], [1e-12, 0], [1e-7, 0]]  # rounding, in metres and radians, and a stroke that is small
+    C = [[1.0, 0], [1e-12, 0], [3e-9, 0], [1e-7, 0]]  # rounding, in metres and radians, and a stroke that is small
     names = ("tool:z", "tool:x", "tool:ry", "stroke:1")
     units = dict(zip(names, ("m", "m", "rad", "m"), strict=True)) | {"u": "N"}
     one = fc.StateSpace(
