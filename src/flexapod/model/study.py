@@ -160,14 +160,14 @@ class Study(_Documented):
 
     @model_validator(mode="after")
     def _sections(self) -> Self:
-        basis = self.simulation.lateral_basis
-        several = any(leg.piston.sections for leg in self.robot.legs)
-        shear = any(leg.piston.shear for leg in self.robot.legs)
+        basis, pistons = self.simulation.lateral_basis, [leg.piston for leg in self.robot.legs]
+        several, shear = any(piston.sections for piston in pistons), any(piston.shear for piston in pistons)
         if (several or shear) and self.simulation.lateral_shapes and basis != "tip-load":
+            own = basis in OWN_BASIS.values()
             raise InputError(
                 f"does not know pistons {'of several sections' if several else 'that shear'}",
-                key="simulation.fidelity" if basis in OWN_BASIS.values() else "simulation.basis",
-                value=self.simulation.fidelity if basis in OWN_BASIS.values() else basis,
+                key="simulation.fidelity" if own else "simulation.basis",
+                value=self.simulation.fidelity if own else basis,
                 allowed='rigid, lumped, or assumed-modes with basis = "tip-load"',
                 next_step=None if several else "Choose one of them, or leave out leg.piston.shear",
             )
