@@ -160,17 +160,15 @@ class Study(_Documented):
 
     @model_validator(mode="after")
     def _sections(self) -> Self:
-        basis, pistons = self.simulation.lateral_basis, [leg.piston for leg in self.robot.legs]
-        several, shear = any(piston.sections for piston in pistons), any(piston.shear for piston in pistons)
-        if (several or shear) and self.simulation.lateral_shapes and basis != "tip-load":
-            own = basis in OWN_BASIS.values()
+        pistons = [leg.piston for leg in self.robot.legs] if self.simulation.lateral_shapes else []
+        several = any(piston.sections for piston in pistons)
+        if (several or any(piston.shear for piston in pistons)) and self.simulation.lateral_basis != "tip-load":
+            name = "fidelity" if self.simulation.lateral_basis in OWN_BASIS.values() else "basis"
             raise InputError(
                 f"does not know pistons {'of several sections' if several else 'that shear'}",
-                key="simulation.fidelity" if own else "simulation.basis",
-                value=self.simulation.fidelity if own else basis,
+                key=f"simulation.{name}", value=getattr(self.simulation, name),
                 allowed='rigid, lumped, or assumed-modes with basis = "tip-load"',
-                next_step=None if several else "Choose one of them, or leave out leg.piston.shear",
-            )
+            )  # fmt: skip
         return self
 
     @model_validator(mode="after")
