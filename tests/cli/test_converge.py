@@ -58,6 +58,20 @@ def test_json(flexapod, beam, folder):
     assert (folder / "there" / "convergence.nc").is_file()
 
 
+def test_a_first_robot_has_pistons_that_shear_and_no_beam_elements(flexapod, folder, monkeypatch):
+    monkeypatch.setattr(plan, "COUNTS", {"shapes": (1, 2), "elements": (1,), "segments": (1,)})
+    flexapod("new", "first.toml", "--from", "home=900 mm, payload=150 kg, stroke=200 mm")
+    text = (folder / "first.toml").read_text(encoding="utf-8")
+    assert "shear = true" in text
+    (folder / "first.toml").write_text(text + 'duration = "0.2 s"\noutput_step = "5 ms"\n', encoding="utf-8")
+    run = flexapod("converge", "first.toml", "--accuracy", "0.03", "--json")
+    assert run.exit_code == 0, run.stderr
+    found = json.loads(run.stdout)
+    assert {row["family"] for row in found["settings"]} >= {"step", "shapes"}
+    assert not {"elements", "segments"} & {row["family"] for row in found["settings"]}
+    assert not any(row.get("failure") for row in found["settings"])
+
+
 @pytest.mark.parametrize("accuracy", ["2", "0", "-0.1", "nan"])
 def test_bad_accuracy(flexapod, beam, folder, accuracy):
     run = flexapod("converge", beam, "--accuracy", accuracy)

@@ -151,6 +151,20 @@ def test_fidelities_that_know_sections():
         fx.ladder(study(40))
 
 
+@pytest.mark.parametrize(
+    "settings",
+    [{"fidelity": name, "modes": 4} for name in ("beam-fem", "finite-segment", "solid-fem")]
+    + [{"fidelity": "assumed-modes", "basis": "clamped-free"}],
+)
+def test_shapes_that_do_not_know_shear_are_refused(settings):
+    thick = fx.loads(re.sub(r"piston = \{ dia.*?\}", THICK, preset_text("paper-robot"), count=1))
+    with pytest.raises(fx.InputError, match="does not know pistons that shear") as refused:
+        fx.modes(thick, **settings)
+    assert "tip-load" in (refused.value.allowed or "")
+    with pytest.raises(fx.InputError, match=r"leg.piston.shear.*not known to half"):
+        fx.ladder(thick)
+
+
 @pytest.mark.parametrize(("piston", "words"), [
     ('{ sections = [], bow = 0 }', r"leg\.piston\.sections.*is empty"),
     ('{ sections = [{ length = 1, diameter = 0.03, material = "steel" }], diameter = 0.03 }', "together with sections"),

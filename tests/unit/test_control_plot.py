@@ -36,7 +36,7 @@ def test_bode_shows_named_channels_of_several_results():
 
 
 def test_what_symmetry_makes_zero_is_not_drawn_as_noise():
-    C = [[1.0, 0], [1e-12, 0], [1e-12, 0], [1e-7, 0]]  # rounding, in metres and radians, and a stroke that is small
+    C = [[1.0, 0], [1e-12, 0], [3e-9, 0], [1e-7, 0]]  # rounding, in metres and radians, and a stroke that is small
     names = ("tool:z", "tool:x", "tool:ry", "stroke:1")
     units = dict(zip(names, ("m", "m", "rad", "m"), strict=True)) | {"u": "N"}
     one = fc.StateSpace(
@@ -48,6 +48,15 @@ def test_what_symmetry_makes_zero_is_not_drawn_as_noise():
     assert "without 2 that are zero" in size.get_title(loc="left")
     size, _ = plot.bode(one.frequency_response(HZ), outputs="tool:x").axes  # who asks for it alone sees it
     np.testing.assert_allclose(size.lines[0].get_ydata(), 1e-12 * np.abs(one.at(HZ)[0, 0]))
+
+
+@pytest.mark.parametrize("factor", [0.0, np.nan])
+def test_responses_without_a_size_are_refused(factor):
+    # Matplotlib has no axis of logarithms for them, and says so only when the figure is saved
+    data = mode().frequency_response(HZ)
+    data["frequency_response"] = data.frequency_response * factor
+    with pytest.raises(InputError, match="are 0 at all frequencies"):
+        plot.bode(data)
 
 
 def test_phases_jump_without_a_line():

@@ -161,6 +161,28 @@ def test_integrators_in_a_row_and_critical_damping_equal_solving():
     assert close(critical.at(hz), solved(critical, hz))
 
 
+@pytest.mark.parametrize("n", [2, 3, 4, 5])
+@pytest.mark.parametrize("rate", [0.3, 20.0, 4e3])
+@pytest.mark.parametrize("count", [7, 200])
+def test_equal_filters_in_a_row_are_a_power_of_one(n, rate, count):
+    # (a / (s + a))^n. Its matrix is triangular, its poles equal to the last bit and their shapes all the same: 1e-12
+    # is some thousand roundings of a product of n factors. Half of the cases with states in units far apart.
+    hz = np.geomspace(1e-3, 1e3, count) * rate
+    expected = (rate / (2j * np.pi * hz + rate)) ** n
+    for units in (np.ones(n), 10.0 ** (3 * (-1.0) ** np.arange(n))):
+        g = fx.control.StateSpace(
+            A=(rate * (np.diag(np.ones(n - 1), 1) - np.eye(n))) * units[:, None] / units,
+            B=rate * units[:, None] * np.eye(n)[:, [-1]],
+            C=np.eye(n)[[0]] / units,
+            D=np.zeros((1, 1)),
+            inputs=("u",),
+            outputs=("y",),
+            states=tuple(f"x{k}" for k in range(n)),
+            units={},
+        )
+        np.testing.assert_allclose(g.at(hz)[0, 0], expected, rtol=1e-12)
+
+
 def test_a_sampled_system_is_evaluated_on_the_circle():
     system = StateSpace(
         A=np.array([[0.9]]), B=np.array([[0.1]]), C=np.eye(1), D=np.zeros((1, 1)), inputs=("u",), outputs=("y",),

@@ -250,6 +250,23 @@ def test_figures_are_as_wide_as_a_page_and_legible(robot, name):
     assert all(ink(to_hex(text.get_color())) == to_hex(text.get_color()) for text in texts)  # contrast on white
 
 
+def test_legs_of_equal_commands_are_alike(robot):
+    # Joints to six digits in a file leave 1e-9 of a length between legs, which is nobody's travel
+    for spread, words in ((1e-10, "all legs alike"), (1e-5, "legs differ by up to")):
+        shares = 1 + spread * robot.leg / 6
+        same = robot.assign(
+            leg_length_command=(robot.leg_length_command.isel(leg=0) * shares).transpose(*robot.leg_length_command.dims)
+        )
+        assert words in plot.leg_lengths(same).axes[0].get_title(loc="left")
+
+
+@pytest.mark.parametrize("name", ["com_path", "actuator_forces", "leg_lengths", "energies", "deviation_by_cause"])
+def test_results_without_instants_are_refused(robot, name):
+    with pytest.raises(InputError, match="time: has no instant"):
+        getattr(plot, name)(robot.isel(time=slice(0, 0)))
+    getattr(plot, name)(robot.isel(time=slice(0, 1))).draw_without_rendering()
+
+
 def test_a_figure_for_a_column_stays_as_it_was(robot, tmp_path):
     figure = plot.leg_lengths(robot)
     size, legend = tuple(figure.get_size_inches()), figure.legends[0]

@@ -234,8 +234,10 @@ def test_a_solid_study_is_compared_with_solids_only():
     from flexapod.model import override, preset
     from flexapod.surveys.convergence.plan import base_setting, discretisations, largest
 
-    base = base_setting(override(preset("paper-robot"), fidelity="solid-fem"))
-    assert {(family, setting.fidelity) for family, setting in discretisations(base, 1e-3)} == {("shapes", "solid-fem")}
+    study = override(preset("paper-robot"), fidelity="solid-fem")
+    base = base_setting(study)
+    found = discretisations(study, base, 1e-3)
+    assert {(family, setting.fidelity) for family, setting in found} == {("shapes", "solid-fem")}
     assert largest(base).fidelity == "solid-fem"
 
 

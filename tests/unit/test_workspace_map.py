@@ -292,6 +292,21 @@ def test_figures_of_lines_slices_and_volumes(study, axes, tmp_path):
     assert fx.plot.save(figure, tmp_path / "map")[0].stat().st_size > 10_000
 
 
+def test_rounding_has_no_colours_and_no_contours(study):
+    # A map whose values differ in their last bits alone, as the gap of two joints that stand fixed: within 1e-12
+    x = np.linspace(-0.1, 0.1, 7)
+    data = fx.workspace_map(study, {"surge": x, "heave": 0.2 * x}, fidelity="lumped")
+    wobble = 1 + 1e-13 * np.random.default_rng(1).standard_normal(data.leg_clearance.shape)
+    for factor, lines in ((wobble, 0), (1 + 0.1 * data.surge, 1)):
+        axes = fx.plot.workspace_map(
+            data.assign(leg_clearance=0.0565 * (0 * data.leg_clearance + factor)), "leg_clearance"
+        ).axes[0]
+        mesh = next(c for c in axes.collections if hasattr(c, "get_coordinates"))
+        colours = mesh.norm(mesh.get_array().compressed())
+        assert (np.ptp(colours) > 0.9) == bool(lines)
+        assert any("Contour" in type(c).__name__ for c in axes.collections) == bool(lines)
+
+
 def test_cells_out_of_reach_are_not_coloured(study):
     data = fx.workspace_map(
         study, {"sway": [-0.1, 0.0, 0.1, 0.9], "heave": [-0.35, 0.0, 0.02, 0.04]}, fidelity="lumped"

@@ -45,7 +45,7 @@ __all__ = [
 
 Complex = NDArray[np.complex128]
 PARTS = ["real", "imaginary"]
-ROUNDING = 1e-9  # of the largest response of its kind: what is no more is zero
+ROUNDING = 1e-8  # of the largest response of its kind: what is no more is zero
 RESPONSE = ("frequency_response", "response of outputs to inputs", "output_units / input_units")
 
 
@@ -86,7 +86,7 @@ def beyond_rounding(sizes: Mapping[tuple[str, str], float], units: Mapping[str, 
     """Pairs of output and input whose size is more than rounding beside outputs alike by the same input.
 
     `units` of the outputs: alike are those of one, where a radian counts as a metre, and 1 N m as 1 N. What symmetry
-    makes zero comes out at 1e-11 and less.
+    makes zero comes out at 3e-9 and less, of a pose of equilibrium that is symmetric to that.
     """
     kind = {output: units[output].replace("rad", "m").replace("N m", "N") for output, _ in sizes}
     most: dict[tuple[str, str], float] = {}

@@ -18,6 +18,8 @@ Complex = NDArray[np.complex128]
 UPON = 1e-15  # distance from a pole over its size at which a point lies upon it
 CHECKED = 12  # frequencies at which poles and residues are compared with solving
 ALIKE = 1e5  # condition of the shapes of poles above which residues cancel
+NEAR = 1e-4  # distance of two poles over their size below which they may be one of which rounding makes two
+PARALLEL = 1e-9  # and what 1 - cosine of their shapes is then
 AGREES = 1e-9  # of the response, or a tenth of
 CANCELS = 0.1  # what its poles could add up to
 SHIFTED = 2**0.5  # from the middle of the points, which may lie upon a pole
@@ -54,7 +56,7 @@ def _regular(A: Array, B: Array, C: Array, s: Complex) -> Complex:
     )  # (T21.35): those amid the points to rounding, however fast others are
     _refuse_poles(values, s)
     sizes = np.linalg.norm(shapes, axis=1, keepdims=True)  # of states: their units are no matter
-    if np.linalg.cond(shapes / np.where(sizes > 0, sizes, 1.0)) > ALIKE:
+    if np.linalg.cond(shapes / np.where(sizes > 0, sizes, 1.0)) > ALIKE or _repeated(values, shapes):
         return _in_halves(A, B, C, s)
     left, right = np.linalg.solve(shapes, B.astype(complex)).astype(complex), (C @ shapes).astype(complex)
     some = _where_it_matters(values, s)
@@ -64,6 +66,18 @@ def _regular(A: Array, B: Array, C: Array, s: Complex) -> Complex:
     if (np.abs(by_poles - known) <= AGREES * np.maximum(np.abs(known), CANCELS * most)).all():
         return _by_residues(values, left, right, s)
     return _in_halves(A, B, C, s)
+
+
+def _repeated(values: Complex, shapes: Complex) -> bool:
+    """Whether a pole has fewer shapes than it is often there, as that of two equal filters in a row.
+
+    Sizes of states hide it, for which the second shape is the first and next to nothing of another state.
+    """
+    close = np.abs(values[:, None] - values) <= NEAR * np.abs(values)
+    np.fill_diagonal(close, False)
+    i, j = np.nonzero(np.triu(close | close.T))
+    unit = shapes / np.linalg.norm(shapes, axis=0)
+    return bool((np.abs((unit[:, i].conj() * unit[:, j]).sum(axis=0)) > 1 - PARALLEL).any())
 
 
 def _in_halves(A: Array, B: Array, C: Array, s: Complex) -> Complex:

@@ -160,15 +160,15 @@ class Study(_Documented):
 
     @model_validator(mode="after")
     def _sections(self) -> Self:
-        basis = self.simulation.lateral_basis
-        several = any(leg.piston.sections for leg in self.robot.legs)
-        if several and self.simulation.lateral_shapes and basis != "tip-load":
+        pistons = [leg.piston for leg in self.robot.legs] if self.simulation.lateral_shapes else []
+        several = any(piston.sections for piston in pistons)
+        if (several or any(piston.shear for piston in pistons)) and self.simulation.lateral_basis != "tip-load":
+            name = "fidelity" if self.simulation.lateral_basis in OWN_BASIS.values() else "basis"
             raise InputError(
-                "does not know pistons of several sections",
-                key="simulation.fidelity" if basis in OWN_BASIS.values() else "simulation.basis",
-                value=self.simulation.fidelity if basis in OWN_BASIS.values() else basis,
+                f"does not know pistons {'of several sections' if several else 'that shear'}",
+                key=f"simulation.{name}", value=getattr(self.simulation, name),
                 allowed='rigid, lumped, or assumed-modes with basis = "tip-load"',
-            )
+            )  # fmt: skip
         return self
 
     @model_validator(mode="after")

@@ -14,6 +14,7 @@ from flexapod.plot.style import LINE_STYLES, PAGE, columns, figure, flat_on_the_
 from flexapod.scene.colours import FLEXIBLE, LEG_COLORS, RIGID, colors_of_legs
 from flexapod.scene.drives import drives
 from flexapod.scene.robot import motion_end
+from flexapod.ties import EQUALS
 from flexapod.words import NOTHING, Scale, scale, text
 
 ROUNDING = 1e-11  # of where drives stand
@@ -21,6 +22,7 @@ _WORDS = {"rigid": "rigid legs", "lumped": "legs that stretch", "assumed-modes":
 
 
 @styled
+@needs()
 def actuator_forces(data: xr.Dataset) -> Figure:
     """Forces of the drives: rigid robot against the multibody model, with their difference below.
 
@@ -100,6 +102,7 @@ def _limits(values: np.ndarray) -> tuple[float, float]:
 
 
 @styled
+@needs()
 def leg_lengths(data: xr.Dataset) -> Figure:
     """What the drives command, lengths of legs or places of carriages, and how far the flexible robot is off.
 
@@ -123,7 +126,8 @@ def leg_lengths(data: xr.Dataset) -> Figure:
     travel = float((command.max("time") - command.min("time")).max())
     spread = float((command.max("leg") - command.min("leg")).max())
     words = f"longest travel {_rounded(travel, found.place_unit)}"
-    words += f", legs differ by up to {_rounded(spread, 'm')}" * lengths
+    differ = spread > EQUALS * float(np.abs(command).max())
+    words += (f", legs differ by up to {_rounded(spread, 'm')}" if differ else ", all legs alike") * lengths
     above.set_title(f"Commanded {found.place} ({words})")
     above.set_ylabel("joint to joint [mm]" if lengths else f"{found.place} [{big.name}]")
     for below in others:

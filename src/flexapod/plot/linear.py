@@ -181,7 +181,14 @@ def _moved(results: Mapping[str, xr.Dataset], pairs: list[tuple[str, str]]) -> t
     """Pairs that are more than rounding beside outputs alike by the same input, and how many are not."""
     sizes = {pair: max(_largest(data, *pair) for data in results.values()) for pair in pairs}
     units = {name: unit for data in results.values() for name, unit in units_in(data, "output").items()}
-    kept = beyond_rounding(sizes, units) or pairs
+    kept = beyond_rounding(sizes, units)
+    if not any(sizes[pair] > 0 for pair in kept):
+        raise InputError(
+            "are 0 at all frequencies, which an axis of logarithms does not have, or not known",
+            key="outputs, inputs",
+            value=", ".join(" by ".join(pair) for pair in pairs[:3]),
+            allowed="channels with a response",
+        )
     if len(kept) > MOST:
         raise InputError(
             f"are {len(kept)} pairs of channels", key="outputs, inputs", allowed=f"{MOST} curves in a figure",

@@ -31,7 +31,7 @@ from flexapod.surveys.workspace.findings import (
     unit_of,
 )
 from flexapod.surveys.workspace.grid import UNITS
-from flexapod.ties import first_largest, first_least
+from flexapod.ties import EQUALS, first_largest, first_least
 from flexapod.words import Scale, number, scale
 
 # Ground and hatching of what is not reached, by code; codes that rarely meet share one.
@@ -157,9 +157,16 @@ def _norm(values: Array, *, linear: bool) -> tuple[Normalize, str]:
     if not finite.size:
         return Normalize(0, 1), "neither"
     low, high = float(finite.min()), float(finite.max())
+    if not _vary(finite):
+        return Normalize(low, low + max(abs(low), 1e-12) * 1e-3), "neither"
     if linear or low <= 0 or high < LOG_FROM * low:
-        return Normalize(low, high if high > low else low + max(abs(low), 1e-12) * 1e-3), "neither"
+        return Normalize(low, high), "neither"
     return LogNorm(low, min(high, HIGHEST * low)), "max" if high > HIGHEST * low else "neither"
+
+
+def _vary(values: Array) -> bool:
+    """Whether values differ by more than rounding."""
+    return values.size > 0 and bool(np.ptp(values) > EQUALS * np.abs(values).max())
 
 
 def _levels(norm: Normalize) -> Sequence[float]:
@@ -178,7 +185,7 @@ def _slice(axes: Axes, part: xr.DataArray, codes: xr.DataArray, unit: Scale, nor
     colors: Colormap | str = COLORS
     image = axes.pcolormesh(edges_of(x), edges_of(y), shown, cmap=colors, norm=norm, rasterized=True, zorder=1)
     axes.grid(visible=False)
-    if min(len(x), len(y)) > 4 and shown.count() > 12 and np.ptp(shown.compressed()) > 0:
+    if min(len(x), len(y)) > 4 and shown.count() > 12 and _vary(shown.compressed()):
         levels = _levels(norm)
         inks = np.where(norm(np.asarray(levels)) > BRIGHT, "#222222", "white").tolist()
         lines = axes.contour(x, y, shown, levels=levels, colors=inks, linewidths=0.7, zorder=2)

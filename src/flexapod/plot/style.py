@@ -58,7 +58,7 @@ def figure(width: float = PAGE, height: float = 4.0, gap: float = 0.02) -> Figur
 
 
 def needs(*names: str) -> Callable[[Callable[P, Figure]], Callable[P, Figure]]:
-    """Refuse a first argument that is not a Dataset, or mapping of Datasets, with these variables."""
+    """Refuse a first argument that is no Dataset, or mapping of Datasets, with these variables, or has no instant."""
 
     def decorate(draw: Callable[P, Figure]) -> Callable[P, Figure]:
         @wraps(draw)
@@ -73,6 +73,8 @@ def needs(*names: str) -> Callable[[Callable[P, Figure]], Callable[P, Figure]]:
                         key=draw.__name__.lstrip("_"),
                         allowed=f"a result with {', '.join(names)}",
                     )
+                if getattr(data, "sizes", {}).get("time") == 0:
+                    raise InputError("has no instant", key="time", allowed="one at least")
             return draw(*args, **kwargs)
 
         return checked

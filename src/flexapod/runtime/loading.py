@@ -18,6 +18,8 @@ atexit.register(gc.freeze)  # the search as the interpreter ends would look at e
 
 def loaded(name: str) -> ModuleType:
     """Import a module; what it makes goes to the oldest generation at once, as it stays for the life of the process."""
+    if name in sys.modules:  # garbage that is there by now is to be found, and not to grow old with the modules
+        return import_module(name)
     collecting = gc.isenabled()
     gc.disable()
     try:

@@ -13,7 +13,7 @@ from flexapod.results.arguments import FileLike
 from flexapod.results.attributes import attributes
 from flexapod.results.record import Report
 from flexapod.surveys.convergence.family import relative_difference
-from flexapod.surveys.convergence.plan import checked_trials
+from flexapod.surveys.convergence.plan import checked_trials, not_uniform
 from flexapod.surveys.convergence.search import ConvergenceStopped
 from flexapod.surveys.convergence.table import SettingRow, reference_words, rows_dataset
 from flexapod.surveys.convergence.trials import QUANTITIES, Setting, Trial, Trials, setting_of
@@ -92,11 +92,12 @@ def ladder(
 
 def rungs(study: Study | ActuatorStudy, step: float | None = None) -> tuple[list[Setting], Setting, Setting]:
     """Settings of the rungs that a study has, of the reference, and of the one that bounds its error."""
-    if isinstance(study, Study) and any(leg.piston.sections for leg in study.robot.legs):
+    if name := not_uniform(study):
         raise InputError(
             "is not known to half of the fidelities",
-            key="leg.piston.sections",
-            allowed="pistons without sections; `flexapod converge` varies steps and shapes of this study",
+            key=f"leg.piston.{name}",
+            allowed=f"pistons {'without sections' if name == 'sections' else 'that do not shear'}; "
+            "`flexapod converge` varies steps and shapes of this study",
         )
     own = setting_of(study)
     base = replace(own, tolerance=None, step=step or own.step or own.output_step / PER_OUTPUT)

@@ -32,7 +32,7 @@ def estimate(trials: Trials, accuracy: float = 1e-2) -> tuple[int, float]:
     trials.run(replace(base, step=first_step(base)))
     finer = round(math.log2(COARSEST * 16 * math.sqrt(max(1.0, 1e-2 / accuracy))))
     steps = [replace(base, step=first_step(base) / 2**i) for i in range(finer + 1)]
-    ahead = [*steps, *(s for _, s in discretisations(base, o / 4)), setting_of(trials.study)]
+    ahead = [*steps, *(s for _, s in discretisations(trials.study, base, o / 4)), setting_of(trials.study)]
     return len(dict.fromkeys(ahead)) + 2, trials.plan(ahead)
 
 
@@ -98,16 +98,26 @@ def first_step(base: Setting) -> float:
     return COARSEST * base.output_step
 
 
-def discretisations(base: Setting, step: float) -> list[tuple[str, Setting]]:
-    """Family and setting of all shapes, elements and segments, each coarse to fine, all with one step."""
+def discretisations(study: Study | ActuatorStudy, base: Setting, step: float) -> list[tuple[str, Setting]]:
+    """Family and setting of all shapes, elements and segments, each coarse to fine, all with one step.
+
+    Pistons of sections, and those that shear, have no elements and segments.
+    """
+    alone = base.fidelity == SOLID or bool(not_uniform(study))
     fidelity = {"shapes": _shaped(base), "elements": "beam-fem", "segments": "finite-segment"}
     per = {"elements": 2}  # shapes of an element
     return [
         (family, replace(base, fidelity=fidelity[family], modes=n * per.get(family, 1), step=step, tolerance=None))
         for family, counts in COUNTS.items()
-        if family == "shapes" or base.fidelity != SOLID
+        if family == "shapes" or not alone
         for n in counts
     ]
+
+
+def not_uniform(study: Study | ActuatorStudy) -> str | None:
+    """Key by which pistons are other than uniform beams, which half of the fidelities do not know; None of others."""
+    pistons = [leg.piston for leg in study.robot.legs] if isinstance(study, Study) else []
+    return next((name for name in ("sections", "shear") if any(getattr(one, name) for one in pistons)), None)
 
 
 def _shaped(base: Setting) -> str:

@@ -301,7 +301,7 @@ def _search(trials: Trials, found: Findings) -> None:
         found.notes.append("The file's legs are rigid and have no deviation: steps are studied with assumed modes.")
     halve_steps(trials, base, found)
     found.shape_step = step_of_shapes(trials, base, found)
-    settings = discretisations(base, found.shape_step)
+    settings = discretisations(trials.study, base, found.shape_step)
     trials.plan([*(setting for _, setting in settings), own])
     for family, setting in settings:
         found.add(family, trials.run(setting))
