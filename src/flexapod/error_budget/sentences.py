@@ -100,7 +100,7 @@ def _repeatability(found: Budget) -> list[str]:
         return [f"Repeatability: the study names {nothing}."]
     increment = (
         f"Smallest increment that surely shows: {_axes(both)} after a reversal"
-        + (f", {_axes(one)} going on" if one[PLACE].any() else "; going on nothing named limits it")
+        + (f", {_axes(one)} without one" if one[PLACE].any() else "; without one nothing that is named limits it")
         + ("." if "encoder" in found.parts else "; without what encoders resolve.")
     )
     if not one[PLACE].any():
