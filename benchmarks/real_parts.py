@@ -51,7 +51,7 @@ def real_parts() -> list[Section]:
         f"First run ever with pistons that taper and {MOST_SHAPES} shapes a plane, within a tolerance: "
         + _first_tapered(),
         "everything on: its cylinder bends with a kink at the piston's head: 21,700 operations of a residual and "
-        "51 coordinates of a leg; polynomials alone, 13,300 and 45, met the goal with first frequencies 1 % off.",
+        "51 coordinates of a leg; polynomials alone, 13,300 and 45, met the goal with a first frequency 1.7 % off.",
         "everything on: benchmarks/everything.toml. Budgets at a pose and in maps: python -m benchmarks many-poses.",
     ]
     header = ["Robot", "Step in C", "Of paper-robot", "First run ever", "Memory, of the compiler or the run"]

@@ -69,7 +69,8 @@ def composed(
     Parameters
     ----------
     data, coords : mapping
-        Variables, arrays of xarray, or (dims, values, attributes) by name; labels of a dimension also as they are.
+        Variables, arrays of xarray (without their labels), or (dims, values, attributes) by name; labels of a
+        dimension also as they are.
     attrs : mapping, optional
 
     Raises
@@ -87,10 +88,8 @@ def composed(
 
 
 def _read(name: str, given: Any) -> Variable:
-    if isinstance(given, DataArray):
-        return given.variable
-    if isinstance(given, Variable):
-        return given
+    if isinstance(given, DataArray | Variable):  # with attributes of its own, as what xarray makes
+        return (given.variable if isinstance(given, DataArray) else given).copy(deep=False)
     return variable(*given) if isinstance(given, tuple) else variable(name, given)
 
 

@@ -52,6 +52,8 @@ def test_what_came_of_xarray_goes_in():
     again = composed({name: whole.variables[name] for name in data}, {name: whole[name] for name in coords})
     xr.testing.assert_identical(again, whole)
     assert again.sel(output="yy").whole == 2
+    again.response.attrs["units"] = again.output_units.attrs["units"] = "mm/N"  # of the new one alone
+    assert whole.response.units == "m/N" and not whole.output_units.attrs
 
 
 def test_lengths_that_differ_are_refused():
