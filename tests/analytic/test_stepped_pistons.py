@@ -5,10 +5,20 @@ import pytest
 from scipy.integrate import solve_ivp
 from tests.stepped import STEEL, leg_of, misfit, root_near, section, squared_frequencies, thrust_of_shapes
 
+from flexapod.model import Piston
 from flexapod.review.estimates import buckling_load
 
 TWO = [section(0.3, 0.04), section(0.45, 0.03)]
 HOLLOW = [section(0.25, 0.04), section(0.5, 0.04, inner_diameter=0.03)]
+
+
+def test_sections_twist_in_series():
+    # Round ones: L / G J each, G = E / 2 (1 + 0.3), J = pi (D^4 - d^4) / 32.
+    given = [(0.3, 0.04, 0.0), (0.25, 0.03, 0.01), (0.2, 0.022, 0.0)]
+    piston = Piston.stepped([section(L, D, inner_diameter=d or None) for L, D, d in given])
+    G = STEEL["E"] / 2.6
+    soft = sum(L / (G * np.pi * (D**4 - d**4) / 32) for L, D, d in given)
+    assert piston.torsional_stiffness == pytest.approx(0.75 / soft, rel=1e-12)
 
 
 def frequencies(leg, free, count, **others):

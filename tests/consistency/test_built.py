@@ -138,6 +138,27 @@ def test_legs_that_warm_up_while_they_move_take_the_rates_along():
     assert heated[0].max() < 1e-15 and heated[-1].max() > 1e-5
 
 
+def test_screws_that_warm_up_as_they_turn_grow_at_the_rates_of_a_product():
+    # From the bearing to the nut a screw is l - L_p - b long; it is warmed along a table and driven along a parabola.
+    # Rates are differences of the product; splines of fifth order leave h^2 of what they bend, 1e-5 of it.
+    heat = Heat(time=[0.0, 1.0, 2.0], columns=("screw",), table=[[20], [30], [45]])
+    robot = machines.machine(drive=machines.SCREW).replace(heat=heat)
+    (part,), t, h = built_parts(robot), np.array([0.3, 0.7, 1.6]), 1e-3
+    length = np.polynomial.Polynomial([1.1, 0.2, -0.15])
+    L, q = kinematics.COORDINATES.index("l"), np.zeros((3, 3, 6, 8))
+    q[..., L] = np.array([length.deriv(k)(t) for k in range(3)])[..., None]
+
+    def grown(t):
+        screw = length(t) - machines.TUBE.length - machines.BEARING.position
+        return part.size(t).position * screw[:, None]
+
+    found, (before, now, after) = kinematics.added(part, t, kinematics.Law(*q)), map(grown, (t - h, t, t + h))
+    np.testing.assert_allclose(found.position[..., L], now, rtol=1e-12)
+    np.testing.assert_allclose(found.rate[..., L], (after - before) / (2 * h), rtol=1e-4)
+    np.testing.assert_allclose(found.acceleration[..., L], (after - 2 * now + before) / h**2, rtol=1e-4)
+    assert np.abs(found.acceleration[..., L]).min() > 1e-6
+
+
 def test_plates_that_warm_up_move_the_platform_as_kinematics_says():
     # Legs take the growth of the plates as a length: what that leaves is its square over the length of a leg, through
     # J^-1. Both plates have started elsewhere than at the reference, so that joints of the kernel are shifted, too.

@@ -16,6 +16,7 @@ from tests.runs import balance, run_robot
 import flexapod as fx
 from flexapod import kinematics
 from flexapod.bases import lateral_basis
+from flexapod.elements.element import Standing
 from flexapod.elements.friction import BaseFriction, DriveFriction, PlatformFriction, rubbing, turning
 from flexapod.elements.slot import Slot
 from flexapod.elements.springs import springs_along
@@ -121,6 +122,20 @@ def test_steady_sliding_is_where_bristles_end(rate):
         lambda t, z: [at(rate, z[0])[1]], (0, 2e-3 / abs(rate)), [0.0], method="LSODA", rtol=1e-11, atol=1e-17
     )
     assert at(rate, end.y[0, -1])[0] == pytest.approx(float(steady_friction(rubs, np.array(rate))), rel=1e-8)
+
+
+def test_the_damper_of_bristles_is_itself_at_rest_and_lossless_at_its_limit():
+    # At rest the force rises with the rate by F / p times the damping time. A damper without end, at bristles twice as
+    # far as they slide, gives back what these lose: the largest damping that is passive (Barabanov & Ortega).
+    force, reach, time = 3.0, 1e-3, 0.02
+    numbers = (force, 0.0, reach, 0.0, 0.0, 0.0, time, 0.0)
+    small, z = 1e-9, 2e-4
+    slope = (at(small, z, numbers=numbers, falling=True)[0] - at(-small, z, numbers=numbers, falling=True)[0]) / 2e-9
+    assert slope == pytest.approx(force / reach * time, rel=1e-5)
+    for v, endless in ((0.05, 1e3), (2.0, 1e3), (2.0, 1e6)):
+        F, rate = at(v, 2 * reach, numbers=(*numbers[:6], endless, 0.0), falling=True)
+        lost = F * v - force / reach * 2 * reach * rate  # power less what is stored by the second
+        assert lost == pytest.approx(4 * force * v / (1 + v * endless / (4 * reach)), rel=1e-6)  # 0 without end
 
 
 @pytest.mark.parametrize("step", [1e-5, 1e-3, 1.0])
@@ -249,6 +264,35 @@ def test_a_screw_loses_what_its_friction_winds_up(command):
     np.testing.assert_allclose(lost_motion(robot, free[:, 2]), expected, rtol=1e-12)
 
 
+def test_a_screw_slides_at_the_torque_of_its_rate():
+    # Stribeck's law by the screw's own rate: T_c + (T_s - T_c) exp(-(w / w_s)^2). Bristles follow within
+    # presliding / w, 1 ms at 10 rad/s, in which the law changes by some 0.3 N m / 0.1 s of a second's motion: 3e-3 N m.
+    torque, static, rate = 0.5, 0.8, 15.0
+    rubs = ScrewFriction(torque=torque, stribeck={"moment": static, "rate": rate})
+    one = study(
+        machine(drive=SCREW.replace(friction=rubs)), duration=1.0, fidelity="rigid", step=1e-3, output_step=1e-3
+    )
+    found = fx.simulate(one.replace(motion=one.motion.replace(duration=1.0)))
+    w = np.gradient(found.drive_position.values, 1e-3, axis=0)
+    expected = np.sign(w) * (torque + (static - torque) * np.exp(-((w / rate) ** 2)))
+    fast = np.abs(w) > 10
+    assert np.ptp(np.abs(expected[fast])) > 0.1
+    np.testing.assert_allclose(found.friction.sel(slide="drive").values[fast], expected[fast], atol=3e-3)
+
+
+def test_friction_of_a_screw_by_its_travel():
+    # A turn is a lead: forces are torques over lead / 2 pi, ways angles times it; times stay.
+    turn = SCREW.lead / (2 * np.pi)
+    rubs = ScrewFriction(
+        torque=0.5, viscous=0.01, presliding=0.02, damping_time=3e-3, stribeck={"moment": 0.8, "rate": 15.0}
+    )
+    leg = machine(drive=SCREW.replace(friction=rubs)).legs[0]
+    here = Standing(length=1.0, per_loss=0.0, at_rest=False, robot=machine(), attitude=False, axes={})
+    found = DriveFriction().numbers(leg, here)["drive_friction"]
+    theirs = (0.5 / turn, 0.0, 0.02 * turn, 0.6, 1 / (15.0 * turn), 0.01 / turn**2, 3e-3, 0.0)
+    np.testing.assert_allclose(found, theirs, rtol=1e-12)
+
+
 def test_a_servo_lags_by_the_friction_of_its_stroke():
     servo = ServoDrive(stiffness=1e7, damping=1e4)
     rubs, _ = slow(drive=servo.replace(friction=StrokeFriction(force=100.0)))
@@ -335,6 +379,17 @@ def test_what_sticks_damps_as_a_mass_on_its_bristles():
     np.testing.assert_allclose(stuck.frequency, slides.frequency * np.sqrt(k / 2e7), rtol=1e-8)
     np.testing.assert_allclose(stuck.damping_ratio, np.pi * stuck.frequency * c / k, rtol=1e-8)
     np.testing.assert_allclose(slides.damping_ratio, np.pi * slides.frequency * 1e4 / 2e7, rtol=1e-8)
+
+
+def test_overdamped_modes_have_the_ratio_of_their_masses():
+    # Legs alike, rigid, on springs and dampers alone: every mode is one mass with c / (2 sqrt(k m)) = c omega / 2 k,
+    # above 1, where no eigenvalue oscillates.
+    k, c = 2e7, 2e6
+    robot = machine(drive=ServoDrive(stiffness=k, damping=c), damping=0.0).replace(gravity=[0, 0, 0])
+    found = fx.modes(robot, fidelity="rigid")
+    ratio = np.pi * found.frequency.values * c / k
+    assert ratio.min() > 1.5
+    np.testing.assert_allclose(found.damping_ratio, ratio, rtol=1e-8)
 
 
 def test_causes_with_friction_add_up():

@@ -83,6 +83,29 @@ def test_energies_are_right_to_second_order(place):
     assert gaps[0] / gaps[1] == pytest.approx(1000, rel=0.2)
 
 
+def test_what_leans_and_bends_inside_turns_with_the_leg_to_second_order():
+    # Angular rates of the leg alone: what small displacements change in T is its even part, to their square. Terms of
+    # third order cancel between q and -q; the fourth leaves (1e-3)^2 times stiff shapes' slopes, some 1e-5 of it.
+    given = bare()
+    ours = legs.shapes("point in a guide of a cylinder")
+    exact = Guided(ours.layout, given, ours.beam.a.values, ours.beam.guide.values, ours.beam.cylinder.values)
+    still, v = np.zeros(ours.size), np.zeros(ours.size)
+    still[:3], v[:2] = [0.3, -0.2, LENGTH], [2.0, -3.0]
+    rng = np.random.default_rng(8)
+
+    def kinetic(q):
+        x = legs.state(ours, 0, given=given) | {"q": q, "v": v}
+        return legs.call(ours, "leg_energies", x)["energies"][0], exact.energies(q, v, np.array(given["gravity"]))[0]
+
+    for names in (("ga",), ("gb",), ("ga", "gb", "ha", "hb"), ("ka", "kb"), ("ga", "ha", "ka", "a")):
+        bent = np.zeros(ours.size)
+        for name in names:
+            size = dict(ours.layout)[name]
+            bent[ours.index(name) :][:size] = 1e-3 * rng.uniform(0.5, 1, size) * [1, 0.3, 0.1, 0.1][:size]
+        (up, up_exact), (down, down_exact), (rest, rest_exact) = map(kinetic, (still + bent, still - bent, still))
+        assert up + down - 2 * rest == pytest.approx(up_exact + down_exact - 2 * rest_exact, rel=1e-4), names
+
+
 def test_the_inner_part_turns_the_tip_as_a_rod_without_twist_does():
     """Rotations of the section carried along the bent rod by the least turns from one tangent to the next."""
     basis, rng, D = lateral_basis("tip-load", 3), np.random.default_rng(2), 0.4
@@ -334,6 +357,16 @@ def test_a_part_made_ideal_takes_its_row_along(part):
     np.testing.assert_allclose(
         whole.sum("part").values[:3] - gone, without.sum("part").values[:3], atol=0.02 * np.abs(gone).max()
     )
+
+
+def test_loads_at_many_lengths_lie_between_those_of_some():
+    # Between 17 lengths loads are interpolated: Delta^2 / 8 of a load that falls as one over the square of s, 6 / s^2
+    # of itself, at a free length of 0.4 m: 6e-4. Every leg has lengths of its own.
+    robot = machine(guide=bushings(1e8))
+    length = np.linspace(robot.home_lengths - 0.1, robot.home_lengths + 0.1, 40) + 0.002 * np.arange(6)
+    one_by_one = np.concatenate([leg_loads(robot, row[None]) for row in length[::7]])
+    np.testing.assert_allclose(leg_loads(robot, length)[::7], one_by_one, rtol=1e-3)
+    assert np.ptp(one_by_one[:, 0]) > 0.2 * one_by_one[0, 0]
 
 
 @pytest.mark.parametrize("stale", [{"mouth": 0.3}, {"diameter": 0.055}, {"body": Mounted(mass=1.0)}, {"mass": 3.0}])

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 from tests.machines import SOFT, machine, study, symmetric
+from tests.mechanisms import three_spr
 from tests.runs import balance, run_robot
 
 import flexapod as fx
 from flexapod import kinematics
 from flexapod.errors import InputError
-from flexapod.model import AxialSpring
+from flexapod.model import AxialSpring, Geometry, Simulation, Study
 from flexapod.model.joint import Joint
 from flexapod.model.motion import AxisMotion
 from flexapod.solve.robot_system import robot_system
@@ -177,3 +178,37 @@ def test_a_leg_that_is_held_across_takes_no_such_spring_beside_flexures():
     assert caught.value.key == "leg.springs.flange"
     beside_a_flexure(springs=(spring,), base_joint=joint(2e8), platform_joint=held)
     assert machine(springs=(spring,), platform_joint=held).count == 6
+
+
+@pytest.mark.parametrize("end", ["base_joint", "platform_joint"])
+def test_what_joints_give_across_moves_the_platform_of_legs_that_turn_about_themselves(end):
+    """The force in a joint over its stiffnesses is a shift of it: what a machine built with that shift would miss.
+
+    A 3-SPR that rolls: its legs turn by 0.07 rad about themselves, and hinges of the platform press across them.
+    """
+    across, along = 2e8, 5e8
+    soft = Joint(stiffness=np.diag([across, across, along, 0.0, 0.0, 0.0]), leg_axes=True)
+    robot = three_spr()
+    legs = (
+        leg.replace(
+            cylinder=leg.cylinder.replace(mass=1e-3, inertia=1e-5), piston=leg.piston.replace(rhoA=1e-3), **{end: soft}
+        )
+        for leg in robot.legs
+    )
+    robot, motion = robot.replace(legs=tuple(legs)), AxisMotion(type="roll", amplitude=0.3, duration=0.5, hold=0.2)
+    one = Study(robot=robot, motion=motion, simulation=Simulation(duration=0.7, fidelity="lumped"))
+    data = fx.simulate(one, step=1e-3, output_step=0.1).isel(time=-1)
+    pose = kinematics.poses(robot, motion, np.array([0.7]))
+    legs = kinematics.inverse_kinematics(robot, pose)
+    assert np.abs(legs.spin).max() > 0.05
+    limbs, force = kinematics.rigid_limbs(robot), data.joint_force.values
+    axes = pose.position[0] + limbs.platform @ pose.rotation[0].T - limbs.base
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    pushed = (force * axes).sum(axis=1, keepdims=True) * axes
+    given = pushed / along + (force - pushed) / across
+    shift = {"base_joint": {"base_joints": -given}, "platform_joint": {"platform_joints": given @ pose.rotation[0]}}
+    built = kinematics.built_poses(robot.replace(geometry=Geometry(**shift[end])), pose)
+    moved = (built.place(robot.com) - pose.place(robot.com))[0]
+    found = data.deviation_by_cause.sel(cause=end).sum("leg")
+    # 10 um of 0.3 m: what is left of second order, 3e-5.
+    np.testing.assert_allclose(found, moved, rtol=1e-4, atol=1e-4 * np.abs(moved).max())
