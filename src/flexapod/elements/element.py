@@ -239,6 +239,14 @@ class Physics:
         return cls.energy(x.p, x.q, x.v)
 
     @classmethod
+    def damping_force(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Mapping[str, SX]:
+        """What brakes coordinates, by name, where no dissipation is said: 0 at rest, positive against a positive rate.
+
+        Its power is lost, as that of a dissipation.
+        """
+        return {}
+
+    @classmethod
     def carries(cls, base: Frame | None, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Frame | None:
         """Frame of the base as it carries it, by that of what it stands on itself; None: it stands still."""
         return base
@@ -331,10 +339,12 @@ def register(element: type[Element]) -> None:
     Raises
     ------
     InputError
-        It comes from no file, or its names are taken.
+        It comes from no file, its names are taken, or it declares what is none of its own.
     """
-    name, file = element.at, source_of(element)
-    if file is None:
+    from flexapod.elements.trial import refuse_declared  # which asks for the class
+
+    name = element.at
+    if source_of(element) is None:
         raise InputError(
             "is an element without a file: the equations are compiled anew when their source changes",
             value=element.__name__,
@@ -343,6 +353,7 @@ def register(element: type[Element]) -> None:
         )
     if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
         raise InputError("is not a name for a table", value=name, allowed="small letters, digits and _")
+    refuse_declared(element)
     other = registered.get(name)
     if other is not None and (other.__module__, other.__qualname__) != (element.__module__, element.__qualname__):
         raise InputError(

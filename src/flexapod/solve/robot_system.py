@@ -16,6 +16,7 @@ from flexapod.mechanics.layout import Shapes, columns
 from flexapod.mechanics.layout import leg_parameters as leg_layout
 from flexapod.model import Robot, Simulation, Study
 from flexapod.solve.kernel import kernel
+from flexapod.solve.own_elements import try_elements
 from flexapod.solve.parameters import leg_parameters, payload_parameters, standings
 from flexapod.solve.shapes import robot_shapes
 from flexapod.solve.system import System
@@ -38,7 +39,7 @@ def robot_system(
     legs = kinematics.built_limbs(robot, kinematics.robot_limbs(robot))
     shapes = robot_shapes(robot, simulation, legs)
     standing = standings(robot, legs, per_loss, at_rest=at_rest)
-    return System(
+    system = System(
         kernel=kernel(shapes),
         leg_p=leg_parameters(robot, legs, shapes, per_loss, at_rest=at_rest),
         joint_p=np.ascontiguousarray(legs.platform - robot.com),
@@ -46,6 +47,8 @@ def robot_system(
         held=_held(robot, legs, shapes, at_rest=at_rest) | _held_by_elements(robot, shapes, standing),
         hub_held=legs.hub_held,
     )
+    try_elements(robot, system)
+    return system
 
 
 def smooth(robot: Robot) -> Robot:

@@ -163,7 +163,7 @@ def fmod(x: Any, y: Any) -> Any:
 
 
 def copysign(x: Any, y: Any) -> Any:
-    """x with the sign of y, of symbols or numbers."""
+    """Absolute value of x with the sign of y, of symbols or numbers."""
     return _either("copysign", np.copysign, x, y)
 
 
