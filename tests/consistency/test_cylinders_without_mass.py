@@ -1,4 +1,4 @@
-"""A cylinder without mass between a soft base joint and a drive that gives way: two springs in series, one mass less."""
+"""A cylinder without mass between a soft base joint and a drive that gives way: springs in series, a mass less."""
 
 import numpy as np
 import pytest

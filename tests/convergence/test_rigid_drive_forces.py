@@ -1,4 +1,4 @@
-"""Forces of legs that neither bend nor stretch follow the tolerance, whatever the mechanism: nothing else of them errs."""
+"""Forces of legs that neither bend nor stretch follow the tolerance, whatever the mechanism."""
 
 import numpy as np
 import pytest
@@ -50,7 +50,7 @@ def test_drive_forces_are_those_of_inverse_dynamics_within_the_tolerance(kind):
         assert 0 < data.attrs["estimated_force_error"] < 1.1 * tolerance
         kept = data.energy_kinetic + data.energy_potential + data.energy_strain + data.energy_dissipated
         balances.append(np.ptp((kept - data.work_drive - data.work_external).values) / np.ptp(data.work_drive.values))
-    # Works are summed by the powers at the same stages: of the order of the forces' error over a stroke of its own sign.
+    # Works are sums of the powers at the same stages, of the forces' errors over strokes of both signs.
     assert errors[1] < 0.1 * errors[0] and balances[1] < 10 * tolerance
 
 

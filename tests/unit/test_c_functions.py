@@ -56,7 +56,7 @@ def named():
 
 
 def same(found, right):
-    # libm's functions are off by a unit or two in the last place, and so are NumPy's; the fmod of 0 over 0 is no number.
+    # libm's functions are off by a unit or two in the last place, and so are NumPy's; a rest over 0 is no number.
     np.testing.assert_allclose(found, right, rtol=1e-15, atol=1e-16)
 
 

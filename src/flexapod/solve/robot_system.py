@@ -136,7 +136,7 @@ def refuse_massless(study: Study) -> None:
                 file=study.path,
                 key="leg.cylinder.mass",
                 value=0,
-                allowed="0 in modes, stiffness, maps; in time with prescribed strokes, or a base joint without stiffness",
+                allowed="0 in modes, stiffness, maps; in time with prescribed strokes or ideal base joints",
                 next_step="Give a small mass, as 1e-3 kg: steps need not follow what is that light",
             )
         if leg.piston.rhoA == 0 and (simulation.lateral_shapes or alone > 0):
