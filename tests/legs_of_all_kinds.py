@@ -54,7 +54,8 @@ def rotation(rng):
 
 
 PHYSICS = {
-    "rhoA": 4.466, "EI": 5217.4, "piston_turning": [0.02, 0.03], "EA": 1.1451e7, "Lp": 0.75, "mouth": 0.315, "piston_axial_inertia": 4e-3,
+    "piston_turning": [0.02, 0.03],
+    "rhoA": 4.466, "EI": 5217.4, "EA": 1.1451e7, "Lp": 0.75, "mouth": 0.315, "piston_axial_inertia": 4e-3,
     "cylinder_mass": 3.0, "cylinder_com": 0.157, "cylinder_inertia": 0.0248, "cylinder_axial_inertia": 0.002,
     "zeta": 0.005, "damping_time": 1e-4, "drive_stiffness": 3e5, "drive_damping": 40.0,
     "gravity": [1.0, 2.0, -9.0], "base": [0.1, 0.2, 0.05], "tip_mass": 0.7, "tip_inertia": 0.02,

@@ -1,5 +1,7 @@
 """Elements from outside of every kind: closed forms, every fidelity and mechanism, and what is refused by name."""
 
+import sys
+from pathlib import Path
 from typing import ClassVar
 
 import casadi
@@ -16,6 +18,7 @@ from tests.trial_element.turbulent_damper import TurbulentDamper
 import flexapod as fx
 from flexapod.elements.element import registered
 from flexapod.model import ServoDrive
+from flexapod.symbolic import elementary
 from flexapod.symbolic.elementary import fabs
 from flexapod.symbolic.vocabulary import sqrt
 from flexapod.verify.robots import ROUND, STEEL
@@ -241,3 +244,15 @@ def test_what_a_class_declares_is_looked_at_when_it_is_made(hooks, words):
 def test_a_quantity_that_nothing_measures_is_refused():
     with pytest.raises(fx.InputError, match="'pressure': is nothing that a Quantity can measure"):
         fx.Quantity("pressure", above=0)
+
+
+@pytest.mark.parametrize("kind", [AirSpring, TurbulentDamper, Ballast])
+def test_the_tutorial_shows_these_elements(kind):
+    page = (Path(__file__).parents[2] / "docs" / "an-element-of-your-own.md").read_text(encoding="utf-8")
+    assert Path(sys.modules[kind.__module__].__file__).read_text(encoding="utf-8") in page
+
+
+def test_the_tutorial_names_every_function_that_there_is():
+    page = (Path(__file__).parents[2] / "docs" / "an-element-of-your-own.md").read_text(encoding="utf-8")
+    inverse = {"asin", "acos", "atan", "asinh", "acosh", "atanh"}  # "their inverses", "and theirs"
+    assert not [name for name in elementary.__all__ if name not in inverse and f"`{name}" not in page]

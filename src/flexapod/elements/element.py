@@ -131,8 +131,16 @@ class Along(_InLeg):
     """A leg along its chain, for energies that need more than its coordinates.
 
     ``p``, ``q``, ``v``, ``elements`` by name. ``base``: frame of a base that moves, at the origin while it is where it
-    is drawn; ``foot`` and ``cylinder``: frames before and behind the base joint; ``piston``: its fields and what moves
-    them.
+    is drawn; ``foot`` and ``cylinder``: frames before and behind the base joint (`Frame`), z along the leg; ``piston``:
+    its fields and what moves them. Parameters of the leg are in ``p`` as well: ``p.gravity`` (3,) [m/s^2].
+
+    Examples
+    --------
+    >>> def energy_along(cls, x):  # a point beside the cylinder, by `Element.energy_along`
+    ...     point = x.cylinder.moved(x.p.place, zeros(3))
+    ...     return fx.Energies(gravity=point.weight(x.p.gravity, x.p.mass, zeros(3)))
+    >>> fx.Along.__dataclass_fields__.keys() >= {"p", "q", "v", "base", "foot", "cylinder", "piston"}
+    True
     """
 
     base: Frame | None
@@ -235,7 +243,7 @@ class Physics:
 
     @classmethod
     def energy_along(cls, x: Along) -> Energies:
-        """The same of what asks for frames, or for the other elements."""
+        """Its energies where they ask for frames of the leg, or for the other elements: in place of `energy`."""
         return cls.energy(x.p, x.q, x.v)
 
     @classmethod

@@ -106,7 +106,7 @@ def _leg_map(robot: Robot) -> inverse.LegMap:
 
 
 def leg_bodies(robot: Robot) -> LegBodies:
-    """Masses and inertias of the six legs as arrays; sections that turn with the leg are with the cylinder's inertia."""
+    """Masses and inertias of the six legs as arrays; that of sections which turn is with the cylinder's."""
     cylinders, pistons = [leg.cylinder for leg in robot.legs], [leg.piston for leg in robot.legs]
     return LegBodies(
         cylinder_mass=np.array([c.mass for c in cylinders]),
