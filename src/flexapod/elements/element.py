@@ -6,14 +6,13 @@ The class stands for its equations, which hold for all legs; its objects are the
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, Self
 
 from flexapod.elements.frame import Energies
+from flexapod.elements.trial import refuse_declared, source_of
 from flexapod.errors import InputError
 from flexapod.schema.table import Table
 from flexapod.symbolic.vocabulary import dot, sqrt, vertcat
@@ -349,8 +348,6 @@ def register(element: type[Element]) -> None:
     InputError
         It comes from no file, its names are taken, or it declares what is none of its own.
     """
-    from flexapod.elements.trial import refuse_declared  # which asks for the class
-
     name = element.at
     if source_of(element) is None:
         raise InputError(
@@ -368,13 +365,6 @@ def register(element: type[Element]) -> None:
             "is the table of another element", value=name, allowed=f"a name that {other.__module__} does not have"
         )
     registered[name] = element
-
-
-def source_of(element: type[Physics]) -> Path | None:
-    """File of the module of a class; None of one that was typed into a console."""
-    file = getattr(sys.modules.get(element.__module__), "__file__", None)
-    found = None if file is None else Path(file)
-    return found if found is not None and found.is_file() else None
 
 
 def asked_beside(elements: Sequence[Slot], p: SimpleNamespace, q: SimpleNamespace) -> SX | None:

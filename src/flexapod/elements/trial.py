@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexapod.elements.element import source_of
 from flexapod.errors import FlexapodError, InputError
 
 if TYPE_CHECKING:
     from flexapod.elements.element import Physics
     from flexapod.elements.slot import Slot
 
-__all__ = ["asking", "refuse_declared", "refuse_numbers", "refused"]
+__all__ = ["asking", "refuse_declared", "refuse_numbers", "refused", "source_of"]
+
+
+def source_of(element: type[Physics]) -> Path | None:
+    """File of the module of a class; None of one that was typed into a console."""
+    file = getattr(sys.modules.get(element.__module__), "__file__", None)
+    found = None if file is None else Path(file)
+    return found if found is not None and found.is_file() else None
 
 
 def refused(kind: type[Physics], hook: str, what: str, **more: Any) -> InputError:
