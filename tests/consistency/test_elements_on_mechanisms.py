@@ -9,6 +9,8 @@ from tests.runs import with_legs
 
 import flexapod as fx
 from flexapod import kinematics
+from flexapod.elements.clearance import Clearance
+from flexapod.elements.encoder import Resolution
 from flexapod.elements.flexure import Flexures
 from flexapod.elements.known import OURS
 from flexapod.elements.turning_nut import TurningNut
@@ -85,7 +87,7 @@ def test_every_element_moves_every_mechanism(kind, part, fidelity, monkeypatch):
 
 
 def test_no_element_is_left_out():
-    """But flexures, which need legs between welds, and nuts that turn, in legs UCU: tests of their own have these."""
+    """But flexures between welds and nuts that turn, in legs of their own, and what has rows of a budget alone."""
     found = set()
     for kind in MECHANISMS:
         for part in PARTS:
@@ -95,4 +97,4 @@ def test_no_element_is_left_out():
                     settings = study.simulation.replace(fidelity=fidelity)
                     shapes = robot_shapes(study.robot, settings, kinematics.robot_limbs(study.robot))
                     found |= {slot.kind for slot in shapes.elements}
-    assert set(OURS) - found == {Flexures, TurningNut}
+    assert set(OURS) - found == {Flexures, TurningNut, Clearance, Resolution}
