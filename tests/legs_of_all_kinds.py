@@ -8,6 +8,7 @@ from tests.layouts import layout
 from flexapod.bases import axial_basis, lateral_basis
 from flexapod.elements.drive_train import DriveTrain
 from flexapod.elements.mount import BaseMounting, MovedBase, PlatformMounting
+from flexapod.elements.shear import RotaryInertia
 from flexapod.elements.slot import Slot
 from flexapod.elements.soft_joint import SoftBase, SoftPlatform
 from flexapod.kinematics.rotations import quaternion
@@ -40,6 +41,7 @@ KINDS = {
     "point in a cylinder that bends": {"cylinder": CYLINDER},
     "point in a guide of a cylinder": {"guide": GUIDE, "cylinder": CYLINDER},
     "pose in a guide of a cylinder": EVERYTHING | {"guide": GUIDE, "cylinder": CYLINDER, "elements": (Slot(SoftBase),)},
+    "point with a thick piston": {"elements": (Slot(RotaryInertia),)},
     "tip body": {"closure": "none", "torsion": True, "tip_body": True},
     "planar": {"closure": "none", "planar": True, "tip_body": True},
 }
@@ -52,6 +54,7 @@ def rotation(rng):
 
 
 PHYSICS = {
+    "piston_turning": [0.02, 0.03],
     "rhoA": 4.466, "EI": 5217.4, "EA": 1.1451e7, "Lp": 0.75, "mouth": 0.315, "piston_axial_inertia": 4e-3,
     "cylinder_mass": 3.0, "cylinder_com": 0.157, "cylinder_inertia": 0.0248, "cylinder_axial_inertia": 0.002,
     "zeta": 0.005, "damping_time": 1e-4, "drive_stiffness": 3e5, "drive_damping": 40.0,

@@ -53,7 +53,7 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
     ),
     "Elements of your own": (
         "Classes for parts that flexapod does not have: [tutorial](../../an-element-of-your-own.md).",
-        ("Element", "Key", "Quantity", "Energies", "Output", "Contribution"),
+        ("Element", "Key", "Quantity", "Energies", "Along", "Frame", "Output", "Contribution"),
     ),
     "Errors raised": (
         "All errors that are raised on purpose.",

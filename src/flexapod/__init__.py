@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from flexapod import control, kinematics, model, plot, study
     from flexapod.citations import cite
     from flexapod.control.measured import read_frf
-    from flexapod.elements.element import Contribution, Element, Output
-    from flexapod.elements.frame import Energies
+    from flexapod.elements.element import Along, Contribution, Element, Output
+    from flexapod.elements.frame import Energies, Frame
     from flexapod.errors import ComputationError, FlexapodError, InputError
     from flexapod.exchange.formats import export
     from flexapod.feedforward import compensate, shape, time_optimal
@@ -48,8 +48,8 @@ if TYPE_CHECKING:
     from flexapod.version import __version__
 
 _HOMES = {
-    "flexapod.elements.element": ("Contribution", "Element", "Output"),
-    "flexapod.elements.frame": ("Energies",),
+    "flexapod.elements.element": ("Along", "Contribution", "Element", "Output"),
+    "flexapod.elements.frame": ("Energies", "Frame"),
     "flexapod.schema.base": ("Key", "Quantity"),
     "flexapod.errors": ("ComputationError", "FlexapodError", "InputError"),
     "flexapod.citations": ("cite",),
@@ -90,11 +90,13 @@ _PACKAGES = ("control", "kinematics", "model", "plot", "study")
 
 __all__ = [
     "ActuatorStudy",
+    "Along",
     "ComputationError",
     "Contribution",
     "Element",
     "Energies",
     "FlexapodError",
+    "Frame",
     "InputError",
     "Key",
     "Output",

@@ -10,8 +10,9 @@ import flexapod as fx
 from flexapod import kinematics
 from flexapod.elements.known import OURS
 from flexapod.mechanics.layout import LEG_PARAMETERS
-from flexapod.model import Encoder, Joint, JointFriction, Loop, Motor, ScrewFriction
+from flexapod.model import MATERIALS, Encoder, Joint, JointFriction, Loop, Motor, ScrewFriction, Tube
 from flexapod.model.mount import BaseMotion, Mount
+from flexapod.model.piston import Piston
 from flexapod.solve.parameters import standings
 from flexapod.solve.shapes import robot_shapes
 
@@ -23,6 +24,7 @@ LAGGING = SCREW.replace(
     friction=ScrewFriction(torque=0.5), nut=NUT.replace(backlash=1e-5),
 )  # fmt: skip
 FLEXES = {"base_joint": Joint(stiffness=np.diag([2e7, 3e7, 5e7, 900.0, 800.0, 300.0]))}
+THICK = Piston.round(length=0.75, section=Tube(diameter=0.1), material=MATERIALS["steel"], shear=True)
 UNKEYED = {"drive": SCREW, "piston": TUBE.replace(keyed=False)}
 
 
@@ -44,6 +46,7 @@ MACHINES = (
     | {f"loop about {at}, rate of {rate}": lambda at=at, rate=rate: real(at, rate) for at, rate in LOOPS}
     | {
         "flexures": lambda: study(with_legs(hexapod("FPF"), FLEXES)),
+        "thick": lambda: study(with_legs(hexapod("UPS"), {"piston": THICK}), fidelity="lumped"),
         "nut that turns": lambda: study(with_legs(hexapod("UCU"), UNKEYED)),
     }
 )

@@ -6,14 +6,13 @@ The class stands for its equations, which hold for all legs; its objects are the
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, Self
 
 from flexapod.elements.frame import Energies
+from flexapod.elements.trial import refuse_declared, source_of
 from flexapod.errors import InputError
 from flexapod.schema.table import Table
 from flexapod.symbolic.vocabulary import dot, sqrt, vertcat
@@ -131,8 +130,16 @@ class Along(_InLeg):
     """A leg along its chain, for energies that need more than its coordinates.
 
     ``p``, ``q``, ``v``, ``elements`` by name. ``base``: frame of a base that moves, at the origin while it is where it
-    is drawn; ``foot`` and ``cylinder``: frames before and behind the base joint; ``piston``: its fields and what moves
-    them.
+    is drawn; ``foot`` and ``cylinder``: frames before and behind the base joint (`Frame`), z along the leg; ``piston``:
+    its fields and what moves them. Parameters of the leg are in ``p`` as well: ``p.gravity`` (3,) [m/s^2].
+
+    Examples
+    --------
+    >>> def energy_along(cls, x):  # a point beside the cylinder, by `Element.energy_along`
+    ...     point = x.cylinder.moved(x.p.place, zeros(3))
+    ...     return fx.Energies(gravity=point.weight(x.p.gravity, x.p.mass, zeros(3)))
+    >>> fx.Along.__dataclass_fields__.keys() >= {"p", "q", "v", "base", "foot", "cylinder", "piston"}
+    True
     """
 
     base: Frame | None
@@ -235,8 +242,16 @@ class Physics:
 
     @classmethod
     def energy_along(cls, x: Along) -> Energies:
-        """The same of what asks for frames, or for the other elements."""
+        """Its energies where they ask for frames of the leg, or for the other elements: in place of `energy`."""
         return cls.energy(x.p, x.q, x.v)
+
+    @classmethod
+    def damping_force(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Mapping[str, SX]:
+        """What brakes coordinates, by name, where no dissipation is said: 0 at rest, positive against a positive rate.
+
+        Its power is lost, as that of a dissipation.
+        """
+        return {}
 
     @classmethod
     def carries(cls, base: Frame | None, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Frame | None:
@@ -331,10 +346,10 @@ def register(element: type[Element]) -> None:
     Raises
     ------
     InputError
-        It comes from no file, or its names are taken.
+        It comes from no file, its names are taken, or it declares what is none of its own.
     """
-    name, file = element.at, source_of(element)
-    if file is None:
+    name = element.at
+    if source_of(element) is None:
         raise InputError(
             "is an element without a file: the equations are compiled anew when their source changes",
             value=element.__name__,
@@ -343,19 +358,13 @@ def register(element: type[Element]) -> None:
         )
     if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
         raise InputError("is not a name for a table", value=name, allowed="small letters, digits and _")
+    refuse_declared(element)
     other = registered.get(name)
     if other is not None and (other.__module__, other.__qualname__) != (element.__module__, element.__qualname__):
         raise InputError(
             "is the table of another element", value=name, allowed=f"a name that {other.__module__} does not have"
         )
     registered[name] = element
-
-
-def source_of(element: type[Physics]) -> Path | None:
-    """File of the module of a class; None of one that was typed into a console."""
-    file = getattr(sys.modules.get(element.__module__), "__file__", None)
-    found = None if file is None else Path(file)
-    return found if found is not None and found.is_file() else None
 
 
 def asked_beside(elements: Sequence[Slot], p: SimpleNamespace, q: SimpleNamespace) -> SX | None:

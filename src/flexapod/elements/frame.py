@@ -19,6 +19,11 @@ class Frame:
 
     ``origin`` in the world and ``axes``, the rotation from the frame to the world; velocity of the origin and angular
     velocity relative to the world, both in the frame's own axes.
+
+    Examples
+    --------
+    >>> [name for name in fx.Frame.__dataclass_fields__]
+    ['origin', 'axes', 'velocity', 'omega']
     """
 
     origin: SX

@@ -16,6 +16,7 @@ from flexapod.elements.motor_loop import MotorLoop
 from flexapod.elements.mount import BaseMounting, MovedBase, PlatformMounting
 from flexapod.elements.oil import Oil
 from flexapod.elements.ripple import Ripple
+from flexapod.elements.shear import RotaryInertia
 from flexapod.elements.slot import Slot
 from flexapod.elements.soft_joint import SoftBase, SoftPlatform
 from flexapod.elements.summed_error import SummedError
@@ -32,7 +33,7 @@ GROUP = "flexapod.elements"
 OURS: tuple[type[Physics], ...] = (
     Flexures, SoftBase, SoftPlatform, DriveTrain, TurningNut, Gap, Ripple, SummedError, MotorLoop, Oil, Resolution,
     BaseFriction, PlatformFriction, DriveFriction, MovedBase, BaseMounting, PlatformMounting,
-    Clearance,
+    Clearance, RotaryInertia,
 )  # fmt: skip
 
 

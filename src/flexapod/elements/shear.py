@@ -3,13 +3,42 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from flexapod.elements.distribution import PistonMotion
+from flexapod.elements.element import Along, Named, Physics, Standing
+from flexapod.elements.frame import Energies
 from flexapod.symbolic.vocabulary import dot, quadratic
 
 if TYPE_CHECKING:
+    from flexapod.model import Leg, Robot, Simulation
     from flexapod.symbolic.vocabulary import SX
+
+
+class RotaryInertia(Physics):
+    """Sections of a piston that stays straight, as they turn with the leg; of one that bends it is `rotary_energy`."""
+
+    parameters: ClassVar[Named] = (("piston_turning", 2),)  # kg m^2
+
+    @classmethod
+    def of(cls, leg: Leg) -> Self | None:
+        """Of a piston that would shear."""
+        return cls() if leg.piston.shear else None
+
+    @classmethod
+    def among(cls, robot: Robot, simulation: Simulation) -> bool:
+        """Where pistons have no shapes of bending."""
+        return not simulation.lateral_shapes and super().among(robot, simulation)
+
+    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
+        """Inertia of the whole."""
+        return {"piston_turning": leg.piston.rotary_inertia}
+
+    @classmethod
+    def energy_along(cls, x: Along) -> Energies:
+        """Energy of a turn about leg y and x, Eq. (T3.25) of no slope."""
+        w, whole = x.cylinder.omega, x.p.piston_turning
+        return Energies(kinetic=0.5 * whole[0] * w[1] ** 2 + 0.5 * whole[1] * w[0] ** 2)
 
 
 def shear_energy(f: PistonMotion, qs: SimpleNamespace) -> SX:

@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from flexapod.elements.element import Along, Moving, Named, Physics, SeriesSprings, Standing
+from flexapod.elements.frame import Energies
+from flexapod.elements.trial import asking, refused
 
 if TYPE_CHECKING:
-    from flexapod.elements.frame import Energies, Frame
+    from flexapod.elements.frame import Frame
     from flexapod.model import Leg
     from flexapod.symbolic.vocabulary import SX
 
@@ -63,7 +65,10 @@ class Slot:
         """Parameters of one leg, whether or not the element is there."""
         own = self.of(leg)
         absent = {name: self.kind.absent.get(name, np.zeros(size)) for name, size in self.kind.parameters}
-        return self._prefixed(absent if own is None else absent | dict(own.numbers(leg, standing)))
+        if own is None:
+            return self._prefixed(absent)
+        with asking(self.kind, "numbers"):
+            return self._prefixed(absent | dict(own.numbers(leg, standing)))
 
     def held(self, leg: Leg, standing: Standing) -> list[str]:
         """Coordinates that follow a table in one leg."""
@@ -71,7 +76,21 @@ class Slot:
 
     def energy(self, x: Along) -> Energies:
         """Energies where it stands in a leg."""
-        return self.kind.energy_along(self._seen_in(x))
+        with asking(self.kind, "energy"):
+            found = self.kind.energy_along(self._seen_in(x))
+        if not isinstance(found, Energies):
+            raise refused(self.kind, "energy", "gives no flexapod.Energies", value=type(found).__name__)
+        return found
+
+    def damping_force(self, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> dict[str, SX]:
+        """Forces against the rates of coordinates."""
+        with asking(self.kind, "damping_force"):
+            return self._prefixed(self.kind.damping_force(self.seen(p), self.seen(q), self.seen(v)))
+
+    def slides(self, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
+        """How fast it slides where it has friction."""
+        with asking(self.kind, "slides"):
+            return self.kind.slides(self.seen(p), self.seen(q), self.seen(v))
 
     def carries(self, base: Frame | None, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Frame | None:
         """Frame of the base as it carries it."""
@@ -91,7 +110,8 @@ class Slot:
 
     def pushes(self, x: Moving) -> dict[str, SX]:
         """What is added to the balance without an energy."""
-        return self._prefixed(self.kind.pushes(self._seen_in(x)))
+        with asking(self.kind, "pushes"):
+            return self._prefixed(self.kind.pushes(self._seen_in(x)))
 
     def inertia(self, p: SimpleNamespace) -> dict[str, tuple[SX | float, SX | float]]:
         """Mass and damper without an energy."""
@@ -99,7 +119,8 @@ class Slot:
 
     def given(self, x: Moving) -> SX | None:
         """Power that comes in."""
-        return self.kind.given(self._seen_in(x))
+        with asking(self.kind, "given"):
+            return self.kind.given(self._seen_in(x))
 
     def seen(self, names: SimpleNamespace) -> SimpleNamespace:
         """Names as the element has them: its own without what stands before them."""

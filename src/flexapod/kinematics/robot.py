@@ -106,12 +106,14 @@ def _leg_map(robot: Robot) -> inverse.LegMap:
 
 
 def leg_bodies(robot: Robot) -> LegBodies:
-    """Masses and inertias of the six legs as arrays."""
+    """Masses and inertias of the six legs as arrays; that of sections which turn is with the cylinder's."""
     cylinders, pistons = [leg.cylinder for leg in robot.legs], [leg.piston for leg in robot.legs]
     return LegBodies(
         cylinder_mass=np.array([c.mass for c in cylinders]),
         cylinder_com=np.array([c.com for c in cylinders]),
-        cylinder_inertia=np.array([c.inertia for c in cylinders]),
+        cylinder_inertia=np.array(
+            [c.inertia + p.rotary_inertia.mean() for c, p in zip(cylinders, pistons, strict=True)]
+        ),
         cylinder_axial=np.array([c.axial_inertia for c in cylinders]),
         piston_mass=np.array([p.rhoA * p.length for p in pistons]),
         piston_length=np.array([p.length for p in pistons]),

@@ -3,15 +3,20 @@
 The residuals are exact. The matrices at rest serve equilibria, modes and the iterations of the time integration.
 """
 
+from collections.abc import Sequence
+
+from flexapod.arrays import Array
 from flexapod.elements.drive_train import DriveTrain
 from flexapod.elements.element import Moving, asked_beside
 from flexapod.elements.motor_loop import MotorLoop
 from flexapod.elements.mount import plate
 from flexapod.elements.servo import Servo
 from flexapod.elements.slot import Slot
+from flexapod.elements.trial import refused
 from flexapod.mechanics.closure import ball_closure, load_force, pose_closure
 from flexapod.mechanics.layout import LOAD_SIZE, Shapes, leg_parameters, payload_parameters
 from flexapod.mechanics.leg import leg
+from flexapod.mechanics.own_elements import parts_without_number, refuse_unfit
 from flexapod.mechanics.payload import (
     displaced_pose,
     joint_point,
@@ -26,6 +31,7 @@ from flexapod.symbolic.vocabulary import (
     SX,
     Through,
     cross,
+    depends_on,
     dot,
     gradient,
     hessian,
@@ -42,6 +48,7 @@ from flexapod.symbolic.vocabulary import (
 def leg_functions(shapes: Shapes) -> list[NamedFunction]:
     """Residual, matrices at rest, energies and rates of the closure of one leg with the given shapes."""
     x = _Leg(shapes)
+    x.refuse_unfit()
     looping = [x.looping()] if shapes.holds(MotorLoop) else []
     return [x.residual(), x.matrices(), x.energies(), x.closing(), *looping]
 
@@ -73,6 +80,14 @@ def leg_tip(shapes: Shapes) -> NamedFunction:
     """Derivatives of the place of the tip by the coordinates of a leg, (3, n)."""
     x = _Leg(shapes)
     return x.named("leg_tip", [("q", x.q), ("p", x.p_vector)], [("J", x.by_q.jacobian(x.body.tip))])
+
+
+def parts_of_elements(shapes: Shapes, values: Sequence[Array]) -> dict[Slot, list[str]]:
+    """Parts of each element from outside that are no number for coordinates, rates and parameters of a leg."""
+    x = _Leg(shapes)
+    variables = x.variables()
+    own = (one for one in shapes.elements if one.kind.at)
+    return {one: parts_without_number(x.body.elements[one], x.damping_forces(one), variables, values) for one in own}
 
 
 class _Leg:
@@ -131,6 +146,36 @@ class _Leg:
                 r[self.shapes.index(name)] += push
         return r
 
+    def damped(self) -> dict[int, SX]:
+        """What damps coordinates without a dissipation, by position; of coordinates of several numbers a column."""
+        found: dict[int, SX] = {}
+        for element in self.elements:
+            for name, force in self.damping_forces(element).items():
+                at = self.shapes.index(name)
+                found[at] = found[at] + force if at in found else force
+        return found
+
+    def damping_forces(self, element: Slot) -> dict[str, SX]:
+        """Damping forces of one element by coordinate."""
+        found = element.damping_force(self.p, self.qs, self.vs)
+        for name, force in found.items():
+            size = dict(self.shapes.layout).get(name)
+            if size != SX(force).numel():
+                held = f"one of {size} numbers" if size else "that a leg does not have"
+                raise refused(element.kind, "damping_force", f"is on a coordinate {held}", value=name)
+        return {name: SX(force) for name, force in found.items()}
+
+    def variables(self) -> tuple[tuple[str, SX], ...]:
+        """Coordinates, rates and parameters by name."""
+        return ("q", self.q), ("v", self.v), ("p", self.p_vector)
+
+    def refuse_unfit(self) -> None:
+        """Refuse elements from outside that have no equations of motion, with class and file."""
+        variables = self.variables()
+        for one in self.elements:
+            if one.kind.at:
+                refuse_unfit(one, self.body.elements[one], self.damping_forces(one), variables)
+
     def own_inertia(self) -> dict[int, tuple[SX | float, SX | float]]:
         """Mass and damper of coordinates that have them without an energy, by position."""
         found = (x for element in self.elements for x in element.inertia(self.p).items())
@@ -173,6 +218,8 @@ class _Leg:
             r[i] -= servo.force
         for i, (mass, damper) in self.own_inertia().items():
             r[i] += mass * self.v_dot[i] + damper * self.v[i]
+        for i, force in self.damped().items():
+            r[i : i + force.numel()] += force
         return r + self.pushed()
 
     def beside(self) -> tuple[SX, SX]:
@@ -193,6 +240,8 @@ class _Leg:
         """Balance, closure, powers (lost, given, of a load) and forces of the drives' springs."""
         loss = dot(self.v, gradient(self.body.lagrangian.dissipation, self.v))
         lost = sum((servo.lost for servo in self.servos.values()), loss)
+        for i, force in self.damped().items():
+            lost += dot(force, self.v[i : i + force.numel()])
         given = sum((servo.given for servo in self.servos.values()), zeros(1))
         given += sum((x for element in self.elements if (x := element.given(self.as_moving())) is not None), zeros(1))
         powers = [lost, given, *([dot(self.load_force(), self.v)] if self.shapes.loaded else [])]
@@ -221,7 +270,7 @@ class _Leg:
         e, step = self.body.lagrangian, symbol("step", 6)
         gap, wrench = self.closed(step)
         here = _undisplaced(gap, step)
-        D = hessian(e.dissipation, e.v)
+        D = self.damping()
         K = self.by_q.hessian(e.potential + dot(here, self.lam))
         if self.shapes.loaded:
             K -= jacobian(self.load_force(), e.q)
@@ -241,6 +290,14 @@ class _Leg:
         return self.named(
             "leg_matrices", [("q", self.q), ("lam", self.lam), ("p", self.p_vector), *self.outside()], outputs
         )
+
+    def damping(self) -> SX:
+        """Slope of what dissipations and damping forces do by the rates, at rest."""
+        e = self.body.lagrangian
+        D = hessian(e.dissipation, e.v)
+        for i, force in self.damped().items():
+            D[i : i + force.numel(), :] += jacobian(force, e.v)
+        return substitute(D, (e.v,), (zeros(self.shapes.size),)) if depends_on(D, e.v) else D
 
     def closing(self) -> NamedFunction:
         """What the closure asks to vanish, and its rate (of a point closure: those of the tip)."""

@@ -17,7 +17,7 @@ def friction_functions(shapes: Shapes) -> list[NamedFunction]:
     v, vs = symbols(shapes.layout, "v")
     lam, h, begin = symbol("lam", shapes.rows), symbol("h"), symbol("begin", 2 * shapes.bristles)
     z, before = (split(part, shapes.sliding) for part in (begin[: shapes.bristles], begin[shapes.bristles :]))
-    rates = {slot.parameters[0][0]: slot.kind.slides(p, qs, vs) for slot, _ in shapes.rubbing}
+    rates = {slot.parameters[0][0]: slot.slides(p, qs, vs) for slot, _ in shapes.rubbing}
     load = sqrt(dot(lam[:3], lam[:3]) + FORCELESS) if shapes.rows else zeros(1)
     found = {
         name: rubbing(getattr(p, name), load, rate, getattr(before, name), getattr(z, name), h)

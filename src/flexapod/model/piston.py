@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
+import numpy as np
 from pydantic import Field, model_validator
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.model.cylinder import check_axial
 from flexapod.model.material import POISSON, Material, Rectangle, Tube, read_material, read_tube
-from flexapod.model.sections import SHARES, PistonSection, PistonStep
+from flexapod.model.sections import SHARES, WEIGHTS, PistonSection, PistonStep
 from flexapod.schema.base import Key, Quantity
 from flexapod.schema.columns import columns_of
 from flexapod.schema.table import Table
@@ -247,6 +249,15 @@ class Piston(Table):
         """Length of its sections, or of all, from the driven end to the tip, and what they are at `sections.SHARES`."""
         found = tuple((section.length, section.samples) for section in self.sections)
         return found or ((self.length, self.steps_or_one * len(SHARES)),)
+
+    @property
+    def rotary_inertia(self) -> Array:
+        """Rotary inertia of its sections along the whole, about leg y and x, (2,) [kg m^2]; 0 of one without shear."""
+        if not self.shear:
+            return np.zeros(2)
+        weights = np.array(WEIGHTS) * [[length] for length, _ in self.parts]
+        own = np.array([[(x.rhoA * x.EI[0] / x.EA, x.rhoA * x.EI[1] / x.EA) for x in at] for _, at in self.parts])
+        return np.einsum("ps,psd->d", weights, own)
 
     @property
     def width(self) -> float:

@@ -10,6 +10,7 @@ from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.elements.element import Contribution
 from flexapod.elements.known import kinds_of
+from flexapod.elements.trial import asking
 from flexapod.kinematics.limbs import COORDINATES
 from flexapod.kinematics.robot import once
 from flexapod.model import Robot, Study
@@ -76,14 +77,12 @@ def _of_elements(study: Study, at: AtPose) -> list[ErrorRow]:
 @once
 def _errors(robot: Robot) -> list[tuple[int, Contribution]]:
     """The errors that elements of the legs make, each with the index of its leg."""
-    legs = robot.legs
-    return [
-        (i, error)
-        for i, leg in enumerate(legs)
-        for kind in kinds_of(legs)
-        for own in kind.all_of(leg)
-        for error in own.errors(leg)
-    ]
+    found = []
+    for i, leg in enumerate(robot.legs):
+        for kind in kinds_of(robot.legs):
+            with asking(kind, "errors"):
+                found += [(i, error) for own in kind.all_of(leg) for error in own.errors(leg)]
+    return found
 
 
 def _nature(part: str) -> str:

@@ -9,6 +9,7 @@ import numpy as np
 
 from flexapod.arrays import Array
 from flexapod.elements.known import kinds_of, slots_of
+from flexapod.elements.trial import asking
 from flexapod.mechanics.layout import leg_parameters
 from flexapod.model import Robot
 from flexapod.results.names import VARIABLES, Variable
@@ -39,7 +40,8 @@ def element_results(robot: Robot, system: System, q: Array) -> dict[str, Array]:
     for slot in shapes.elements:
         has = np.array([slot.of(leg) is not None for leg in robot.legs])
         for output in slot.kind.outputs:
-            values = np.broadcast_to(output.of(slot.seen(p), slot.seen(coordinates)), q.shape[:-1])
+            with asking(slot.kind, f"outputs.{output.name}"):
+                values = np.broadcast_to(output.of(slot.seen(p), slot.seen(coordinates)), q.shape[:-1])
             found[f"{slot.prefix}{output.name}"] = np.where(has, values, np.nan)
     return found
 

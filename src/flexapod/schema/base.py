@@ -23,7 +23,7 @@ from pydantic import (
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from flexapod.arrays import Array
-from flexapod.errors import InputError, closest
+from flexapod.errors import InputError, check_known, closest
 from flexapod.units import DIMENSIONS
 from flexapod.words import number
 
@@ -86,6 +86,8 @@ class Quantity(Key):
         short: str = "",
     ) -> None:
         super().__init__(why, usual=usual, short=short)
+        for name in dimensions:
+            check_known(name, DIMENSIONS, "Quantity", "is nothing that a Quantity can measure")
         self.dimensions = dimensions
         limits = {"gt": above, "ge": least, "le": most, "lt": below}
         self.limits: dict[str, float] = {name: float(limit) for name, limit in limits.items() if limit is not None}

@@ -6,6 +6,7 @@ from flexapod.arrays import Array
 from flexapod.elements.element import Standing
 from flexapod.elements.mount import plate_mass
 from flexapod.elements.springs import viscous
+from flexapod.elements.trial import refuse_numbers
 from flexapod.kinematics.limbs import COORDINATES, FREE, Limbs
 from flexapod.mechanics import layout
 from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
@@ -160,8 +161,12 @@ def _joints(leg: Leg, legs: Limbs, i: int, per_loss: float) -> dict[str, object]
 
 def _of_elements(leg: Leg, shapes: Shapes, standing: Standing) -> dict[str, object]:
     found: dict[str, object] = {}
+    known = dict(layout.leg_parameters(shapes))
     for element in shapes.elements:
-        found |= element.numbers(leg, standing)
+        given = element.numbers(leg, standing)
+        if element.kind.at:
+            refuse_numbers(element, given, known)
+        found |= given
     return found
 
 

@@ -16,6 +16,7 @@ from flexapod.mechanics.layout import Shapes, columns
 from flexapod.mechanics.layout import leg_parameters as leg_layout
 from flexapod.model import Robot, Simulation, Study
 from flexapod.solve.kernel import kernel
+from flexapod.solve.own_elements import try_elements
 from flexapod.solve.parameters import leg_parameters, payload_parameters, standings
 from flexapod.solve.shapes import robot_shapes
 from flexapod.solve.system import System
@@ -38,7 +39,7 @@ def robot_system(
     legs = kinematics.built_limbs(robot, kinematics.robot_limbs(robot))
     shapes = robot_shapes(robot, simulation, legs)
     standing = standings(robot, legs, per_loss, at_rest=at_rest)
-    return System(
+    system = System(
         kernel=kernel(shapes),
         leg_p=leg_parameters(robot, legs, shapes, per_loss, at_rest=at_rest),
         joint_p=np.ascontiguousarray(legs.platform - robot.com),
@@ -46,6 +47,8 @@ def robot_system(
         held=_held(robot, legs, shapes, at_rest=at_rest) | _held_by_elements(robot, shapes, standing),
         hub_held=legs.hub_held,
     )
+    try_elements(robot, system)
+    return system
 
 
 def smooth(robot: Robot) -> Robot:
@@ -120,12 +123,22 @@ def at_rotors(robot: Robot, simulation: Simulation, per_loss: float) -> System:
 
 
 def refuse_massless(study: Study) -> None:
-    """Raise InputError if a piston without mass leaves coordinates that nothing but their stiffness determines."""
+    """Raise InputError if parts without mass leave coordinates that nothing but their stiffness determines."""
     simulation = study.simulation
     for i, leg in enumerate(study.robot.legs, start=1):
         still = leg.strut is not None or (leg.drive.holds and leg.holds_stroke)
         soft = {spring.at for spring in springs_along(leg)} - ({"base"} if leg.cylinder.mass else set())
         alone = simulation.axial_shapes(study.robot.legs[0].axial_modes) - still + len(soft & {"base", "platform"})
+        if "base" in soft and not (still or simulation.lateral_shapes):
+            raise InputError(
+                f"of leg {i} has no mass between a base joint that gives way and a stroke that is free: along the leg "
+                "both move the piston alone, which has statics and modes, but no motion in time",
+                file=study.path,
+                key="leg.cylinder.mass",
+                value=0,
+                allowed="0 in modes, stiffness, maps; in time with prescribed strokes or ideal base joints",
+                next_step="Give a small mass, as 1e-3 kg: steps need not follow what is that light",
+            )
         if leg.piston.rhoA == 0 and (simulation.lateral_shapes or alone > 0):
             raise InputError(
                 f"of leg {i} leaves shapes of the piston without mass: they have statics, but no motion in time",

@@ -8,6 +8,8 @@ from typing import Any
 
 import casadi
 
+from flexapod.symbolic.c_functions import FUNCTIONS, constant_text
+
 __all__ = ["row_table"]
 
 #: Rows that are no sum of products, by the number that stands for them in the table; sums by their number of terms.
@@ -74,6 +76,8 @@ class _Rows:
             return self._new(self.others, ("quotient", a if operation == casadi.OP_DIV else self.one, b))
         if operation in _ONE_OF_TWO:
             return self._new(self.others, (_ONE_OF_TWO[operation], a, a))
+        if operation in FUNCTIONS:
+            return self._new(self.others, (FUNCTIONS[operation].name, a, b))
         raise ValueError(f"operation {operation} of casadi has no row here")
 
     def of(self, value: int) -> list[int]:
@@ -82,9 +86,9 @@ class _Rows:
             return [x for term in self.sums[value] for x in term]
         return list(self.others[value][1:])
 
-    def kind(self, value: int) -> int:
-        """The number that stands for a row in the table."""
-        return len(self.sums[value]) if value in self.sums else KINDS[self.others[value][0]]
+    def kind(self, value: int) -> int | str:
+        """The number that stands for a row in the table, or the name of a function that no row can have."""
+        return len(self.sums[value]) if value in self.sums else KINDS.get(self.others[value][0], self.others[value][0])
 
     def _gather(self) -> None:
         """Sums and products that one sum alone reads become its terms."""
@@ -105,11 +109,11 @@ class _Rows:
                 last = self.sums.pop(last[0])[0]
             self.sums[value] = [*start, last]
 
-    def batches(self) -> Iterator[tuple[int, list[int]]]:
+    def batches(self) -> Iterator[tuple[int | str, list[int]]]:
         """Rows of one kind after each other, so that a processor guesses what comes next; each after what it reads."""
         waits: dict[int, int] = {}
         readers: dict[int, list[int]] = {}
-        ready: dict[int, list[int]] = {}
+        ready: dict[int | str, list[int]] = {}
         for value in (*self.sums, *self.others):
             needs = {x for x in self.of(value) if x not in self.known}
             waits[value] = len(needs)
@@ -136,7 +140,7 @@ def row_table(name: str, f: casadi.Function) -> Iterator[str]:
     ----------
     name : str
     f : casadi.Function
-        Made of sums, products, quotients, square roots, exponentials, sines and cosines.
+        Made of sums, products, quotients, square roots, exponentials, sines, cosines and `c_functions.FUNCTIONS`.
 
     Raises
     ------
@@ -149,25 +153,47 @@ def row_table(name: str, f: casadi.Function) -> Iterator[str]:
     last = {x: value for value in order for x in rows.of(value)} | {value: -1 for *_, value in rows.outputs}
     place = {value: k for k, value in enumerate(rows.known)}
     free: list[int] = []
-    most, table = len(place), []
+    most, table, parts = len(place), [], []  # parts: tables, and calls between them
     for kind, batch in batches:
-        table += [kind, len(batch)]
+        if isinstance(kind, str):
+            parts, table = [*parts, table], []
+        else:
+            table += [kind, len(batch)]
         for value in batch:
             of = rows.of(value)
-            table += [place[x] for x in of]
+            read = [place[x] for x in of]
             free += [place[x] for x in dict.fromkeys(of) if last[x] == value and x not in rows.known]
             place[value] = free.pop() if free else most
             most += place[value] == most
-            table.append(place[value])
+            if isinstance(kind, str):
+                parts.append(f"  w[{place[value]}] = lanes_{kind}(w[{read[0]}], w[{read[-1]}]);")
+            else:
+                table += [*read, place[value]]
     results = [(k, j, place[value]) for k, j, value in rows.outputs]
     yield f"void {name}(const lanes *const *in, lanes *const *out) {{"
-    yield f"  static const unsigned table[] = {{{_list([*table, 0])}}};"
-    yield f"  static const RowInput known[] = {{{_list(rows.known.values())}}};"
-    yield f"  static const RowOutput results[] = {{{_list(results)}}};"
-    yield f"  static _Thread_local lanes w[{most}];"
-    yield f"  rows(table, {len(rows.known)}, known, {len(results)}, results, in, out, w);"
+    yield from _tables([*parts, table], rows, results, most)
     yield "}"
 
 
+def _tables(parts: list[Any], rows: _Rows, results: list[tuple[int, int, int]], most: int) -> Iterator[str]:
+    """Tables and what is called between them: the first one reads inputs, the last one writes outputs."""
+    tables = [k for k, part in enumerate(parts) if not isinstance(part, str)]
+    called = {k: "table" if len(tables) == 1 else f"table{k}" for k in tables}
+    yield from (f"  static const unsigned {called[k]}[] = {{{_list([*parts[k], 0])}}};" for k in tables)
+    yield f"  static const RowInput known[] = {{{_list(rows.known.values())}}};"
+    yield f"  static const RowOutput results[] = {{{_list(results)}}};"
+    yield f"  static _Thread_local lanes w[{most}];"
+    for k, part in enumerate(parts):
+        if isinstance(part, str):
+            yield part
+            continue
+        inputs, outputs = len(rows.known) if k == tables[0] else 0, len(results) if k == tables[-1] else 0
+        yield f"  rows({called[k]}, {inputs}, known, {outputs}, results, in, out, w);"
+
+
 def _list(items: Iterable[object]) -> str:
-    return ",".join(f"{{{_list(x)}}}" if isinstance(x, tuple) else repr(x) for x in items)
+    return ",".join(f"{{{_list(x)}}}" if isinstance(x, tuple) else _text(x) for x in items)
+
+
+def _text(number: object) -> str:
+    return constant_text(number) if isinstance(number, float) else repr(number)

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 import casadi
 
+from flexapod.symbolic.c_functions import FUNCTIONS, call, constant_text, definitions
 from flexapod.symbolic.c_rows import row_table
 from flexapod.symbolic.functions import NamedFunction
 
@@ -36,7 +37,7 @@ def c_source(function: NamedFunction) -> str:
     Parameters
     ----------
     function : NamedFunction
-        Made of sums, products, quotients, square roots, exponentials, sines and cosines.
+        Made of sums, products, quotients, square roots, exponentials, sines, cosines and `c_functions.FUNCTIONS`.
 
     Raises
     ------
@@ -66,7 +67,8 @@ def of_one_unit(function: NamedFunction) -> str:
 
 def _kinds(function: NamedFunction, built: casadi.Function) -> list[str]:
     kinds = ("double", "lanes") if function.alone else ("lanes",)
-    return [line for kind in kinds for line in _lines(f"{function.name}_{kind}", kind, built)]
+    lines = [line for kind in kinds for line in _lines(f"{function.name}_{kind}", kind, built)]
+    return [*definitions(built), *lines]
 
 
 def _lines(name: str, kind: str, built: casadi.Function) -> Iterator[str]:
@@ -108,7 +110,7 @@ def _statements(f: casadi.Function, kind: str) -> Iterator[str]:
         if operation == casadi.OP_OUTPUT:
             yield f"  out[{to[0]}][{to[1]}] = ({kind}){{0}} + {values[of[0]]};"
         elif operation == casadi.OP_CONST:
-            values[to[0]] = f"({f.instruction_constant(i)!r})"
+            values[to[0]] = f"({constant_text(f.instruction_constant(i))})"
         elif operation in (casadi.OP_SIN, casadi.OP_COS):
             angle = values[of[0]]
             if angle not in turned:
@@ -127,4 +129,6 @@ def _expression(operation: int, of: list[int], values: dict[int, str], kind: str
         return f"{values[of[0]]} {_BINARY[operation]} {values[of[1]]}"
     if operation in _UNARY:
         return _UNARY[operation].format(values[of[0]], kind)
+    if operation in FUNCTIONS:
+        return call(FUNCTIONS[operation].name, kind, (values[x] for x in of))
     raise ValueError(f"operation {operation} of casadi has no C text here")

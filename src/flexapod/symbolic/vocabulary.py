@@ -25,6 +25,7 @@ __all__ = [
     "constant",
     "cos",
     "cross",
+    "depends_on",
     "diagcat",
     "dot",
     "exp",
@@ -151,6 +152,11 @@ def identity(size: int) -> SX:
 def substitute(expression: SX, old: Sequence[SX], new: Sequence[SX]) -> SX:
     """Expression with every ``old`` symbol replaced by its ``new`` expression."""
     return casadi.substitute([expression], list(old), list(new))[0]
+
+
+def depends_on(expression: SX, x: SX) -> bool:
+    """Whether any symbol of a column is in an expression."""
+    return bool(x.numel()) and casadi.depends_on(expression, x)
 
 
 def cross(a: SX, b: SX) -> SX:

@@ -12,6 +12,7 @@ __all__ = ["count_real", "mass_factor", "natural"]
 
 ROUNDED = 1e-10  # eigenvalue of a mass matrix with a unit diagonal that may be rounding
 NO_MASS = 1e-12  # share of its mass that what others do leaves of a coordinate: less is rounding
+PIVOT = 4 * np.finfo(float).eps  # share of a mass, times the size, that a factor leaves of what has none of its own
 LIGHTEST = 1e-10  # root of a mass over that of what moves with it: less is rounding
 SLOW = 1e-6  # lowest frequency over the highest: above, all modes have mass
 
@@ -20,15 +21,20 @@ def mass_factor(M: Array, *, carried: bool = False) -> tuple[Array, Mask]:
     """Factors U, M = U^T U, of mass matrices (..., n, n), and which of these no mass or a real one has.
 
     A coordinate without mass has a row of zeros. Taken of one body by itself, each row is right to rounding of its own
-    size, however much heavier other bodies are. `carried`: a base moves the body in ways in which it moves by itself,
-    so that the matrix is singular.
+    size, however much heavier other bodies are. Where coordinates move the same mass, as those of a base joint and a
+    stroke with nothing but the piston, the matrix is singular; `carried`: it is, as a base moves the body in ways in
+    which it moves by itself.
     """
     if carried:
         return _by_pivots(M)
-    massless = np.diagonal(M, axis1=-2, axis2=-1) == 0
-    filled = M + massless[..., None] * np.eye(M.shape[-1])
-    root, positive = cholesky_each(filled)
-    return root.swapaxes(-1, -2) * ~massless[..., None], positive
+    whole = np.diagonal(M, axis1=-2, axis2=-1)
+    massless = whole == 0
+    root, positive = cholesky_each(M + massless[..., None] * np.eye(M.shape[-1]))
+    U, left = root.swapaxes(-1, -2) * ~massless[..., None], np.diagonal(root, axis1=-2, axis2=-1) ** 2
+    alike = ~positive | ((left <= M.shape[-1] * PIVOT * whole) & ~massless).any(axis=-1)
+    if alike.any():
+        U[alike], positive[alike] = _by_pivots(M[alike])
+    return U, positive
 
 
 def _by_pivots(M: Array) -> tuple[Array, Mask]:

@@ -27,7 +27,7 @@ STILL = {"base_mount": None, "platform_mount": None, "base_motion": None}
 
 @once
 def released(robot: Robot) -> Robot:
-    """The same robot as drawn, with ideal joints: fixed ones universal at the base, balls at the platform.
+    """The same robot as drawn, without elements of its own tables, with ideal joints: fixed ones universal, or balls.
 
     Its drives are prescribed.
     """
@@ -46,6 +46,7 @@ def _ideal(leg: Leg) -> Leg:
         base_joint=leg.base_joint.replace(**none),
         platform_joint=leg.platform_joint.replace(**none),
         springs=(),
+        elements=(),
         guide=None,
         cylinder=leg.cylinder.replace(diameter=None, inner_diameter=None, material=None, body=None),
         drive=PrescribedDrive(),

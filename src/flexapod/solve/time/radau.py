@@ -17,7 +17,7 @@ from flexapod.solve.time.recording import Counters, record_width
 if TYPE_CHECKING:
     from flexapod.solve.time.sampled import SampledLoop
 
-__all__ = ["OUT_OF_REACH", "Advanced", "Within"]
+__all__ = ["OUT_OF_REACH", "Advanced", "Within", "is_rigid"]
 
 OUT_OF_REACH = 4  # as in radau.c
 FIRST = 1e-5  # of the first step, and after a jump [s]; it grows four times a step
@@ -37,6 +37,7 @@ class _Control(Structure):
         *[(name, c_long) for name in ("outputs", "pieces", "terms", "most", "stops")],
         *[(name, c_void_p) for name in ("edges", "series", "stop")],
         *[(name, c_long) for name in ("along", "springs")],
+        ("forces", c_double),
     ]
 
 
@@ -80,7 +81,7 @@ class Within:
     ) -> None:
         self.system, self.series, self.horizon, self.tolerance = system, series, horizon, tolerance
         self.loop: SampledLoop | None = loop
-        self._along = _along(system)
+        self._along, self._rigid = _along(system), is_rigid(system)
         self._memory = memory(loops(system.kernel).radau_memory(byref(settings(system, GeneralizedAlpha(1.0), 1.0, 1))))
         self._memory[STEP] = FIRST
 
@@ -91,8 +92,12 @@ class Within:
 
     @property
     def thrust(self) -> float | None:
-        """Sum of the local errors of the force along a leg, the largest of all legs [N]; None: no spring tells it."""
-        return float(self._memory[THRUST : THRUST + self.system.legs].max()) if self._along[1] else None
+        """Sum of the local errors of the force along a leg, the largest of all legs [N]; None: nothing tells it.
+
+        Of rigid legs it is the largest error of a step: their forces follow from the motion of that instant.
+        """
+        told = self._along[1] or self._rigid
+        return float(self._memory[THRUST : THRUST + self.system.legs].max()) if told else None
 
     @property
     def time(self) -> float:
@@ -132,7 +137,7 @@ class Within:
         control = _Control(
             self.horizon, self.tolerance, address(leg), address(hub), LONGEST, SHORTEST,
             UNSOLVED, *outputs, len(series), NODES, most, len(stops),
-            address(edges), address(series), address(stops), *self._along,
+            address(edges), address(series), address(stops), *self._along, self.tolerance * self._rigid,
         )  # fmt: skip
         before, found = self._memory[REJECTED], np.empty((len(rows), self.loop.width if self.loop else 0))
         around, _held = self.loop.call(new, self.time, float(stops[-1]), found) if self.loop else (None, ())
@@ -157,3 +162,9 @@ def _along(system: System) -> tuple[int, int]:
     if shapes.beam.axial.count:
         return shapes.index("c"), shapes.beam.axial.count
     return shapes.l_index, int(not system.held[:, shapes.l_index].any())
+
+
+def is_rigid(system: System) -> bool:
+    """Whether legs have neither shapes nor a spring along them: their forces are those of a motion that is given."""
+    beam = system.kernel.shapes.beam
+    return bool(system.rows) and not (_along(system)[1] or beam.a.count or beam.b.count or beam.inside)

@@ -28,6 +28,7 @@ from flexapod.solve.time.march import initial_step, march
 from flexapod.solve.time.motor_lag import settled
 from flexapod.solve.time.pieces import Pieces
 from flexapod.solve.time.problem import OF_LOOPS, Chunk, Problem, Weight
+from flexapod.solve.time.radau import is_rigid
 from flexapod.solve.time.recording import Counters, Recording
 from flexapod.solve.time.redundant import independent, shared
 from flexapod.solve.time.start import consistent_start
@@ -252,7 +253,8 @@ class _Path:
 class _Measure:
     """Deviation of the payload (CoM, and rotation at the joints' radius) and the lateral amplitudes of a recording.
 
-    A payload that is fixed has no deviation: there amplitudes count, those along the legs as well.
+    A payload that is fixed has no deviation: there amplitudes count, those along the legs as well. Of rigid legs the
+    forces of the closures count, too: nothing else of them has an error.
     """
 
     def __init__(self, study: Study, system: System, path: _Path) -> None:
@@ -262,7 +264,7 @@ class _Measure:
         self.path, self.lateral = path, slice(first, first + shapes.beam.a.count + shapes.beam.b.count)
         self.along = columns(shapes.layout, "c") if shapes.beam.axial.count else slice(0)
         self.radius = np.linalg.norm(study.robot.platform_joints, axis=1).max()
-        self.fixed = bool(system.hub_held.all())
+        self.fixed, self.forces = bool(system.hub_held.all()), is_rigid(system)
         self.least = ROUNDING / (study.simulation.tolerance or 1.0)  # what is smaller along a leg does not count
 
     def weights(self) -> tuple[Weight, ...]:
@@ -271,12 +273,17 @@ class _Measure:
         if self.fixed:
             along, none = still.copy(), np.zeros(6)
             lateral[self.lateral] = along[self.along] = 1.0
-            return Weight(leg=lateral, hub=none), Weight(leg=along, hub=none)
-        lateral[self.lateral] = 0.1
-        hub = np.array([1.0, 1.0, 1.0, self.radius, self.radius, self.radius])
-        return Weight(leg=still, hub=hub), Weight(leg=lateral, hub=np.zeros(6))
+            found = Weight(leg=lateral, hub=none), Weight(leg=along, hub=none)
+        else:
+            lateral[self.lateral] = 0.1
+            hub = np.array([1.0, 1.0, 1.0, self.radius, self.radius, self.radius])
+            found = Weight(leg=still, hub=hub), Weight(leg=lateral, hub=np.zeros(6))
+        return (*found, *[Weight(leg=np.zeros(self.system.n), hub=np.zeros(6))] * self.forces)
 
     def __call__(self, recording: Recording) -> list[Array]:
+        return self._of_motion(recording) + [recording.lam[..., :3]] * self.forces
+
+    def _of_motion(self, recording: Recording) -> list[Array]:
         if self.fixed:
             return [recording.q[:, :, self.lateral], np.append(recording.q[:, :, self.along], self.least)]
         com, rigid_rotation = self.path.centre(recording.time)

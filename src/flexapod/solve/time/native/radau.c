@@ -5,6 +5,7 @@ enum { STAGES = 3, LOAD = 12, WIDTH = LEGS*PORTS*COLUMNS + LOAD };
 #define NOISE 3e-16  /* m: what it adds to the estimate of a step's error */
 #define CLOSED 1e-14 /* m: what rounding leaves */
 #define CLOSINGS 10
+#define BLURRED 2e-14 /* m: what rounding of places leaves in second differences of theirs */
 #define TURNING 0.005  /* share of what is left of the tolerance that bristles which turn over may take in one step */
 
 typedef struct {
@@ -16,12 +17,14 @@ typedef struct {
   const double *edges, *series;         /* (pieces + 1), (pieces, terms, width): Chebyshev series of the tables */
   const double *stop;                   /* (stops), ascending: instants on which steps end; the last ends the call */
   long along, springs;                  /* coordinates along a leg whose springs' forces are those of the leg: first, number */
+  double forces;                        /* error of closure forces over their peak that is allowed; 0: they limit no step */
 } Control;
 
 typedef struct {                        /* from call to call, at the begin of the caller's memory */
   double time, h, spent, last_h, peak;  /* spent: sum of the local errors; peak: error over h^6, decaying */
   double rate, stages, rejected, recorded;      /* rate: of Newton's iteration; stages: whether those of the last step are there */
-  double thrust[LEGS];                  /* sum of the local errors of the legs' forces */
+  double thrust[LEGS];                  /* sum of the local errors of the legs' forces; of rigid legs the largest one */
+  double carried;                       /* peak of the forces of the closures, up to now */
 } Memory;
 
 typedef struct {
@@ -497,6 +500,37 @@ static double estimate(const Settings *s, const Control *c, double h, Radau *r, 
   return norm(s, c, second);
 }
 
+/* Largest of the forces that closures take, not their moments, by legs as well where that is asked for */
+static double carried(const Settings *s, const Forces *f, double *each) {
+  double most = 0;
+  for (int g = 0; g < groups(s); g++) for (int i = 0; i < LANES && g*LANES + i < s->legs; i++) {
+    double squares = 0;
+    for (int j = 0; j < 3 && j < s->of->rows; j++) squares += f->lam[g][j][i]*f->lam[g][j][i];
+    most = fmax(most, sqrt(squares));
+    if (each) each[g*LANES + i] = fmax(each[g*LANES + i], sqrt(squares));
+  }
+  return most;
+}
+
+/* Estimate of the error of forces where nothing elastic tells it: what balances the accelerations of the embedded formula, of
+   order 3 in h, Eq. (T6.35); over their peak. Accelerations that may be rounding leave none. */
+static double estimate_forces(const Settings *s, const Control *c, double h, const Memory *m, Radau *r, Work *w) {
+  SIZES(s);
+  if (!(c->forces > 0)) return 0;
+  Vector *acceleration = &r->part[1];
+  lanes most = {0};
+  combine(s, EMBEDDED, r->change, 1/h, &r->a0, acceleration);
+  for (int g = 0; g < groups(s); g++) for (long k = 0; k < s->ports; k++) acceleration->leg[g][s->port[k]] *= 1.0 - w->hold[g][k];
+  for (int g = 0; g < groups(s); g++) most = magnitude(N, acceleration->leg[g], most);
+  double size = largest(most);
+  for (int j = 0; j < 6 && s->hub; j++) size = fmax(size, fabs(acceleration->hub[j]));
+  clear_vector(s, &r->rhs);
+  multiply(s, -1, r->M, s->hub ? r->hub_M : 0, acceleration, &r->rhs);
+  arrow_solve_vector(s, &w->arrow, &r->rhs, r->closed, &r->x, &r->force[0]);
+  if (size*h*h < BLURRED) return 0;
+  return carried(s, &r->force[0], 0)/fmax(fmax(m->carried, carried(s, &r->F[2], 0)), 1e-300);
+}
+
 /* Estimate of the error that bristles leave, twice how far their own, of order 4 of the embedded formula, moves the robot at
    rest: it stays where they stick. Where they turn over what is twice filtered does not see it, Eq. (T19.20). */
 static double estimate_bristles(const Settings *s, const Control *c, double h, Radau *r, Work *w) {
@@ -713,7 +747,7 @@ int radau(const Settings *s, State *x, const Control *c, char *memory, Loop *loo
   Work *w = spaces(&room, s, &m, &r);
   long tables = s->legs*s->ports*COLUMNS, width = tables + load_size(s), age = OLDEST, fresh = 0, next = 0, stop = 0;
   int status = OK;
-  double factored = 0, row[WIDTH], unit = fmax(c->hub_weight[0], 0);
+  double factored = 0, doubt = INFINITY, row[WIDTH], unit = fmax(c->hub_weight[0], 0);
   for (int j = 0; j < N; j++) unit = fmax(unit, c->weight[j]);
   load(s, x, w);
   w->h = w->stored = 0;
@@ -754,12 +788,16 @@ int radau(const Settings *s, State *x, const Control *c, char *memory, Loop *loo
       if (m->h < c->shortest) { x->bad_leg = leg; status = fault; }
       continue;
     }
-    double error = estimate(s, c, h, r, w), h5 = h*h*h*h*h, peak = fmax(error/(h5*h), 0.9*m->peak);
+    double error = estimate(s, c, h, r, w), wrong = estimate_forces(s, c, h, m, r, w), h5 = h*h*h*h*h, peak = fmax(error/(h5*h), 0.9*m->peak);
     double rubbed = estimate_bristles(s, c, h, r, w), turning = fmax(allowed*h, TURNING*rest_of_it);
-    if (error > fmax(2*allowed*h, rounding) || rubbed > fmax(2*turning, rounding)) {
+    if (error > fmax(2*allowed*h, rounding) || rubbed > fmax(2*turning, rounding) || (wrong > c->forces && wrong < doubt/2)) {
       step_back(s, r, row, w);
       m->rejected++;
       m->h = h*fmin(0.8, fmax(0.2, 0.9*fmin(pow(allowed*h/error, 0.2), cbrt(turning/fmax(rubbed, 1e-300)))));
+      if (wrong > c->forces) {          /* what shorter steps do not lessen was left by the last one */
+        m->h = fmin(m->h, h*fmin(0.5, fmax(0.2, cbrt(0.25*c->forces/wrong))));
+        doubt = wrong;
+      }
       if (m->h < c->shortest) { x->bad_leg = s->legs; status = OUT_OF_REACH; }
       continue;
     }
@@ -778,10 +816,16 @@ int radau(const Settings *s, State *x, const Control *c, char *memory, Loop *loo
     for (int k = 0; k < STAGES; k++) { copy_vector(s, &r->A[k], &r->last_A[k]); copy_forces(s, &r->F[k], &r->last_F[k]); }
     m->stages = 1; m->last_h = h; m->time = until; m->spent += error + rubbed;
     for (long i = 0; i < s->legs; i++) m->thrust[i] += r->thrust[i/LANES][i%LANES];
+    if (c->forces > 0) {
+      carried(s, &r->force[0], m->thrust);
+      m->carried = fmax(m->carried, carried(s, &r->F[2], 0));
+    }
     start_step(s, w, r);
     age++; fresh = 0;
     double share = fmax(allowed, NOISE*unit/h);   /* shorter steps have no less rounding */
     double factor = fmin(pow(share/fmax(peak*h5, 1e-300), 0.2), cbrt(share*h/fmax(rubbed, 1e-300)));
+    if (wrong > 0) factor = fmin(factor, fmin(cbrt(0.25*c->forces/wrong), 2));
+    doubt = INFINITY;
     double wanted = h*fmin(4, fmax(0.2, 0.9*factor));
     m->peak = wanted < 4*h ? peak : 0;              /* what limits no step is not remembered: it may be rounding */
     if (h < left && (wanted < 0.9*h || wanted > 1.2*h)) m->h = wanted;      /* another step costs another factorisation */
