@@ -9,7 +9,7 @@ import pytest
 from tests.property.test_written import plain
 
 from flexapod.errors import InputError
-from flexapod.model import PRESETS, Robot, Study, loads, preset_text
+from flexapod.model import PRESETS, Study, loads, preset_text
 from flexapod.model.circle import Circle
 from flexapod.model.fields import read_fields
 from flexapod.model.page import study_data
@@ -110,7 +110,7 @@ def legs(robot, at, value, text):
     else:
         of = [i for i, table in enumerate(tables) for _ in range(table.get("count", 1))]
     table, *inside = at
-    if inside[1] == "at":
+    if inside[1:2] == ["at"]:
         name = f"{inside[0].split('_')[0]}_joints"
         return {name: replaced(getattr(robot, name), [of.index(table), inside[2]], value, text)}
     changed = (replaced(x, inside, value, text) if i == table else x for i, x in zip(of, robot.legs, strict=True))
@@ -168,7 +168,8 @@ SPECIAL = {
 
 
 def content(study):
-    return study.replace(source_text="x", path=None, notes=())
+    """All but its text and what is said of it."""
+    return [getattr(study, name) for name in type(study).model_fields if name not in ("source_text", "path", "notes")]
 
 
 def same(one, other, key):
