@@ -185,7 +185,8 @@ class Actuator(Table):
         """
         follow = self._following({**self._given, **changes})
         given = {name: changes[name] for name in _STIFFNESS if changes.get(name) is not None}
-        if not follow or any(not agree(value, follow[name]) for name, value in given.items()):
+        of_section = any(changes.get(name) is not None for name in ("section", "material"))
+        if not of_section and (not follow or any(not agree(value, follow[name]) for name, value in given.items())):
             changes = {"section": None, "material": None, **changes}
         return super().replace(**changes)
 

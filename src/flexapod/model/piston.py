@@ -108,14 +108,14 @@ class Piston(Table):
     ] = False
 
     def __init__(self, **fields: Any) -> None:
-        super().__init__(**fields)
-        given = {name: value for name, value in self._given.items() if value is not None}
-        for name in ("diameter", "density", "GJ") if self.sections else ():
-            if name in given:
+        for name in ("diameter", "density") if fields.get("sections") else ():
+            if fields.get(name) is not None:
                 raise InputError(
-                    "is given together with sections", key=name, value=given[name],
+                    "is given together with sections", key=name, value=fields[name],
                     allowed="in a section, or without sections",
                 )  # fmt: skip
+        super().__init__(**fields)
+        given = {name: value for name, value in self._given.items() if value is not None}
         for name in ("E", "density") if any(name in given for name in (*STIFFNESS, "GJ")) else ():
             if name in given:
                 raise InputError(
@@ -205,7 +205,8 @@ class Piston(Table):
         follow = self._following(fields)
         given = {name: changes[name] for name in (*STIFFNESS, "GJ") if changes.get(name) is not None}
         by_hand = any(not agree(value, follow.get(name)) for name, value in given.items())
-        if not fields.get("sections") and (by_hand or not follow):
+        of_material = any(changes.get(name) is not None for name in ("E", "density"))
+        if not fields.get("sections") and not of_material and (by_hand or not follow):
             changes = {"E": None, "density": None, **changes}
         return super().replace(**changes)
 

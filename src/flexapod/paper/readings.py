@@ -67,7 +67,6 @@ def with_whole_piston(study: model.Study, length: float) -> model.Study:
 
 def with_modulus(study: model.Study, E: float) -> model.Study:
     """Pistons of the same section and density with another elastic modulus [Pa]."""
-
     return with_legs(study, lambda leg: leg.replace(piston=leg.piston.replace(E=E)))
 
 

@@ -175,7 +175,7 @@ class Frozen(BaseModel):
                     f"is not what follows from {self._source}",
                     key=name,
                     value=_largest(given),
-                    allowed=f"{_brief(value)}, or left out",
+                    allowed="none" if value is None else f"{_brief(value)}, or left out",
                     next_step=f"Give {name}, or that from which it follows",
                 )
         try:
