@@ -71,7 +71,8 @@ def test_a_piston_of_another_section_or_material(changes, made_of, stiffness, fr
 @pytest.mark.parametrize(
     ("make", "key", "words"),
     [
-        (lambda: BY_HAND.replace(E=70e9), "E", "together with EI, EA, rhoA"),
+        (lambda: BY_HAND.replace(E=70e9), "EA", "what follows from section and material"),
+        (lambda: BY_HAND.replace(diameter=None).replace(E=70e9), "E", "together with EI, EA, rhoA"),
         (lambda: BY_HAND.replace(E=70e9, density=2700.0), "EA", "what follows from section and material"),
         (lambda: ROUND.replace(E=70e9, EA=1e9), "EA", "what follows from section and material"),
         (lambda: Piston(length=0.6, EA=3e8, EI=1e5, rhoA=12.0, E=2e11), "E", "together with EI, EA, rhoA"),
@@ -81,8 +82,8 @@ def test_a_piston_of_another_section_or_material(changes, made_of, stiffness, fr
         (lambda: STEPPED.replace(diameter=0.05), "diameter", "together with sections"),
         (lambda: TUBE.replace(mass=1.0), "mass", "the section, with what is mounted on it"),
         (lambda: BEAM.replace(EI=1.0, material=MATERIALS["aluminium"]), "EI", "what follows from section and material"),
-        (lambda: Actuator(length=1.0, free_length=0.5, rhoA=1.0, EI=1.0, section=Tube(diameter=0.03)), "material",
-         "is missing"),
+        (lambda: Actuator(length=1.0, free_length=0.5, rhoA=1.0, EI=1.0, material=STEEL), "section", "is missing"),
+        (lambda: ROUND.replace(rhoA=1.0, density=2700.0), "rhoA", "what follows"),
         (lambda: Joint(rolling=LAW, stiffness=np.diag([1e8, 1e8, 1e8, 0, 0, 0])), "stiffness", "the law"),
         (lambda: Floor.by_curve("VC-A").replace(density=np.ones((3, 3))), "density", "the curve"),
         (lambda: Simulation(tolerance=1e-5).replace(step=1e-3), "step", "together with tolerance"),
@@ -98,10 +99,12 @@ def test_numbers_by_hand_stay():
     assert BY_HAND.replace(diameter=0.07).EA == 3e8  # the section of remarks on stresses
     stiff = ROUND.replace(EA=1e12)
     assert (stiff.EA, stiff.EI, stiff.rhoA) == (1e12, ROUND.EI, ROUND.rhoA)
-    assert (stiff.E, stiff.density, stiff.diameter) == (None, None, 0.06)
+    assert (stiff.E, stiff.density, stiff.diameter) == (None, 7800.0, 0.06)
+    light = ROUND.replace(rhoA=1e-3)
+    assert (light.EA, light.E, light.density) == (ROUND.EA, 2e11, None) and light.replace(E=1e11).EA == ROUND.EA / 2
     bare = ROUND.replace(diameter=None, inner_diameter=None)
     assert (bare.EA, bare.EI, bare.rhoA, bare.E) == (ROUND.EA, ROUND.EI, ROUND.rhoA, None)
-    for piston in (BY_HAND, stiff, bare, ROUND.replace(GJ=1e5), STEPPED.replace(sections=())):
+    for piston in (BY_HAND, stiff, light, bare, ROUND.replace(GJ=1e5), STEPPED.replace(sections=())):
         found = study(machine(piston=piston))
         assert fx.loads(found.source_text).robot == found.robot
         assert piston.replace(E=2e11, density=7800.0, EA=None, EI=None, rhoA=None, GJ=None, diameter=0.05).EI == (
@@ -109,6 +112,10 @@ def test_numbers_by_hand_stay():
         )
     assert Piston(**{name: getattr(ROUND, name) for name in Piston.model_fields}).replace(E=1e11).EA == ROUND.EA / 2
     assert BEAM.replace(EI=3.0).rhoA == BEAM.rhoA and BEAM.replace(EI=3.0).material is None
+    flat = fx.preset("paper-actuator").actuator.replace(section=Tube(diameter=0.03))
+    for beam in (flat, BEAM, BEAM.replace(EI=3.0), BEAM.replace(section=None)):
+        found = fx.preset("paper-actuator").replace(actuator=beam)
+        assert fx.loads(found.source_text).actuator == found.actuator
     rigid = TUBE.replace(diameter=None, inner_diameter=None, material=None)
     assert (rigid.mass, rigid.com, rigid.section) == (TUBE.mass, TUBE.com, None)
 

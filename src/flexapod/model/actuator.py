@@ -86,10 +86,10 @@ class Actuator(Table):
                 if name in section:
                     raise section.error("needs a section", name, allowed="rhoA and EI, or section and material")
             return section.read(cls, also=OF_MATERIAL)
-        for name in _STIFFNESS:
-            if name in section:
-                allowed = "rhoA and EI, or section and material"
-                raise section.error("is given together with section", name, allowed=allowed)
+        by_hand = [name for name in _STIFFNESS if name in section]
+        if by_hand and (len(by_hand) == 1 or any(name in section for name in ("material", *OF_MATERIAL))):
+            allowed = "rhoA and EI, or section and material"
+            raise section.error("is given together with section", by_hand[0], allowed=allowed)
         return section.read(cls, also=OF_MATERIAL, then=cls._of_section)
 
     @classmethod
@@ -97,8 +97,7 @@ class Actuator(Table):
         inner = section.child(section.data["section"], "section")
         model = Rectangle if "width" in inner or "height" in inner else Tube
         shape = inner.read(model, also=("width", "height") if model is Tube else ())
-        material = read_material(section)
-        return {"section": shape, "material": material}
+        return {"section": shape, "material": None if "EI" in section else read_material(section)}
 
     def _shown(self) -> dict[str, str]:
         tip = {"tip": f"{number(self.tip_mass, 4)} kg"} if self.tip_mass else {}
@@ -111,9 +110,8 @@ class Actuator(Table):
 
     @model_validator(mode="after")
     def _fits(self) -> Actuator:
-        if (self.section is None) != (self.material is None):
-            missing = "section" if self.section is None else "material"
-            raise InputError("is missing", key=missing, allowed="section and material, or rhoA and EI alone")
+        if self.section is None and self.material is not None:
+            raise InputError("is missing", key="section", allowed="section and material, or rhoA and EI")
         if self.free_length > self.length:
             raise InputError(
                 "is longer than the whole beam",
@@ -164,6 +162,10 @@ class Actuator(Table):
                 next_step="Leave space out, or use flexapod run",
             )
 
+    if TYPE_CHECKING:  # what follows need not be given
+
+        def __init__(self, **fields: Any) -> None: ...
+
     @classmethod
     def _following(cls, fields: Mapping[str, Any]) -> Mapping[str, Any]:
         """Its mass and stiffness, of section and material."""
@@ -175,7 +177,7 @@ class Actuator(Table):
     def replace(self, **changes: Any) -> Self:
         """A copy with some fields changed; what follows from section and material follows from the new ones.
 
-        rhoA or EI by hand stand in place of section and material; so does what they were where one of these is taken
+        By hand rhoA and EI stand in place of the material; so does what they were where section or material is taken
         away (None).
 
         Raises
@@ -185,9 +187,9 @@ class Actuator(Table):
         """
         follow = self._following({**self._given, **changes})
         given = {name: changes[name] for name in _STIFFNESS if changes.get(name) is not None}
-        of_section = any(changes.get(name) is not None for name in ("section", "material"))
-        if not of_section and (not follow or any(not agree(value, follow[name]) for name, value in given.items())):
-            changes = {"section": None, "material": None, **changes}
+        by_hand = not follow or any(not agree(value, follow[name]) for name, value in given.items())
+        if changes.get("material") is None and by_hand:
+            changes["material"] = None
         return super().replace(**changes)
 
     @classmethod

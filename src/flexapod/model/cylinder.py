@@ -100,6 +100,10 @@ class Cylinder(Table):
             )
         return self
 
+    if TYPE_CHECKING:  # what follows need not be given
+
+        def __init__(self, **fields: Any) -> None: ...
+
     @classmethod
     def _following(cls, fields: Mapping[str, Any]) -> Mapping[str, Any]:
         """Masses of one that bends, of its section, its material and what is mounted on it."""

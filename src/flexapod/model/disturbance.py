@@ -90,6 +90,10 @@ class Floor(Table):
         """A floor whose velocity reaches a curve in all bands, Eq. (T18.12)."""
         return cls(curve=curve)  # type: ignore[arg-type]
 
+    if TYPE_CHECKING:  # what follows need not be given
+
+        def __init__(self, **fields: Any) -> None: ...
+
     @classmethod
     def _following(cls, fields: Mapping[str, Any]) -> Mapping[str, Any]:
         """Spectrum of a curve."""

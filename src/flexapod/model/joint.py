@@ -102,6 +102,10 @@ class Joint(Table):
     stiffness_loss: Loss | None = None
     rolling: RollingLaw | None = None
 
+    if TYPE_CHECKING:  # what follows need not be given
+
+        def __init__(self, **fields: Any) -> None: ...
+
     @classmethod
     def _following(cls, fields: Mapping[str, Any]) -> Mapping[str, Any]:
         """The springs of a law."""

@@ -37,9 +37,9 @@ def moved_legs(*, legs: Any, base_joints: Any, platform_joints: Any, plane: Any 
 def _moved(leg: Leg, base: Array, platform: Array, normal: Array) -> Leg:
     found: dict[str, object] = {}
     for name, place in (("base_joint", base), ("carriage", base), ("platform_joint", platform)):
-        part = getattr(leg, name)
+        part: Joint | Carriage | None = getattr(leg, name)
         axis = None if part is None else _meant(part, place, normal)
-        if axis is not None:
+        if part is not None and part.written is not None and axis is not None:
             arm = _arm(part, axis, place, normal) if isinstance(part, Carriage) else {}
             found[name] = part.replace(axis=axis, **arm).keep(part.written)  # the words are the same
     return leg.replace(**found) if found else leg

@@ -44,6 +44,10 @@ class Payload(Table):
         ),
     ]
 
+    if TYPE_CHECKING:  # what follows need not be given
+
+        def __init__(self, **fields: Any) -> None: ...
+
     @classmethod
     def _following(cls, fields: Mapping[str, Any]) -> Mapping[str, Any]:
         """The tool is the centre of mass unless another one is given."""

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from flexapod.errors import InputError
 from flexapod.model.cylinder import check_axial
-from flexapod.model.material import OF_MATERIAL, POISSON, Material, Rectangle, Tube, read_material, read_tube
+from flexapod.model.material import MATERIALS, OF_MATERIAL, POISSON, Material, Rectangle, Tube, read_material, read_tube
 from flexapod.model.sections import SHARES, PistonSection, PistonStep
 from flexapod.schema.base import Key, Quantity, agree
 from flexapod.schema.columns import columns_of
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from flexapod.schema.section import Section
 
 STIFFNESS = ("EI", "EA", "rhoA")
+#: What stands by hand in place of a part of the material.
+_BY_HAND = {"E": ("EI", "EA", "GJ"), "density": ("rhoA",)}
 
 
 class Piston(Table):
@@ -116,11 +118,11 @@ class Piston(Table):
                 )  # fmt: skip
         super().__init__(**fields)
         given = {name: value for name, value in self._given.items() if value is not None}
-        for name in ("E", "density") if any(name in given for name in (*STIFFNESS, "GJ")) else ():
-            if name in given:
+        for name, others in _BY_HAND.items():
+            if name in given and not given.keys().isdisjoint(others):
                 raise InputError(
                     "is given together with EI, EA, rhoA", key=name, value=given[name],
-                    allowed="either of the two: EI, EA, rhoA, or a section, E and density",
+                    allowed="either of the two: EI and EA, or a section and E; rhoA, or a section and density",
                 )  # fmt: skip
 
     @classmethod
@@ -152,9 +154,11 @@ class Piston(Table):
 
     @classmethod
     def _of_stiffness(cls, section: Section) -> Self:
-        section.need("length", *STIFFNESS)
-        for name in ("material", "E", "density"):
-            if name in section:
+        shaped, material = "diameter" in section or "section" in section, ("material", *_BY_HAND)
+        follows = {other for name in material[1:] if shaped and name in section for other in _BY_HAND[name]}
+        section.need("length", *(name for name in STIFFNESS if name not in follows))
+        for name in material:
+            if name in section and any(other in section for other in _BY_HAND.get(name, (*STIFFNESS, "GJ"))):
                 raise section.error("is given together with EI, EA, rhoA", name, allowed="either of the two")
         return section.read(cls, also=("material",))
 
@@ -174,27 +178,28 @@ class Piston(Table):
     def _following(cls, fields: Mapping[str, Any]) -> Mapping[str, Any]:
         """What follows from its sections, or from its section and its material."""
         given = fields.get("sections")
-        sections = [PistonSection._of(section) for section in given] if isinstance(given, list | tuple) else []
-        if sections:
-            return {} if None in sections else _of_sections(sections)
-        section, (E, density) = cls._section(fields), (fields.get(name) for name in ("E", "density"))
-        if section is None or E is None or density is None:
+        made = [PistonSection._of(section) for section in given] if isinstance(given, list | tuple) else []
+        if sections := [section for section in made if section is not None]:
+            return _of_sections(sections)
+        section = cls._section(fields)
+        made_of = {name: fields[name] for name in _BY_HAND if fields.get(name) is not None}
+        if section is None or not made_of:
             return {}
-        made_of = Material(name="given", E=E, density=density)
-        stiffness = {"EA": made_of.E * section.area, "EI": made_of.E * section.second_moment}
-        return stiffness | {"rhoA": made_of.density * section.area}
+        material = MATERIALS["steel"].replace(**made_of)
+        found = {"EA": material.E * section.area, "EI": material.E * section.second_moment} if "E" in made_of else {}
+        return found | ({"rhoA": material.density * section.area} if "density" in made_of else {})
 
     @classmethod
     def _section(cls, fields: Mapping[str, Any]) -> Tube | Rectangle | None:
         """The section of one of these fields; None where they have none."""
-        sizes = {name: fields.get(name) for name in ("diameter", "inner_diameter")}
-        return None if sizes["diameter"] is None else Tube(**sizes)
+        outer, inner = (fields.get(name) for name in ("diameter", "inner_diameter"))
+        return None if outer is None else Tube(diameter=outer, inner_diameter=inner)
 
     def replace(self, **changes: Any) -> Self:
         """A copy with some fields changed; what follows from section and material follows from the new ones.
 
-        EA, EI, rhoA or GJ by hand stand in place of the material; so does what they were where the section or a part of
-        the material is taken away (None).
+        By hand EA, EI and GJ stand in place of E, and rhoA in place of the density; so does what they were where the
+        section or that part of the material is taken away (None).
 
         Raises
         ------
@@ -202,12 +207,12 @@ class Piston(Table):
             If a field does not exist, the new value is not allowed, or it contradicts others.
         """
         fields = {**self._given, **changes}
-        follow = self._following(fields)
-        given = {name: changes[name] for name in (*STIFFNESS, "GJ") if changes.get(name) is not None}
-        by_hand = any(not agree(value, follow.get(name)) for name, value in given.items())
-        of_material = any(changes.get(name) is not None for name in ("E", "density"))
-        if not fields.get("sections") and not of_material and (by_hand or not follow):
-            changes = {"E": None, "density": None, **changes}
+        follow, bare = self._following(fields), self._section(fields) is None
+        for name, others in () if fields.get("sections") else _BY_HAND.items():
+            given = {other: changes[other] for other in others if changes.get(other) is not None}
+            by_hand = any(not agree(value, follow.get(other)) for other, value in given.items())
+            if changes.get(name) is None and (bare or by_hand):
+                changes[name] = None
         return super().replace(**changes)
 
     @model_validator(mode="after")
@@ -222,11 +227,9 @@ class Piston(Table):
             Tube(diameter=self.diameter, inner_diameter=self.inner_diameter)
             if self.diameter >= self.length:
                 raise InputError(
-                    "makes the piston wider than long: it is not a beam",
-                    key="diameter",
-                    value=self.diameter,
+                    "makes the piston wider than long: it is not a beam", key="diameter", value=self.diameter,
                     allowed=f"below a tenth of the length of {self.length:g} m for an accurate beam",
-                )
+                )  # fmt: skip
         check_axial(self.axial_inertia, self.rhoA * self.length**3 / 12, "transverse inertia, rhoA length^3 / 12,")
         return self
 
