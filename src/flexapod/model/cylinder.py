@@ -107,12 +107,14 @@ class Cylinder(Table):
     @classmethod
     def _following(cls, fields: Mapping[str, Any]) -> Mapping[str, Any]:
         """Masses of one that bends, of its section, its material and what is mounted on it."""
-        sizes = {name: fields.get(name) for name in ("diameter", "inner_diameter")}
+        outer, inner = (fields.get(name) for name in ("diameter", "inner_diameter"))
         material, mouth = Material._of(fields.get("material")), fields.get("mouth")
-        if sizes["diameter"] is None or material is None or mouth is None:
+        if outer is None or material is None or mouth is None:
             return {}
         mouth = cls(mass=0.0, mouth=mouth).mouth  # within its bounds: it is squared here
-        return _tube_masses(mouth, Tube(**sizes), material, Mounted._of(fields.get("body")))
+        return _tube_masses(
+            mouth, Tube(diameter=outer, inner_diameter=inner), material, Mounted._of(fields.get("body"))
+        )
 
     @classmethod
     def tube(cls, *, mouth: float, section: Tube, material: Material, body: Mounted | None = None) -> Self:
