@@ -369,13 +369,23 @@ def test_loads_at_many_lengths_lie_between_those_of_some():
     assert np.ptp(one_by_one[:, 0]) > 0.2 * one_by_one[0, 0]
 
 
-@pytest.mark.parametrize("stale", [{"mouth": 0.3}, {"diameter": 0.055}, {"body": Mounted(mass=1.0)}, {"mass": 3.0}])
-def test_a_tube_has_the_masses_of_its_section(stale):
+@pytest.mark.parametrize(
+    ("change", "area", "length", "on"),
+    [
+        ({"mouth": 0.3}, 0.05**2 - 0.045**2, 0.3, 2.0),
+        ({"diameter": 0.055}, 0.055**2 - 0.045**2, 0.25, 2.0),
+        ({"body": Mounted(mass=1.0, com=0.1)}, 0.05**2 - 0.045**2, 0.25, 1.0),
+    ],
+)
+def test_a_tube_has_the_masses_of_its_section(change, area, length, on):
     tube = Tube(diameter=0.05, inner_diameter=0.045)
     whole = Cylinder.tube(mouth=0.25, section=tube, material=MATERIALS["aluminium"], body=Mounted(mass=2.0, com=0.1))
     assert Cylinder(**{name: getattr(whole, name) for name in type(whole).model_fields}) == whole
+    found, own = whole.replace(**change), 2700.0 * np.pi / 4 * area * length
+    assert found.mass == pytest.approx(own + on, rel=1e-14)  # rounding
+    assert found.com == pytest.approx((own * length / 2 + on * 0.1) / (own + on), rel=1e-14)
     with pytest.raises(InputError, match="the section, with what is mounted"):
-        whole.replace(**stale)
+        whole.replace(mass=3.0)
 
 
 def test_clearance_lets_a_pinned_leg_lean():

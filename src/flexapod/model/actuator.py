@@ -12,7 +12,7 @@ from flexapod.model.damping import BodyDamping
 from flexapod.model.laws import ConstantLaw, CsvLaw, LoadLaw, MotionLaw, RateLaw, Wrench, read_wrench
 from flexapod.model.material import OF_MATERIAL, SPELLS, Material, Rectangle, Tube, read_material, spelled
 from flexapod.model.motion import check_times
-from flexapod.schema.base import Key, Quantity
+from flexapod.schema.base import Key, Quantity, agree
 from flexapod.schema.columns import columns_of
 from flexapod.schema.table import Table
 from flexapod.words import number, text
@@ -46,6 +46,7 @@ class Actuator(Table):
     """
 
     spells: ClassVar[Mapping[str, tuple[str, ...]]] = SPELLS
+    _source: ClassVar[str] = "section and material"
 
     length: Annotated[float, Quantity("length", above=0, why="whole beam")]
     rhoA: Annotated[float, Quantity("line density", above=0, why="mass per length")]
@@ -85,10 +86,10 @@ class Actuator(Table):
                 if name in section:
                     raise section.error("needs a section", name, allowed="rhoA and EI, or section and material")
             return section.read(cls, also=OF_MATERIAL)
-        for name in _STIFFNESS:
-            if name in section:
-                allowed = "rhoA and EI, or section and material"
-                raise section.error("is given together with section", name, allowed=allowed)
+        by_hand = [name for name in _STIFFNESS if name in section]
+        if by_hand and (len(by_hand) == 1 or any(name in section for name in ("material", *OF_MATERIAL))):
+            allowed = "rhoA and EI, or section and material"
+            raise section.error("is given together with section", by_hand[0], allowed=allowed)
         return section.read(cls, also=OF_MATERIAL, then=cls._of_section)
 
     @classmethod
@@ -96,8 +97,7 @@ class Actuator(Table):
         inner = section.child(section.data["section"], "section")
         model = Rectangle if "width" in inner or "height" in inner else Tube
         shape = inner.read(model, also=("width", "height") if model is Tube else ())
-        material = read_material(section)
-        return {"section": shape, "material": material, **cls.stiffness(shape, material)}
+        return {"section": shape, "material": None if "EI" in section else read_material(section)}
 
     def _shown(self) -> dict[str, str]:
         tip = {"tip": f"{number(self.tip_mass, 4)} kg"} if self.tip_mass else {}
@@ -110,6 +110,8 @@ class Actuator(Table):
 
     @model_validator(mode="after")
     def _fits(self) -> Actuator:
+        if self.section is None and self.material is not None:
+            raise InputError("is missing", key="section", allowed="section and material, or rhoA and EI")
         if self.free_length > self.length:
             raise InputError(
                 "is longer than the whole beam",
@@ -160,26 +162,45 @@ class Actuator(Table):
                 next_step="Leave space out, or use flexapod run",
             )
 
-    @staticmethod
-    def stiffness(section: Tube | Rectangle, material: Material) -> dict[str, float]:
-        """`rhoA` [kg/m] and `EI` [N m^2] of a beam of this section and material."""
-        return {"rhoA": material.density * section.area, "EI": material.E * section.second_moment}
+    if TYPE_CHECKING:  # what follows need not be given
+
+        def __init__(self, **fields: Any) -> None: ...
+
+    @classmethod
+    def _following(cls, fields: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Its mass and stiffness, of section and material."""
+        given, material = fields.get("section"), Material._of(fields.get("material"))
+        if not isinstance(given, Tube | Rectangle) or material is None:
+            return {}
+        return {"rhoA": material.density * given.area, "EI": material.E * given.second_moment}
+
+    def replace(self, **changes: Any) -> Self:
+        """A copy with some fields changed; what follows from section and material follows from the new ones.
+
+        By hand rhoA and EI stand in place of the material; so does what they were where section or material is taken
+        away (None).
+
+        Raises
+        ------
+        InputError
+            If a field does not exist, the new value is not allowed, or it contradicts others.
+        """
+        follow = self._following({**self._given, **changes})
+        given = {name: changes[name] for name in _STIFFNESS if changes.get(name) is not None}
+        by_hand = not follow or any(not agree(value, follow[name]) for name, value in given.items())
+        if changes.get("material") is None and by_hand:
+            changes["material"] = None
+        return super().replace(**changes)
 
     @classmethod
     def from_section(cls, *, section: Tube | Rectangle, material: Material, **fields: Any) -> Actuator:
         """An actuator whose rhoA and EI follow from section and material; `fields` are the others."""
-        return cls(section=section, material=material, **cls.stiffness(section, material), **fields)
+        return cls(section=section, material=material, **fields)
 
     def told(self) -> dict[str, object]:
-        """All that it has to say in a file: section and material, where the rest follows from them."""
-        fields, section, material = super().told(), self.section, self.material
-        others = {name: value for name, value in fields.items() if name not in ("section", "material")}
-        if section is None or material is None:
-            return others
-        free = {name: value for name, value in others.items() if name not in ("rhoA", "EI")}
-        if type(self).from_section(section=section, material=material, **free) != self:  # type: ignore[arg-type]
-            return others
-        return free | {"section": section} | spelled(material)
+        """All that it has to say in a file, with the keys of its material."""
+        fields = {name: value for name, value in super().told().items() if name != "material"}
+        return fields if self.material is None else fields | spelled(self.material)
 
 
 class ActuatorMotion(Table):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import model_validator
 
@@ -15,8 +15,6 @@ from flexapod.schema.table import Table
 
 if TYPE_CHECKING:
     from flexapod.schema.section import Section
-
-SAME = 1e-9  # relative; rounding leaves less
 
 
 class Mounted(Table):
@@ -39,6 +37,7 @@ class Cylinder(Table):
     """
 
     spells: ClassVar[Mapping[str, tuple[str, ...]]] = SPELLS
+    _source: ClassVar[str] = "the section, with what is mounted on it"
 
     mass: Annotated[float, Quantity("mass", least=0, why="mass")]
     com: Annotated[float, Quantity("length", why="centre of mass, from the universal joint along the axis")] = 0.0
@@ -99,25 +98,28 @@ class Cylinder(Table):
                 allowed=f"below its length of {self.mouth:g} m, from the base joint to the mouth",
                 next_step="Leave the section out for a rigid cylinder",
             )
-        if self.section is not None and self.material is not None:
-            found = _tube_masses(self.mouth, self.section, self.material, self.body)
-            for key, value in found.items():
-                if abs(getattr(self, key) - value) > SAME * abs(value):
-                    raise InputError(
-                        "is not that of the section, with what is mounted on it",
-                        key=key,
-                        value=getattr(self, key),
-                        allowed=f"{value:g}",
-                        next_step="Make it by Cylinder.tube(mouth=, section=, material=, body=)",
-                    )
         return self
+
+    if TYPE_CHECKING:  # what follows need not be given
+
+        def __init__(self, **fields: Any) -> None: ...
+
+    @classmethod
+    def _following(cls, fields: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Masses of one that bends, of its section, its material and what is mounted on it."""
+        outer, inner = (fields.get(name) for name in ("diameter", "inner_diameter"))
+        material, mouth = Material._of(fields.get("material")), fields.get("mouth")
+        if outer is None or material is None or mouth is None:
+            return {}
+        mouth = cls(mass=0.0, mouth=mouth).mouth  # within its bounds: it is squared here
+        return _tube_masses(
+            mouth, Tube(diameter=outer, inner_diameter=inner), material, Mounted._of(fields.get("body"))
+        )
 
     @classmethod
     def tube(cls, *, mouth: float, section: Tube, material: Material, body: Mounted | None = None) -> Self:
         """A cylinder that bends and stretches: its masses follow from section, material and what is mounted on it."""
-        mouth = cls(mass=0.0, mouth=mouth).mouth  # within its bounds: it is squared here
         return cls(
-            **_tube_masses(mouth, section, material, body),
             mouth=mouth,
             diameter=section.diameter,
             inner_diameter=section.inner_diameter,
@@ -139,12 +141,9 @@ class Cylinder(Table):
         return material.E * section.second_moment, material.E * section.area, material.density * section.area
 
     def told(self) -> dict[str, object]:
-        """All that it has to say in a file: without the masses that follow from a section and a material."""
-        fields = super().told()
-        if self.section is None or self.material is None:
-            return fields
-        computed = ("mass", "com", "inertia", "axial_inertia", "material")
-        return {name: x for name, x in fields.items() if name not in computed} | spelled(self.material)
+        """All that it has to say in a file, with the keys of its material."""
+        fields = {name: x for name, x in super().told().items() if name != "material"}
+        return fields if self.material is None else fields | spelled(self.material)
 
 
 def _tube_masses(mouth: float, section: Tube, material: Material, body: Mounted | None) -> dict[str, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeVar
 
 import numpy as np
@@ -62,6 +63,7 @@ class Floor(Table):
     """
 
     derived: ClassVar[tuple[str, ...]] = ("frequency", "density")
+    _source: ClassVar[str] = "the curve"
     curve: Annotated[Curve | None, Key("generic vibration criterion")] = None
     spectrum: Annotated[str | None, Key("CSV file, relative to this file")] = None
     of: Annotated[Literal["acceleration", "velocity", "displacement"], Key("what `spectrum` is the density of")] = (
@@ -73,7 +75,7 @@ class Floor(Table):
     def told(self) -> dict[str, object]:
         """All that it has to say in a file."""
         if self.curve is not None:
-            return {"curve": self.curve}
+            return {"curve": self.curve}  # the rest follows
         return {"spectrum": self.spectrum or "table.csv", "of": self.of}
 
     @model_validator(mode="after")
@@ -86,7 +88,19 @@ class Floor(Table):
     @classmethod
     def by_curve(cls, curve: str) -> Floor:
         """A floor whose velocity reaches a curve in all bands, Eq. (T18.12)."""
-        if curve not in CURVES:
+        return cls(curve=curve)  # type: ignore[arg-type]
+
+    if TYPE_CHECKING:  # what follows need not be given
+
+        def __init__(self, **fields: Any) -> None: ...
+
+    @classmethod
+    def _following(cls, fields: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Spectrum of a curve."""
+        curve = fields.get("curve")
+        if curve is None:
+            return {}
+        if not isinstance(curve, str) or curve not in CURVES:
             raise InputError("is not known", key="curve", value=curve, allowed=", ".join(CURVES))
         v = CURVES[curve]
         if curve in ("VC-A", "VC-B"):  # like constant acceleration below 8 Hz
@@ -94,7 +108,7 @@ class Floor(Table):
         else:
             f, v = np.array([1.0, 80.0]), np.array([v, v])
         density = np.repeat((v**2 / (THIRD * f))[:, None], 3, axis=1)
-        return cls(curve=curve, of="velocity", frequency=f, density=density)  # type: ignore[arg-type]
+        return {"of": "velocity", "frequency": f, "density": density}
 
 
 class Disturbance(Table):

@@ -37,8 +37,10 @@ class Joint(Table):
     itself.
     `friction` in it. `play` [m]: free travel along the leg, from one end to the other. `eccentricity` [m]: of its
     centre from the axis of the leg. `max_angle` [rad]: how far the leg may turn there from its direction at home.
-    `rolling`: the law that gives `stiffness`, `stiffness_damping` and `stiffness_loss`.
+    `rolling`: the law from which `stiffness`, `leg_axes`, `stiffness_damping` and `stiffness_loss` follow.
     """
+
+    _source: ClassVar[str] = "the law of its bearings"
 
     derived: ClassVar[tuple[str, ...]] = ("leg_axes", "stiffness_damping", "stiffness_loss", "rolling")
 
@@ -100,17 +102,38 @@ class Joint(Table):
     stiffness_loss: Loss | None = None
     rolling: RollingLaw | None = None
 
-    def __init__(self, **fields: Any) -> None:
-        if (law := fields.get("rolling")) is not None:
-            across = law.radial or law.k
-            fields |= {"stiffness": np.diag([across, across, law.k, 0.0, 0.0, 0.0]), "leg_axes": True}
-            fields |= {"stiffness_damping": law.damping, "stiffness_loss": law.loss}
-        super().__init__(**fields)
+    if TYPE_CHECKING:  # what follows need not be given
+
+        def __init__(self, **fields: Any) -> None: ...
+
+    @classmethod
+    def _following(cls, fields: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The springs of a law."""
+        law = RollingLaw._of(fields.get("rolling"))
+        if law is None:
+            return {}
+        across = law.radial or law.k
+        springs = {"stiffness": np.diag([across, across, law.k, 0.0, 0.0, 0.0]), "leg_axes": True}
+        return springs | {"stiffness_damping": law.damping, "stiffness_loss": law.loss}
 
     def replace(self, **changes: Any) -> Joint:
-        """A copy with some fields changed; with another stiffness it is no longer that of a law."""
-        if not {"stiffness", "leg_axes", "stiffness_damping", "stiffness_loss"}.isdisjoint(changes):
-            changes = {"rolling": None, **changes}
+        """A copy with some fields changed; what damps the springs of a law is its own.
+
+        Another stiffness stands in place of a law.
+
+        Raises
+        ------
+        InputError
+            If a field does not exist, the new value is not allowed, or it contradicts others.
+        """
+        law = self.rolling
+        if law is None or "rolling" in changes:
+            return super().replace(**changes)
+        if not {"stiffness", "leg_axes"}.isdisjoint(changes):
+            return super().replace(rolling=None, **changes)
+        own = {"stiffness_damping": "damping", "stiffness_loss": "loss"}
+        if damped := {name: changes.pop(key) for key, name in own.items() if key in changes}:
+            changes["rolling"] = law.replace(**damped)
         return super().replace(**changes)
 
     @property
@@ -176,24 +199,28 @@ class Joint(Table):
         """Whether its place gives way in axes of base or platform, or together with its angles."""
         return self.stiffness is not None and self.across_and_along is None
 
+    def told(self) -> dict[str, object]:
+        """All that it has to say in a file: its stiffness as a number, in rows, as a table or by its law."""
+        fields, stiffness = super().told(), self.stiffness
+        if self.rolling is not None:
+            return fields | {"stiffness": self.rolling}
+        if stiffness is None:
+            return fields
+        given = {"leg_axes": self.leg_axes, "damping": self.stiffness_damping, "loss": self.stiffness_loss}
+        own = {name: value for name, value in given.items() if value}
+        if self.leg_axes and self.across_and_along is not None:
+            across, along = self.across_and_along
+            del own["leg_axes"]
+            return fields | {"stiffness": {"axial": along, "radial": across, **own}}
+        if own:
+            rows = stiffness if stiffness[3:].any() else stiffness[:3, :3]
+            return fields | {"stiffness": {"rows": rows, **own}}
+        return fields if self.across_and_along is None else fields | {"stiffness": self.across_and_along[0]}
+
     def told_at(self, place: Array, normal: Array) -> dict[str, object]:
         """Its keys at its place (3,) [m], directions in words."""
-        fields = self.told()
-        if self.axis is not None:
-            fields["axis"] = word_of(self.axis, place, normal) or self.axis
-        given = {"damping": self.stiffness_damping, "loss": self.stiffness_loss}
-        own = {name: value for name, value in given.items() if value}
-        if self.rolling is not None:
-            fields["stiffness"] = self.rolling
-        elif self.leg_axes and self.stiffness is not None:
-            along, across = float(self.stiffness[2, 2]), float(self.stiffness[0, 0])
-            fields["stiffness"] = {"axial": along, "radial": across, **own}
-        elif self.stiffness is not None and own:
-            turns = self.stiffness[3:].any()
-            fields["stiffness"] = {"rows": self.stiffness if turns else self.stiffness[:3, :3], **own}
-        elif self.across_and_along is not None:
-            fields["stiffness"] = self.across_and_along[0]
-        return self.data(fields)
+        axis = {} if self.axis is None else {"axis": word_of(self.axis, place, normal) or self.axis}
+        return self.data(self.told() | axis)
 
 
 class Travel(Table):
@@ -222,6 +249,7 @@ class Carriage(Table):
     derived: ClassVar[tuple[str, ...]] = ("kind", "axis")
 
     placed: ClassVar[tuple[str, ...]] = ("slider", "crank", "arm", "radius")
+    spells: ClassVar[Mapping[str, tuple[str, ...]]] = {"slider": ("axis", "kind"), "crank": ("axis", "kind")}
 
     kind: Literal["slider", "crank"]
     axis: Annotated[Vec3, Quantity("number")]
@@ -323,7 +351,10 @@ def read_carriage(section: Section, base: Array, normal: Array) -> Carriage:
         if radius is not None:
             if arm is not None or axis is None or kind == "slider":
                 raise section.error("does not fit here", "radius", allowed="of a crank, in place of arm")
-            arm = _arm(section, radius, axis, base, normal)
+            try:
+                arm = arm_of(radius, axis, base, normal)
+            except InputError as error:
+                raise section.locate(error) from None
         return {"kind": kind, "axis": axis, "arm": arm}
 
     kind = "crank" if "crank" in section else "slider"
@@ -336,7 +367,7 @@ def read_carriage(section: Section, base: Array, normal: Array) -> Carriage:
         raise section.error(error.what, kind, allowed=error.allowed) from None
 
 
-def _arm(section: Section, radius: float, axis: Array, base: Array, normal: Array) -> Array:
+def arm_of(radius: float, axis: Array, base: Array, normal: Array) -> Array:
     """Arm of a crank at angle 0: radial as far as the axis lets it, else tangential."""
     unit = axis / np.linalg.norm(axis)
     for word in ("radial", "tangential"):
@@ -344,4 +375,4 @@ def _arm(section: Section, radius: float, axis: Array, base: Array, normal: Arra
             across = direction - (direction @ unit) * unit
             if (size := float(np.linalg.norm(across))) > 1e-6:
                 return radius * across / size
-    raise section.error("has no direction to begin in", "radius", allowed="arm = [x, y, z] for this crank")
+    raise InputError("has no direction to begin in", key="radius", allowed="arm = [x, y, z] for this crank")

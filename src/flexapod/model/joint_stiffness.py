@@ -44,9 +44,16 @@ class AlongLeg(Table):
 
 
 class InRows(Table):
-    """Springs along and about the axes of base or platform, `rows` (6, 6) [N/m, N, N m/rad], with what damps them."""
+    """Springs along and about the axes of base or platform, `rows` (6, 6) [N/m, N, N m/rad], with what damps them.
+
+    `leg_axes`: the axes are those of the leg, z along it.
+    """
 
     rows: Annotated[Matrix6, Quantity("stiffness", "force", "rotational stiffness")]
+    leg_axes: Annotated[
+        bool | None,
+        Key("true: the rows are along and about the axes of the leg at home, z along it", usual="false"),
+    ] = None
     damping: Annotated[float | None, Quantity("damping", least=0, why="along and across the leg")] = None
     loss: Annotated[Loss | None, Key("loss factor, in place of `damping`; left out: that of the joint")] = None
 
@@ -58,7 +65,7 @@ class InRows(Table):
     @property
     def of_joint(self) -> dict[str, object]:
         """What a joint has of it."""
-        return {"stiffness": self.rows, **_damped(self)}
+        return {"stiffness": self.rows, "leg_axes": bool(self.leg_axes), **_damped(self)}
 
 
 def _damped(spring: AlongLeg | InRows) -> dict[str, object]:

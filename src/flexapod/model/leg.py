@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import Field, InstanceOf, SerializeAsAny, model_validator
 
@@ -88,13 +89,22 @@ class Leg(Table):
     elements: tuple[SerializeAsAny[InstanceOf[Element]], ...] = ()
 
     def __init__(self, **fields: Any) -> None:
-        if fields.get("strut") is not None:
-            if not isinstance(fields.get("piston", fields["strut"]), Strut):
-                raise InputError("is given together with strut", key="piston", allowed="one of the two")
-            fields["piston"] = fields["strut"]
+        if fields.get("strut") is not None and fields.get("piston") not in (None, fields["strut"]):
+            raise InputError("is given together with strut", key="piston", allowed="one of the two")
         if (axis := fields.pop("u_axis", None)) is not None:
             fields["base_joint"] = (fields.get("base_joint") or Joint()).replace(axis=axis)
         super().__init__(**fields)
+
+    @classmethod
+    def _following(cls, fields: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The beam of a strut is the strut."""
+        return {} if fields.get("strut") is None else {"piston": fields["strut"]}
+
+    def replace(self, **changes: Any) -> Self:
+        """A copy with some fields changed, as `Table.replace`; the piston of a leg with a strut is the strut."""
+        if self.strut is not None and "strut" not in changes and isinstance(changes.get("piston"), Strut):
+            changes["strut"] = changes.pop("piston")
+        return super().replace(**changes)
 
     @property
     def u_axis(self) -> Vec3 | None:
@@ -194,7 +204,8 @@ class Leg(Table):
         mouth = f"mouth at {text(self.cylinder.mouth, 'm', 4)}, {number(self.cylinder.mass, 4)} kg"
         bodies = {"piston": beam, "cylinder": mouth} if self.strut is None else {"strut": beam}
         carriage = {} if self.carriage is None else {"carriage": self.carriage.kind}
-        limits = {} if self.stroke is None else {"stroke": _span(self.stroke.min, self.stroke.max)}
+        ends = () if self.stroke is None else (text(self.stroke.min, "m", 4), text(self.stroke.max, "m", 4))
+        limits = {"stroke": " to ".join(ends) + " joint to joint"} if ends else {}
         drive = {"drive": self.drive.type} if self.driven else {}
         return {**letters, **carriage, **bodies, **limits, **drive, "damping": _damped(self.damping)}
 
@@ -325,9 +336,8 @@ class Leg(Table):
         fields |= told_elements(self.elements)
         if self.carriage is not None:
             fields["carriage"] = self.carriage.told_at(base, normal)
-        if self.strut is None:
-            return self.data(fields)
-        del fields["cylinder"], fields["piston"]
+        if self.strut is not None:
+            del fields["cylinder"]
         return self.data(fields)
 
 
@@ -338,10 +348,6 @@ def _misfit(chain: str, key: str, what: str, allowed: str | None = None, next_st
 def _damped(damping: BodyDamping) -> str:
     ratio, time = damping_parts(damping)
     return f"{number(100 * ratio)} %" + (f" and {text(time, 's')} times stiffness" if time else "")
-
-
-def _span(low: float, high: float) -> str:
-    return f"{text(low, 'm', 4)} to {text(high, 'm', 4)} joint to joint"
 
 
 def read_leg(section: Section, number: int, count: int, chain: str, places: tuple[Array, Array, Array]) -> Leg:
@@ -371,11 +377,11 @@ def read_leg(section: Section, number: int, count: int, chain: str, places: tupl
             )
         section.need(*(("cylinder", "piston") if letters.stroke else ("strut",)))
         strut, carriage = section.section("strut"), section.section("carriage")
-        cylinder = section.section("cylinder")
+        cylinder, piston = section.section("cylinder"), section.section("piston")
         return {
             "chain": chain,
             "cylinder": None if cylinder is None else Cylinder.from_table(cylinder),
-            "piston": _piston(section.section("piston")),
+            "piston": None if piston is None else Piston.from_table(piston),
             "strut": None if strut is None else Strut.from_table(strut),
             "carriage": None if carriage is None else read_carriage(carriage, base, normal),
             "base_joint": read_joint(section, "base_joint", base, normal),
@@ -387,10 +393,6 @@ def read_leg(section: Section, number: int, count: int, chain: str, places: tupl
 
     elements = read_elements(section, {*columns_of(Leg), "count", "u_axis"} - {*Leg.derived})
     return section.read(Leg, also=("count", "u_axis", *registered), then=parts)
-
-
-def _piston(section: Section | None) -> Piston | None:
-    return None if section is None else Piston.from_table(section)
 
 
 def _drive(section: Section | None, among: tuple[str, ...]) -> Drive | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import Field, model_validator
 
@@ -26,6 +26,7 @@ class Material(Table):
     """Material of a beam.
 
     `E` [Pa], `density` [kg/m^3], `yield_stress` [Pa], `poisson`'s ratio and thermal `expansion` [1/K]; None: not known.
+    Materials of the same numbers are the same, whatever they are called.
     """
 
     silent: ClassVar[tuple[str, ...]] = ("poisson",)
@@ -36,6 +37,15 @@ class Material(Table):
     yield_stress: Annotated[float | None, Quantity("stress", above=0)] = None
     poisson: float = Field(default=POISSON, strict=True, ge=-0.5, le=0.5)
     expansion: Annotated[float | None, Quantity("expansion")] = None
+
+    def replace(self, **changes: Any) -> Self:
+        """A copy with some fields changed; with another modulus or density it is no longer the one of its name."""
+        if not {"E", "density"}.isdisjoint(changes):
+            changes = {"name": "given", **changes}
+        return super().replace(**changes)
+
+    def _content(self) -> tuple[object, ...]:
+        return tuple(getattr(self, name) for name in OF_MATERIAL)
 
 
 # E and density of steel: Table 3 of the paper. The others are handbook values at room temperature

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from pydantic import field_validator, model_validator
@@ -44,10 +44,14 @@ class Payload(Table):
         ),
     ]
 
-    def __init__(self, **fields: object) -> None:
-        if fields.get("tool") is None and "com" in fields:
-            fields = fields | {"tool": fields["com"]}
-        super().__init__(**fields)
+    if TYPE_CHECKING:  # what follows need not be given
+
+        def __init__(self, **fields: Any) -> None: ...
+
+    @classmethod
+    def _following(cls, fields: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The tool is the centre of mass unless another one is given."""
+        return {"tool": fields["com"]} if fields.get("tool") is None and "com" in fields else {}
 
     @classmethod
     def resolved(cls, section: Section) -> Mapping[str, object]:

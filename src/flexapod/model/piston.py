@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 import numpy as np
@@ -11,9 +11,9 @@ from pydantic import Field, model_validator
 from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.model.cylinder import check_axial
-from flexapod.model.material import POISSON, Material, Rectangle, Tube, read_material, read_tube
+from flexapod.model.material import MATERIALS, OF_MATERIAL, POISSON, Material, Rectangle, Tube, read_material, read_tube
 from flexapod.model.sections import SHARES, WEIGHTS, PistonSection, PistonStep
-from flexapod.schema.base import Key, Quantity
+from flexapod.schema.base import Key, Quantity, agree
 from flexapod.schema.columns import columns_of
 from flexapod.schema.table import Table
 
@@ -21,13 +21,16 @@ if TYPE_CHECKING:
     from flexapod.schema.section import Section
 
 STIFFNESS = ("EI", "EA", "rhoA")
+#: What stands by hand in place of a part of the material.
+_BY_HAND = {"E": ("EI", "EA", "GJ"), "density": ("rhoA",)}
 
 
 class Piston(Table):
     """The upper, flexible part of a leg: a uniform Euler-Bernoulli beam.
 
-    `length` [m], whole piston; `EA` [N]; `EI` [N m^2]; `rhoA` [kg/m], 0 for a spring without mass; `diameter`,
-    `inner_diameter` [m], `E` [Pa], `density` [kg/m^3] and `yield_stress` [Pa] where known; `axial_inertia` [kg m^2];
+    `length` [m], whole piston; `EA` [N]; `EI` [N m^2]; `rhoA` [kg/m], 0 for a spring without mass: given, or they
+    follow from a section, `diameter` and `inner_diameter` [m], and a material, `E` [Pa] and `density` [kg/m^3];
+    `yield_stress` [Pa] where known; `axial_inertia` [kg m^2];
     `poisson`, ratio of a round section; `GJ` [N m^2], torsional stiffness, of another one; `expansion` [1/K] by heat;
     `bow` [m]: of its axis, at rest and without load, from the line of its ends. `sections`, from the driven end to the
     tip, of one that is not uniform: the other values are then those of the whole (`stepped`). `keyed`: false of one
@@ -35,7 +38,8 @@ class Piston(Table):
     have rotary inertia (Timoshenko's beam).
     """
 
-    silent: ClassVar[tuple[str, ...]] = ("poisson", "keyed", "sections", "shear")
+    silent: ClassVar[tuple[str, ...]] = ("poisson", "keyed", "sections", "shear", "axial_inertia")
+    _source: ClassVar[str] = "section and material"
 
     length: Annotated[float, Quantity("length", above=0)]
     EA: Annotated[float, Quantity("axial stiffness", above=0, why="axial stiffness")]
@@ -107,6 +111,22 @@ class Piston(Table):
         ),
     ] = False
 
+    def __init__(self, **fields: Any) -> None:
+        for name in ("diameter", "density") if fields.get("sections") else ():
+            if fields.get(name) is not None:
+                raise InputError(
+                    "is given together with sections", key=name, value=fields[name],
+                    allowed="in a section, or without sections",
+                )  # fmt: skip
+        super().__init__(**fields)
+        given = {name: value for name, value in self._given.items() if value is not None}
+        for name, others in _BY_HAND.items():
+            if name in given and not given.keys().isdisjoint(others):
+                raise InputError(
+                    "is given together with EI, EA, rhoA", key=name, value=given[name],
+                    allowed="either of the two: EI and EA, or a section and E; rhoA, or a section and density",
+                )  # fmt: skip
+
     @classmethod
     def from_table(cls, section: Section, among: tuple[str, ...] = ()) -> Self:
         """One of several sections, of a stiffness, or of a round section and a material."""
@@ -136,9 +156,11 @@ class Piston(Table):
 
     @classmethod
     def _of_stiffness(cls, section: Section) -> Self:
-        section.need("length", *STIFFNESS)
-        for name in ("material", "E", "density"):
-            if name in section:
+        shaped, material = "diameter" in section or "section" in section, ("material", *_BY_HAND)
+        follows = {other for name in material[1:] if shaped and name in section for other in _BY_HAND[name]}
+        section.need("length", *(name for name in STIFFNESS if name not in follows))
+        for name in material:
+            if name in section and any(other in section for other in _BY_HAND.get(name, (*STIFFNESS, "GJ"))):
                 raise section.error("is given together with EI, EA, rhoA", name, allowed="either of the two")
         return section.read(cls, also=("material",))
 
@@ -154,6 +176,47 @@ class Piston(Table):
         axial, bow = section.number("axial_inertia", "inertia"), section.number("bow", "length")
         return {"axial_inertia": axial, "bow": bow, "shear": section.flag("shear")}
 
+    @classmethod
+    def _following(cls, fields: Mapping[str, Any]) -> Mapping[str, Any]:
+        """What follows from its sections, or from its section and its material."""
+        given = fields.get("sections")
+        made = [PistonSection._of(section) for section in given] if isinstance(given, list | tuple) else []
+        if sections := [section for section in made if section is not None]:
+            return _of_sections(sections)
+        section = cls._section(fields)
+        made_of = {name: fields[name] for name in _BY_HAND if fields.get(name) is not None}
+        if section is None or not made_of:
+            return {}
+        material = MATERIALS["steel"].replace(**made_of)
+        found = {"EA": material.E * section.area, "EI": material.E * section.second_moment} if "E" in made_of else {}
+        return found | ({"rhoA": material.density * section.area} if "density" in made_of else {})
+
+    @classmethod
+    def _section(cls, fields: Mapping[str, Any]) -> Tube | Rectangle | None:
+        """The section of one of these fields; None where they have none."""
+        outer, inner = (fields.get(name) for name in ("diameter", "inner_diameter"))
+        return None if outer is None else Tube(diameter=outer, inner_diameter=inner)
+
+    def replace(self, **changes: Any) -> Self:
+        """A copy with some fields changed; what follows from section and material follows from the new ones.
+
+        By hand EA, EI and GJ stand in place of E, and rhoA in place of the density; so does what they were where the
+        section or that part of the material is taken away (None).
+
+        Raises
+        ------
+        InputError
+            If a field does not exist, the new value is not allowed, or it contradicts others.
+        """
+        fields = {**self._given, **changes}
+        follow, bare = self._following(fields), self._section(fields) is None
+        for name, others in () if fields.get("sections") else _BY_HAND.items():
+            given = {other: changes[other] for other in others if changes.get(other) is not None}
+            by_hand = any(not agree(value, follow.get(other)) for other, value in given.items())
+            if changes.get(name) is None and (bare or by_hand):
+                changes[name] = None
+        return super().replace(**changes)
+
     @model_validator(mode="after")
     def _sensible(self) -> Self:
         if self.inner_diameter is not None and self.diameter is None:
@@ -166,11 +229,9 @@ class Piston(Table):
             Tube(diameter=self.diameter, inner_diameter=self.inner_diameter)
             if self.diameter >= self.length:
                 raise InputError(
-                    "makes the piston wider than long: it is not a beam",
-                    key="diameter",
-                    value=self.diameter,
+                    "makes the piston wider than long: it is not a beam", key="diameter", value=self.diameter,
                     allowed=f"below a tenth of the length of {self.length:g} m for an accurate beam",
-                )
+                )  # fmt: skip
         check_axial(self.axial_inertia, self.rhoA * self.length**3 / 12, "transverse inertia, rhoA length^3 / 12,")
         return self
 
@@ -186,22 +247,9 @@ class Piston(Table):
         shear: bool = False,
     ) -> Self:
         """A piston of round section: EA, EI and rhoA follow from section and material."""
-        return cls(
-            length=length,
-            EA=material.E * section.area,
-            EI=material.E * section.second_moment,
-            rhoA=material.density * section.area,
-            diameter=section.diameter,
-            inner_diameter=section.inner_diameter,
-            E=material.E,
-            density=material.density,
-            yield_stress=material.yield_stress,
-            axial_inertia=axial_inertia,
-            poisson=material.poisson,
-            expansion=material.expansion,
-            bow=bow,
-            shear=shear,
-        )
+        sizes = {"diameter": section.diameter, "inner_diameter": section.inner_diameter}
+        made_of = {name: getattr(material, name) for name in OF_MATERIAL}
+        return cls(length=length, **sizes, **made_of, axial_inertia=axial_inertia, bow=bow, shear=shear)
 
     @classmethod
     def stepped(
@@ -219,25 +267,7 @@ class Piston(Table):
         """
         if not sections:
             raise InputError("is empty", key="sections", allowed="a section or more, from the driven end to the tip")
-        steps = [step for section in sections for step in section.steps]
-        length = sum(step.length for step in steps)
-        grown = [section.length * section.expansion for section in sections if section.expansion is not None]
-        moduli = {section.E for section in sections}
-        limits = [section.yield_stress for section in sections if section.yield_stress is not None]
-        return cls(
-            length=length,
-            EA=length / sum(step.length / step.EA for step in steps),
-            EI=length / sum(step.length / step.EI[1] for step in steps),
-            GJ=length / sum(step.length / step.GJ for step in steps),
-            rhoA=sum(step.length * step.rhoA for step in steps) / length,
-            axial_inertia=axial_inertia,
-            expansion=sum(grown) / length if len(grown) == len(sections) else None,
-            E=moduli.pop() if len(moduli) == 1 else None,
-            yield_stress=min(limits) if len(limits) == len(sections) else None,
-            bow=bow,
-            sections=tuple(sections),
-            shear=shear,
-        )
+        return cls(sections=tuple(sections), axial_inertia=axial_inertia, bow=bow, shear=shear)
 
     @property
     def steps(self) -> tuple[PistonStep, ...]:
@@ -308,31 +338,24 @@ class Piston(Table):
         """Size in the direction of bending [m]; None where no section is given."""
         return self.diameter
 
-    def told(self) -> dict[str, object]:
-        """All that it has to say in a file: section and material, where the rest follows from them."""
-        fields = super().told()
-        if self.sections:
-            kept = ("sections", "bow", "axial_inertia", "shear")
-            return {name: value for name, value in fields.items() if (name in kept and value) or name == "keyed"}
-        made_of = {name: fields.pop(name, None) for name in ("E", "density")}
-        if self._made_again() != self.replace(bow=None, keyed=True, shear=False):
-            return fields
-        computed = ("EA", "EI", "rhoA", *(() if self.diameter else ("axial_inertia",)))
-        return {name: value for name, value in fields.items() if name not in computed} | made_of
 
-    def _made_again(self) -> Self | None:
-        """One of its section and material; None where it has none."""
-        if self.E is None or self.density is None or self.diameter is None:
-            return None
-        section = Tube(diameter=self.diameter, inner_diameter=self.inner_diameter)
-        return type(self).round(
-            length=self.length, section=section, material=self._material, axial_inertia=self.axial_inertia
-        )
-
-    @property
-    def _material(self) -> Material:
-        own = {name: getattr(self, name) for name in ("E", "density", "yield_stress", "poisson", "expansion")}
-        return Material(name="given", **own)
+def _of_sections(sections: Sequence[PistonSection]) -> dict[str, Any]:
+    """Numbers of a whole piston that follow from its sections; see `Piston.stepped`."""
+    steps = [step for section in sections for step in section.steps]
+    length = sum(step.length for step in steps)
+    grown = [section.length * section.expansion for section in sections if section.expansion is not None]
+    moduli = {section.E for section in sections}
+    limits = [section.yield_stress for section in sections if section.yield_stress is not None]
+    return {
+        "length": length,
+        "EA": length / sum(step.length / step.EA for step in steps),
+        "EI": length / sum(step.length / step.EI[1] for step in steps),
+        "GJ": length / sum(step.length / step.GJ for step in steps),
+        "rhoA": sum(step.length * step.rhoA for step in steps) / length,
+        "expansion": sum(grown) / length if len(grown) == len(sections) else None,
+        "E": moduli.pop() if len(moduli) == 1 else None,
+        "yield_stress": min(limits) if len(limits) == len(sections) else None,
+    }
 
 
 class Strip(Table):
@@ -352,6 +375,12 @@ class Strut(Piston):
 
     section: Annotated[Strip | None, Key("table: of a strip, in a planar robot")] = None
 
+    def __init__(self, **fields: Any) -> None:
+        super().__init__(**fields)
+        for name in ("diameter", "axial_inertia") if self.section is not None and self.E is not None else ():
+            if getattr(self, name):
+                raise InputError("is given together with section", key=name, allowed="either of the two")
+
     @classmethod
     def _of_section(cls, section: Section) -> Self:
         section.need("length")
@@ -369,24 +398,14 @@ class Strut(Piston):
         """Size in the direction of bending [m], of a strip its thickness."""
         return self.diameter if self.section is None else self.section.thickness
 
-    def _made_again(self) -> Self | None:
-        if self.section is None or self.E is None or self.density is None:
-            return super()._made_again()
-        return self.strip(length=self.length, section=self.section, material=self._material)
+    @classmethod
+    def _section(cls, fields: Mapping[str, Any]) -> Tube | Rectangle | None:
+        """Of a strip that bends across its thickness, or round."""
+        strip = Strip._of(fields.get("section"))
+        return super()._section(fields) if strip is None else Rectangle(width=strip.width, height=strip.thickness)
 
     @classmethod
     def strip(cls, *, length: float, section: Strip, material: Material, bow: float | None = None) -> Self:
         """A strip: EA, EI across its thickness and rhoA follow from section and material."""
-        size = Rectangle(width=section.width, height=section.thickness)
-        return cls(
-            length=length,
-            EA=material.E * size.area,
-            EI=material.E * size.second_moment,
-            rhoA=material.density * size.area,
-            E=material.E,
-            density=material.density,
-            yield_stress=material.yield_stress,
-            expansion=material.expansion,
-            section=section,
-            bow=bow,
-        )
+        made_of = {name: getattr(material, name) for name in OF_MATERIAL if name != "poisson"}
+        return cls(length=length, section=section, **made_of, bow=bow)

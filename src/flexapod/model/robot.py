@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, cast
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, cast
 
 import numpy as np
 from pydantic import Field, WrapValidator, computed_field, model_validator
@@ -18,6 +18,7 @@ from flexapod.model.heat import Heat
 from flexapod.model.home import Home, carriage_home, foot, read_home
 from flexapod.model.leg import Leg, read_leg
 from flexapod.model.mount import BaseMotion, Mount
+from flexapod.model.moved_legs import moved_legs
 from flexapod.model.payload import Payload, millimetres
 from flexapod.model.robot_checks import (
     check_built,
@@ -88,6 +89,18 @@ class Robot(Table):
             home = fields.get("home")
             fields["home"] = _at_height(height, home)
         super().__init__(**fields)
+
+    def replace(self, **changes: Any) -> Self:
+        """A copy with some fields changed; directions that were given by words follow their joints.
+
+        Raises
+        ------
+        InputError
+            If a field does not exist, the new value is not allowed, or a word means nothing at the new place.
+        """
+        if not {"base_joints", "platform_joints", "plane"}.isdisjoint(changes):
+            changes["legs"] = moved_legs(**{**self._given, **changes})
+        return super().replace(**changes)
 
     @model_validator(mode="after")
     def _fits(self) -> Robot:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -84,8 +85,6 @@ class Simulation(Table):
     ] = "static"
 
     def __init__(self, **fields: object) -> None:
-        if fields.get("tolerance") is None and fields.get("step") is None:
-            fields = fields | {"tolerance": DEFAULT_TOLERANCE}
         if hint := own_fidelity(fields.get("basis")):
             raise InputError(
                 "is the basis of a fidelity",
@@ -103,12 +102,19 @@ class Simulation(Table):
             )
         super().__init__(**fields)
 
-    def replace(self, **changes: object) -> Self:
+    @classmethod
+    def _following(cls, fields: Mapping[str, Any]) -> Mapping[str, Any]:
+        """A tolerance, where steps are not fixed and none is given."""
+        chosen = fields.get("tolerance") is None and fields.get("step") is None
+        return {"tolerance": DEFAULT_TOLERANCE} if chosen else {}
+
+    def replace(self, **changes: Any) -> Self:
         """A copy with some fields changed; a basis that its fidelity does not use is kept for one that does."""
-        fields = {name: getattr(self, name) for name in type(self).model_fields} | changes
-        if "basis" in changes or fields["fidelity"] not in OWN_BASIS:
+        if "step" in changes and "tolerance" not in self._given:
+            changes = {"tolerance": None, **changes}
+        if "basis" in changes or changes.get("fidelity", self.fidelity) not in OWN_BASIS:
             return super().replace(**changes)
-        del fields["basis"]
+        fields = {name: value for name, value in {**self._given, **changes}.items() if name != "basis"}
         return self._kept_in(type(self)(**fields).with_unused_basis(self.basis))
 
     def _shown(self) -> dict[str, str]:
@@ -121,6 +127,7 @@ class Simulation(Table):
         """The same settings with the `basis` that another fidelity would use."""
         copy = self.model_copy()
         object.__setattr__(copy, "basis", basis)
+        copy.model_fields_set.add("basis")
         return copy if self.written is None else copy.keep(self.written)
 
     @model_validator(mode="after")

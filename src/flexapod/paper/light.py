@@ -27,15 +27,8 @@ COLUMNS = {
 
 def with_section(study: model.Study, outer: float, inner: float) -> model.Study:
     """The same robot with round pistons of other diameters [m], of the same material and length."""
-    hollow = model.Tube(diameter=outer, inner_diameter=inner or None)
-
-    def changed(leg: model.Leg) -> model.Leg:
-        piston = leg.piston
-        E, density = piston.E or np.nan, piston.density or np.nan
-        stiffness = {"EA": E * hollow.area, "EI": E * hollow.second_moment, "rhoA": density * hollow.area}
-        return leg.replace(piston=piston.replace(diameter=outer, **stiffness))
-
-    return with_legs(study, changed)
+    section = {"diameter": outer, "inner_diameter": inner or None}
+    return with_legs(study, lambda leg: leg.replace(piston=leg.piston.replace(**section)))
 
 
 def light_pistons(report: Share) -> Dataset:

@@ -67,13 +67,7 @@ def with_whole_piston(study: model.Study, length: float) -> model.Study:
 
 def with_modulus(study: model.Study, E: float) -> model.Study:
     """Pistons of the same section and density with another elastic modulus [Pa]."""
-
-    def changed(leg: model.Leg) -> model.Leg:
-        piston = leg.piston
-        factor = E / piston.E if piston.E else np.nan
-        return leg.replace(piston=piston.replace(E=E, EA=factor * piston.EA, EI=factor * piston.EI))
-
-    return with_legs(study, changed)
+    return with_legs(study, lambda leg: leg.replace(piston=leg.piston.replace(E=E)))
 
 
 def _beam_of_table_2(length: float) -> model.Piston:

@@ -10,6 +10,7 @@ from flexapod.arrays import Array
 from flexapod.errors import InputError
 
 Plane = Literal["xy", "yz", "zx"]
+NO_PLACE = "is not a direction here: the joint lies on the axis"
 WORDS = ("tangential", "radial", "vertical")
 _NEAR = 1e-12  # of the axis: a joint nearer to it has no radial direction
 

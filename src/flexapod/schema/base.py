@@ -30,6 +30,8 @@ from flexapod.words import number
 #: A loss factor; metals have 1e-4 to 0.01, joints 0.01 to 0.1, layers made for damping up to about 1.
 Loss = Annotated[float, Field(strict=True, ge=0, le=2, allow_inf_nan=False)]
 
+SAME = 1e-9  # relative, by which what was given may miss what follows from others; rounding leaves less
+
 _HASH = "hash"  # where an object keeps its hash; no field can have this name, which would hide the built-in
 
 _building = RLock()  # classes need those of their fields
@@ -161,25 +163,66 @@ class Frozen(BaseModel):
         frozen=True, extra="forbid", arbitrary_types_allowed=True, hide_input_in_errors=True, defer_build=True
     )  # what checks a class is built with its first object: most studies have few of the tables
 
+    #: From what the fields of `_following` follow, in words
+    _source: ClassVar[str] = "the others"
+
     def __init__(self, **fields: Any) -> None:
         if not self.__pydantic_complete__:
             with _building:  # of several threads one builds
                 type(self).model_rebuild()
+        follow = type(self)._following(fields)
+        for name, value in follow.items():
+            if (given := fields.get(name)) is not None and not agree(given, value):
+                raise InputError(
+                    f"is not what follows from {self._source}",
+                    key=name,
+                    value=_largest(given),
+                    allowed="none" if value is None else f"{_brief(value)}, or left out",
+                    next_step=f"Give {name}, or that from which it follows",
+                )
         try:
-            super().__init__(**fields)
+            super().__init__(**{**fields, **follow})
         except ValidationError as error:
             raise _input_error(error, type(self)) from None
+        self.model_fields_set.difference_update(follow)
+
+    @classmethod
+    def _following(cls, fields: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Values of the fields that follow from those given, for an object that is to be made of these.
+
+        They are computed with each object, and neither handed on to a copy nor written. Asked before anything is
+        checked: what misses a part of that from which it follows, follows from nothing.
+        """
+        return {}
+
+    @classmethod
+    def _of(cls, value: object) -> Self | None:
+        """An object of this class, of its fields where a mapping has them; None of anything else."""
+        if isinstance(value, Mapping):
+            return cls(**value)
+        return value if isinstance(value, cls) else None
+
+    @property
+    def _given(self) -> dict[str, Any]:
+        """The fields that were given, by name: without those that follow, and without those left to their defaults."""
+        return {name: getattr(self, name) for name in type(self).model_fields if name in self.model_fields_set}
 
     def replace(self, **changes: Any) -> Self:
-        """A copy with some fields changed, validated again.
+        """A copy with some fields changed, validated again; what follows from others follows from the new ones.
+
+        What followed from fields of which one is taken away (None) stays as it was.
 
         Raises
         ------
         InputError
-            If a field does not exist or the new value is not allowed.
+            If a field does not exist, the new value is not allowed, or it contradicts others.
         """
-        fields = {name: getattr(self, name) for name in type(self).model_fields}
-        return type(self)(**(fields | changes))
+        before, fields = self._given, {**self._given, **changes}
+        followed = type(self)._following(before)
+        if followed:
+            now = type(self)._following(fields)
+            fields |= {name: getattr(self, name) for name in followed if name not in changes and name not in now}
+        return type(self)(**fields)
 
     def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:
         return self  # nothing in it can change
@@ -247,6 +290,19 @@ def _brief(value: object) -> str:
 def same(one: object, other: object) -> bool:
     """Whether two values of a field are the same."""
     return one is other or _comparable(one) == _comparable(other)
+
+
+def agree(one: Any, other: Any) -> bool:
+    """Whether two values are the same but for rounding."""
+    if isinstance(one, bool) or not isinstance(one, int | float | np.ndarray | list | tuple):
+        return same(one, other)
+    try:
+        first, second = np.asarray(one, dtype=float), np.asarray(other, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        return same(one, other)
+    return first.shape == second.shape and bool(
+        np.all(np.abs(first - second) <= SAME * np.abs(second).max(initial=0.0))
+    )
 
 
 def _comparable(value: object) -> object:

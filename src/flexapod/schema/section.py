@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from flexapod.arrays import Array
-from flexapod.schema.axes import WORDS, axis_of
+from flexapod.schema.axes import NO_PLACE, WORDS, axis_of
 from flexapod.schema.columns import Column, columns_of
 from flexapod.schema.csv_tables import Unreadable, read_table
 from flexapod.schema.systems import read_system
@@ -100,8 +100,7 @@ class Section(Values):
             return None if given is None else np.array(given)
         found = axis_of(str(self.text(name, WORDS)), place, normal)
         if found is None:
-            what = "is not a direction here: the joint lies on the axis"
-            raise self.error(what, name, allowed="a vector, or vertical")
+            raise self.error(NO_PLACE, name, allowed="a vector, or vertical")
         return found
 
     def table(

@@ -54,8 +54,9 @@ class Table(Frozen):
         return {}
 
     def told(self) -> dict[str, object]:
-        """All that it has to say in a file, by key, in SI; what is None is left out."""
-        infos = {name: info for name, info in type(self).model_fields.items() if name not in self.derived}
+        """All that it has to say in a file, by key, in SI; what is None or follows from the rest is left out."""
+        left_out = {*self.derived, *self._following(self._given)}
+        infos = {name: info for name, info in type(self).model_fields.items() if name not in left_out}
         fields = {name: getattr(self, name) for name in infos}
         fields = {name: x for name, x in fields.items() if name not in self.silent or x != infos[name].default}
         if "file" in fields and fields["file"] is None and getattr(self, "time", None) is not None:
