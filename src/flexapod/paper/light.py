@@ -31,9 +31,8 @@ def with_section(study: model.Study, outer: float, inner: float) -> model.Study:
 
     def changed(leg: model.Leg) -> model.Leg:
         piston = leg.piston
-        E, density = piston.E or np.nan, piston.density or np.nan
-        stiffness = {"EA": E * hollow.area, "EI": E * hollow.second_moment, "rhoA": density * hollow.area}
-        return leg.replace(piston=piston.replace(diameter=outer, **stiffness))
+        material = model.Material(name="given", E=piston.E or np.nan, density=piston.density or np.nan)
+        return leg.replace(piston=model.Piston.round(length=piston.length, section=hollow, material=material))
 
     return with_legs(study, changed)
 
