@@ -84,7 +84,8 @@ def _feedback(loops: Dataset) -> Said:
         verdict=_helps(float(peak[0]), float(peak[1])),
         reason=f"A gain of {GAIN:g} 1/s, sampled every {text(SAMPLE, 's')} in the march, which is struck with "
         f"{BLOW:g} N for {text(BLOW_TIME, 's')}. Drives that hold their stroke, as the paper's, feel nothing: these "
-        "are ours. By hand half of the gain over twice the circular frequency, as half of the energy is in the drives.",
+        "are ours. By hand half of the gain over twice the circular frequency where half of the energy is in the "
+        "drives, as in the first mode; others bend the legs as well.",
     )
 
 

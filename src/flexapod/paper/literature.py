@@ -230,9 +230,9 @@ TOPICS = (
     Topic(
         paper="4.4, experiments with prototypes",
         status=IN_PART,
-        here="None were made. What a program can bring to one is here: frequencies, shapes and damping for a modal "
-        "test, measured responses laid over ours, forces, stresses and the tool's path as files, published "
-        "measurements and independent programs as cases ([verification.md](verification.md))",
+        here="Experiments of our own: not yet. What a program can bring to one is here: frequencies, shapes and "
+        "damping for a modal test, measured responses laid over ours, forces, stresses and the tool's path as "
+        "files, published measurements and independent programs as cases ([verification.md](verification.md))",
         call="fx.compliance(machine, [10.0, 50.0])",
     ),
     Topic(
