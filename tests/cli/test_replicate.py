@@ -85,6 +85,12 @@ def test_values_without_time_name_their_labels(folder):
     assert f"deviation_peak,half_angle=10.0 axis=z,{peak:.10g},m" in rows
 
 
+def test_a_value_without_labels_is_a_row(folder):
+    """A count stopped the whole with a ValueError of pandas."""
+    rows = (folder / "data" / "tolerances.csv").read_text(encoding="utf-8").splitlines()
+    assert "sample_count,,1000,1" in rows
+
+
 def test_first_sentence_gives_deviation_and_cause(folder):
     first = read_page(folder / "report.html").texts[0]
     assert re.search(r"misses its rigid path by up to [\d.]+\s[µm]", first)

@@ -312,7 +312,7 @@ def test_welded_rows_say_how_far_to_trust_them():
     six, one = (unchanged()[f"What would give it: {words}"].reason for words in ("joints", "one joint"))
     assert "Slopes of the legs reach 0.26 and 0.4, the theory is made for 0.1" in six
     assert (
-        "radii x 470 µm is 63 % below 1.26 mm, y 5.08 mm is 17 % below 6.14 mm, z 10.5 mm is 9 % below 11.5 mm" in six
+        "radii x 468 µm is 63 % below 1.26 mm, y 5.08 mm is 17 % below 6.14 mm, z 10.5 mm is 9 % below 11.5 mm" in six
     )
     assert "which are of that size as well" in six and "which are of that size as well" in one
     assert "Slopes of the legs reach 0.5 and 0.61" in one

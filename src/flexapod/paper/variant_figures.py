@@ -122,6 +122,9 @@ def light_pistons(light: xr.Dataset) -> Figure:
         axes.xaxis.set_major_formatter(ScalarFormatter())
         axes.xaxis.set_minor_formatter(NullFormatter())
         axes.set_xticks([0.5, 1.0, 2.0, 3.0])
+    panels[0].yaxis.set_major_formatter(ScalarFormatter())
+    panels[0].yaxis.set_minor_formatter(NullFormatter())
+    panels[0].set_yticks([20, 50, 100])
     fig.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
     return fig
 
@@ -143,13 +146,12 @@ def start_jump(smooth: xr.Dataset, jump: xr.Dataset) -> Figure:
     for (axes, beside), axis in zip(grid, ("y", "z"), strict=True):
         values, time = unit(jump.com_deviation.sel(axis=axis)), jump.time.values
         style = {"color": AXIS_COLORS[axis], "linewidth": 0.9}
-        vibration_line(axes, time, values, MOST / 2, **style)
+        vibration_line(axes, time, values, MOST / 2, label=f"{axis.upper()}, rate jumps at the start", **style)
         beside.plot(time[first], values[first], **style)
         for panel in (axes, beside):
             calm = unit(smooth.com_deviation.sel(axis=axis))
             panel.plot(smooth.time, calm, color="#222222", linewidth=1.4, label="smooth start")
             panel.axhline(0, color="#555555", linewidth=0.7)
-        axes.plot([], [], label=f"{axis.upper()}, rate jumps at the start", **style)
         peak = float(np.abs(values).max())
         axes.set_title(f"Flexible minus rigid, {axis.upper()}: up to {peak:.3g} {unit.name}")
         axes.set_ylabel(f"deviation [{unit.name}]")
