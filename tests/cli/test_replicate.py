@@ -100,6 +100,7 @@ def test_first_sentence_gives_deviation_and_cause(folder):
 def test_report_is_self_contained(folder):
     links = read_page(folder / "report.html").links
     assert links and all(link.startswith(("data:", "#")) for link in links)
+    assert (folder / "report.html").stat().st_size < 10e6  # what mail servers take
 
 
 def test_report_gives_claims_open_values_and_how_to_repeat(folder):
