@@ -28,11 +28,14 @@ def test_answer_and_claims(flexapod, folder, monkeypatch):
     assert result.stdout.startswith("The payload's centre of mass misses its rigid path by up to")
     assert "Fig. 9" in result.stdout
     assert "does not hold" in result.stdout
+    titles = ("The paper's own claims (22 rows: holds 6", "What the paper asks for next (7 rows", "Variants of ours")
+    places = [result.stdout.index(title) for title in titles]
+    assert places == sorted(places)
     assert "In replicate: report.html" in result.stdout
     data = json.loads(flexapod("replicate", "--out", "other", "--json").stdout)
     assert data["files"] == ["other/report.html"]
     assert data["summary"]["largest_cause"] == "axial-strain"
-    assert {"where", "says", "ours", "verdict", "reason"} == set(data["claims"][0])
+    assert {"whose", "where", "says", "ours", "verdict", "reason"} == set(data["claims"][0])
 
 
 def test_failures(flexapod, folder, monkeypatch):

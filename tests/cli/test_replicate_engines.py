@@ -47,7 +47,7 @@ def few(monkeypatch):
     """No claims, and only the figures of the engine."""
     for module in ("claims", "outputs"):
         monkeypatch.setattr(f"flexapod.paper.{module}.claims", lambda _: [])
-    for name in ("_actuator", "_robot", "_variants"):
+    for name in ("_actuator", "_robot", "_outlook", "_variants"):
         monkeypatch.setattr(paper_figures, name, lambda _: [])
 
 

@@ -9,7 +9,7 @@ import pytest
 from tests.paper_parts import part, study_parts, whole_study
 
 from flexapod.paper import claims_actuator
-from flexapod.paper.claim import BREAKS, HOLDS, IN_PART, NOT, OPEN
+from flexapod.paper.claim import BREAKS, HOLDS, IN_PART, MISSES, NOT, OPEN
 from flexapod.paper.claims import claims, markdown
 from flexapod.paper.study import STEPS, PaperStudy
 
@@ -49,8 +49,8 @@ def test_page_says_what_the_program_says():
     Equal to the letter, numbers as they are rounded. Another processor's last bits may move a number over the edge of
     its rounding: what a change of 1e-4 of the values would print is allowed, the tolerance of the runs.
     """
-    lines = PAGE.read_text(encoding="utf-8").split("\n## Claims, one by one\n")[1].splitlines()
-    page = [line for line in lines if line.startswith("|")]
+    text = PAGE.read_text(encoding="utf-8").split("\n## Claims, one by one\n")[1]
+    page = text[text.index("### ") :].splitlines()
     ours = markdown(claims(whole_study())).splitlines()
     assert len(page) == len(ours)
     off = [(theirs, mine) for theirs, mine in zip(page, ours, strict=True) if theirs != mine]
@@ -97,7 +97,7 @@ def test_headline_is_micrometres(table):
 
 def test_road_to_the_singularity(table):
     verdicts = [table[f"Half-angles {angles} deg"].verdict for angles in ("5 to 25", 27, 28, 29)]
-    assert verdicts == [NOT] * 3 + [BREAKS]  # at 28 deg y is 36 mm where the paper has 5
+    assert verdicts == [MISSES] * 3 + [BREAKS]  # at 28 deg y is 36 mm where the paper has 5
     assert "10 deg: y 9.39 µm, z 19.3 µm" in table["Half-angles 5 to 25 deg"].ours
     assert "singular pose at 17.0 deg of roll" in table["Half-angles 29 deg"].ours
     assert "beyond 18.7 deg no equilibrium" in table["Half-angles 29 deg"].ours
@@ -168,8 +168,8 @@ def test_leg_errors_for_the_papers_deviation():
 
 
 def test_row_is_one_line_of_markdown():
-    lines = markdown(claims(whole_study())).splitlines()
-    assert {line.count(" | ") for line in lines} == {4}
+    lines = [line for line in markdown(claims(whole_study())).splitlines() if line.startswith("|")]
+    assert {line.count(" | ") for line in lines} == {4} and len(lines) == len(claims(whole_study())) + 3 * 2
 
 
 def test_norms_of_the_papers_shapes_by_tables(monkeypatch):

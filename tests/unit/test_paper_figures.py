@@ -1,5 +1,7 @@
 """Figures of the paper's study show what they are to show: numbers apart, bands for what is quick, words at spikes."""
 
+import re
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -9,7 +11,8 @@ from mpl_toolkits.mplot3d import proj3d
 
 import flexapod as fx
 from flexapod import model, plot
-from flexapod.paper import figures, printed, solid_figure, welded_figure
+from flexapod.paper import figures, printed, solid_figure, variant_figures, welded_figure
+from flexapod.paper.light import PISTONS
 from flexapod.paper.readings import tripod
 from flexapod.paper.welded import ARMS, COLUMNS, READINGS, ROLLS
 from flexapod.plot.robot3d import beside
@@ -89,6 +92,76 @@ def test_quick_shapes_are_bands_with_their_first_swings():
     for edge, side in zip(second.lines, (-1, 1), strict=False):
         np.testing.assert_allclose(edge.get_ydata(), side - 0.05 * time, atol=0.01)
     assert beside_it.lines[0].get_xdata()[-1] == pytest.approx(13 / 80, abs=0.01)
+
+
+def test_forces_of_flexible_legs_are_bands_and_those_of_rigid_ones_lines(robot):
+    """A hundred half swings in a panel of a third of a page were solid ink; spikes are to be seen as they are."""
+    below = [axes for axes in plot.actuator_forces(robot).axes if not axes.get_title(loc="left")]
+    gap = robot.actuator_force - robot.actuator_force_rigid
+    assert len(below) == 6
+    for axes, leg in zip(below, robot.leg.values, strict=True):
+        (area,) = axes.collections
+        low, high = (line.get_ydata() for line in axes.lines[:2])
+        values = gap.sel(leg=leg).values
+        assert isinstance(area, PolyCollection)
+        # Every maximum is inside; between two of them a straight edge may be below the next but one.
+        assert np.mean((low <= values + 1e-9) & (values <= high + 1e-9)) > 0.95
+        assert high.max() == pytest.approx(values.max(), rel=1e-6) and low.min() == pytest.approx(
+            values.min(), rel=1e-6
+        )
+    rigid = plot.actuator_forces(fx.simulate(model.preset("paper-robot"), fidelity="rigid", step=5e-4))
+    assert not any(axes.collections for axes in rigid.axes)
+
+
+def test_a_start_with_a_jump_is_a_band_with_its_first_swings():
+    """Two vibrations of 45 and 56 Hz for 2 s: 200 half swings in 700 points."""
+    time = np.linspace(0, 2, 4001)
+    y = np.cos(90 * np.pi * time) + 0.5 * np.cos(50 * np.pi * time)
+    jump = xr.Dataset({"com_deviation": (("time", "axis"), 1e-4 * np.stack([0 * y, y, np.cos(112 * np.pi * time)], 1))},
+                      {"time": time, "axis": list("xyz")})  # fmt: skip
+    figure = variant_figures.start_jump(0.01 * jump, jump)
+    above, beside, below, last = figure.axes
+    assert len(above.collections) == len(below.collections) == 1 and not beside.collections and not last.collections
+    # The largest of five neighbouring maxima is that of both together, 150 um, but for the phase of one to the other.
+    _, high = (line.get_ydata() for line in above.lines[:2])
+    assert high.min() > 120 and high.max() <= 150 + 1e-9
+    assert beside.lines[0].get_xdata()[-1] == pytest.approx(variant_figures.START)
+    names = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    assert sorted(names) == ["Y, rate jumps at the start", "Z, rate jumps at the start", "smooth start"]
+
+
+def test_the_burst_of_the_balance_is_told_and_falls_with_the_tolerance(robot):
+    """2.9 uJ of 164 J in the first tenth of a second, unexplained."""
+
+    def burst(data):
+        energies = sum(data[f"energy_{name}"] for name in ("kinetic", "potential", "strain", "dissipated"))
+        balance = (energies - data.work_drive).values
+        return np.abs(balance - balance[0])[data.time.values < 0.1].max()
+
+    finer = fx.simulate(model.preset("paper-robot"), tolerance=1e-5)  # in as much time: its share of the tolerance
+    assert burst(finer) < 0.2 * burst(robot) < 0.2 * 1e-7 * 164
+    title = plot.energies(robot).axes[-1].get_title(loc="left")
+    most, whole = re.search(r"off by up to ([\d.]+) µJ of (\d+) J", title).groups()
+    assert 1e-6 * float(most) == pytest.approx(burst(robot), rel=0.05) and int(whole) == 164
+    parts = {name: robot for name in ("robot", "robot-rigid")} | {"modes": fx.modes(model.preset("paper-robot"))}
+    study = type("Study", (), {"__getitem__": lambda _, name: parts[name]})()
+    told = next(title for _, name, title, _ in figures._robot(study) if name == "energies")
+    assert "burst at the start is the error of the drives' work" in told and "0.0001, with which it falls" in told
+
+
+def test_lighter_pistons_show_their_deviation():
+    """The figure of accuracy had vibrations alone."""
+    count = len(PISTONS)
+    light = xr.Dataset(
+        {"deviation_peak": (("piston", "axis"), 1e-6 * np.arange(1, 3 * count + 1).reshape(count, 3)),
+         **{name: ("piston", 1e-6 * np.arange(1.0, count + 1)) for name in ("payload_vibration", "tip_vibration")},
+         "piston_mass": ("piston", np.linspace(3, 0.5, count))},
+        {"inner": ("piston", [pair[1] for pair in PISTONS]), "axis": list("xyz")},
+    )  # fmt: skip
+    first, *others = variant_figures.light_pistons(light).axes
+    assert len(others) == 2 and "deviation [µm]" in first.get_ylabel()
+    drawn = np.unique(np.concatenate([line.get_ydata() for line in first.lines]))
+    np.testing.assert_allclose(drawn, np.arange(3, 3 * count + 1, 3), rtol=1e-12)
 
 
 def test_no_mode_is_shown_twice(monkeypatch, robot):

@@ -19,7 +19,23 @@ from flexapod.page.network import free_port
 from flexapod.page.opening import StudySource, open_source
 from flexapod.page.server import GONE, View
 from flexapod.page.session import Session
-from flexapod.paper.claim import BREAKS, HOLDS, IN_PART, MISPRINT, NOT, OPEN, REACHES, Claim
+from flexapod.paper.claim import (
+    BREAKS,
+    DONE,
+    HOLDS,
+    IN_PART,
+    INCOMPLETE,
+    MISPRINT,
+    MISSES,
+    NEXT,
+    NOT,
+    OPEN,
+    OWN,
+    REACHES,
+    USELESS,
+    VARIANT,
+    Claim,
+)
 from flexapod.paper.report import paper_page
 from flexapod.paper.study import PaperStudy
 from flexapod.report.figures import draw
@@ -219,9 +235,20 @@ class Reports(dict):
         (study, robot), (_, actuator) = result("paper-robot"), result("paper-actuator")
         parts = {name: robot for name in ("robot", "robot-rigid", "jump")}
         parts |= {"actuator-3": actuator, "modes": modes(study)}
-        verdicts = (HOLDS, IN_PART, NOT, REACHES, BREAKS, OPEN, MISPRINT)
+        verdicts = {
+            HOLDS: OWN,
+            IN_PART: OWN,
+            NOT: OWN,
+            OPEN: OWN,
+            MISPRINT: OWN,
+            INCOMPLETE: OWN,
+            DONE: NEXT,
+            USELESS: NEXT,
+        }
+        verdicts |= {REACHES: VARIANT, MISSES: VARIANT, BREAKS: VARIANT}
         claims = [
-            Claim(where="Fig. 9", says="5 mm", ours="3 µm", verdict=v, reason="Legs are stiff.") for v in verdicts
+            Claim(whose=whose, where="Fig. 9", says="5 mm", ours="3 µm", verdict=v, reason="Legs are stiff.")
+            for v, whose in verdicts.items()
         ]
         return paper_page(PaperStudy(parts=parts), claims, {"Robot": draw(robot, self.place / "figures", ("png",))})
 

@@ -31,7 +31,7 @@ def replicate(
     quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Repeat the paper's whole study: figures, data, table of its claims, report."""
-    from flexapod.paper.claims import claims
+    from flexapod.paper.claims import by_whose, claims, counted
     from flexapod.paper.engines import agreements
     from flexapod.paper.outputs import replicate as repeat
     from flexapod.results.summary import summary
@@ -46,11 +46,10 @@ def replicate(
         more = {"engines": [asdict(row) for row in agreed]} if engines else {}
         return {"summary": found.as_dict(), "claims": [asdict(claim) for claim in table], **more, "files": files}
 
-    told = [f"{claim.where}: {claim.says}: {claim.verdict} ({claim.ours})" for claim in table]
-    items = [
-        found.sentence,
-        Chapter("The paper prints about 5 mm in Y and 10 mm in Z. Its claims one by one:", told, close=True),
-    ]
+    items: list[Item] = [found.sentence, "The paper prints about 5 mm in Y and 10 mm in Z."]
+    for title, some in by_whose(table).items():
+        told = [f"{claim.where}: {claim.says}: {claim.verdict} ({claim.ours})" for claim in some]
+        items.append(Chapter(f"{title} ({counted(some)[:-1]}):", told))
     if agreed:
         theirs = [f"{row.quantity}: {row.words}" for row in agreed]
         items += [Chapter("Exudyn, an independent engine, against us (largest values):", theirs, close=True)]

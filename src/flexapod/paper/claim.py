@@ -16,22 +16,37 @@ from flexapod.words import number, text
 
 HOLDS, IN_PART, NOT = "holds", "holds in part", "does not hold"  # of numbers, by `judged`
 HERE = "holds here"  # of numbers that are those of one example
-REACHES, BREAKS = "reaches that size", "robot gives way"  # of numbers, too
+REACHES, MISSES, BREAKS = "reaches that size", "does not give it", "robot gives way"  # of variants, by `size`
+DONE, USELESS = "done here", "brings nothing here"  # of what the paper asks for next
 OPEN = "cannot be compared"  # of the text: the paper does not give what the preset marks as ours, `left_open`
-MISPRINT = "misprint"  # of the text: a printed formula against the derived one, in the last table of chapter T9
+MISPRINT = "misprint"  # of the text: a printed formula or word that cannot be meant, in the last table of chapter T9
+INCOMPLETE = "incomplete"  # of the text: a term that the derived formula has and the printed one has not
+
+OWN, VARIANT, NEXT = "paper", "variant", "outlook"  # whose a claim is
+#: Whose claims are, in the order in which they are told, and the words for them.
+WHOSE = {
+    OWN: "The paper's own claims",
+    NEXT: "What the paper asks for next",
+    VARIANT: "Variants of ours: what else might give the printed 5 mm and 10 mm",
+}
 COPY = "in the text that we have"  # made from pages: what a lost dot, power or letter can explain is said so
 FIGURE = " The figure itself was not at hand."  # that text has none
 PAPER_DEVIATION = {"y": 5e-3, "z": 10e-3}  # of the centre of mass, Fig. 9 [m]
 ELASTIC_LENGTH = 0.6  # of a piston, Table 3 [m]
 WIDTH, HEIGHT = 0.1524, 0.0095  # of the single actuator's beam, Table 2 [m]
 AWAY = 0.05  # distance from the ends of the quintic at which its jump of jerk no longer shows in the forces [s]
+EDGE = 1e-12  # of a number on the edge of its rounding: what arithmetic leaves of it
 SIZE = 0.5  # "about 5 mm": from half to one and a half times the printed value counts as that size
 
 
 @dataclass(frozen=True, kw_only=True)
 class Claim:
-    """What the paper says and where, what we get, the verdict, and its reason, which explains the `expected` one."""
+    """What the paper says and where, what we get, the verdict, and its reason, which explains the `expected` one.
 
+    `whose` it is, a key of `WHOSE`: the paper's own, a variant of ours, or what the paper asks for next.
+    """
+
+    whose: str
     where: str
     says: str
     ours: str
@@ -44,9 +59,15 @@ class Claim:
             object.__setattr__(self, "reason", f"Not explained: these results were expected to give '{expected}'.")
 
 
-def judged(holds: bool | np.bool_, in_part: bool | np.bool_ = False, best: str = HOLDS) -> str:
-    """Verdict of the first rule that is true of the numbers: `best`, holds in part, or does not hold."""
-    return best if holds else IN_PART if in_part else NOT
+def judged(holds: bool | np.bool_, in_part: bool | np.bool_ = False, best: str = HOLDS, worst: str = NOT) -> str:
+    """Verdict of the first rule that is true of the numbers: `best`, holds in part, or `worst`."""
+    return best if holds else IN_PART if in_part else worst
+
+
+def up(value: float, digits: int = 2) -> float:
+    """A positive number rounded up to some digits: what another one is at most, or is within."""
+    unit = 10.0 ** (math.floor(math.log10(value)) + 1 - digits) if value > 0 else 1.0
+    return math.ceil(value / unit * (1 - EDGE)) * unit
 
 
 def near(ours: float, paper: float) -> bool:
@@ -61,7 +82,7 @@ def printed_deviation(y: float, z: float) -> bool:
 
 def size(*peaks: Sequence[float] | np.ndarray) -> str:
     """Verdict on largest deviations along x, y, z [m] of one or several robots: whether one is of the printed size."""
-    return judged(any(printed_deviation(y, z) for _, y, z in peaks), best=REACHES)
+    return judged(any(printed_deviation(y, z) for _, y, z in peaks), best=REACHES, worst=MISSES)
 
 
 def left_open(preset: str, *keys: str) -> bool:

@@ -8,7 +8,7 @@ from xarray import Dataset
 from flexapod.paper.claim import (
     BREAKS,
     ELASTIC_LENGTH,
-    NOT,
+    MISSES,
     REACHES,
     by_axis,
     in_y_and_z,
@@ -21,7 +21,7 @@ from flexapod.paper.claim import (
     size,
 )
 from flexapod.paper.claims_readings import SAYS
-from flexapod.paper.rows import Said, row
+from flexapod.paper.rows import Said, variant
 from flexapod.scene.robot import robot_study
 from flexapod.words import number, text
 
@@ -29,7 +29,7 @@ FAR = 25.0  # half-angles up to here are one row [deg]
 NO_ANGLES = f"{SAYS}; no joint angles are given"
 
 
-@row("Time of the roll", f"{SAYS}; no time is given", "assumptions", "robot")
+@variant("Time of the roll", f"{SAYS}; no time is given", "assumptions", "robot")
 def _duration(data: Dataset, robot: Dataset) -> Said:
     durations, rows = data.duration.values, data.deviation_by_duration.values
     parts = [f"{duration:g} s: {in_y_and_z(peak)}" for duration, peak in zip(durations, rows, strict=True)]
@@ -43,7 +43,7 @@ def _duration(data: Dataset, robot: Dataset) -> Said:
     )
 
 
-@row("Half-angles", NO_ANGLES, "half-angles", "half-angles-radii", expected=NOT)
+@variant("Half-angles", NO_ANGLES, "half-angles", "half-angles-radii", expected=MISSES)
 def _half_angles(diameters: Dataset, radii: Dataset) -> Said:
     own, other = (data.isel(half_angle=data.half_angle.values <= FAR) for data in (diameters, radii))
     angles, rows = own.half_angle.values, own.deviation_peak.values
@@ -66,7 +66,7 @@ def _weight(data: Dataset) -> float:
     return robot.payload.mass * float(np.linalg.norm(robot.gravity))
 
 
-@row("Half-angles", NO_ANGLES, "half-angles", "half-angles-radii")
+@variant("Half-angles", NO_ANGLES, "half-angles", "half-angles-radii")
 def _beyond(diameters: Dataset, radii: Dataset) -> list[Said]:
     angles = diameters.half_angle.values
     pairs = ((angle, *(data.sel(half_angle=angle) for data in (diameters, radii))) for angle in angles[angles > FAR])
@@ -102,7 +102,7 @@ def _near(force: float) -> str:
     return f"{words}: next to the singularity, where no robot can be used."
 
 
-@row(
+@variant(
     "Start with a jump", f"{SAYS}; no law is given, it might start and stop at full rate", "jump", "jump-radii", "robot"
 )
 def _jump(diameters: Dataset, radii: Dataset, smooth: Dataset) -> Said:
@@ -117,7 +117,7 @@ def _jump(diameters: Dataset, radii: Dataset, smooth: Dataset) -> Said:
     )
 
 
-@row("Jump, half-angles 27 deg", SAYS, "jump-27")
+@variant("Jump, half-angles 27 deg", SAYS, "jump-27")
 def _jump_near(data: Dataset) -> Said:
     return Said(
         ours=f"Diameters: {peaks(data, 2)}",
@@ -126,7 +126,7 @@ def _jump_near(data: Dataset) -> Said:
     )
 
 
-@row("What would give it: roll", f"{SAYS}, 6 %", "robot", expected=REACHES)
+@variant("What would give it: roll", f"{SAYS}, 6 %", "robot", expected=REACHES)
 def _roll_error(robot: Dataset) -> Said:
     roll, arm = roll_and_arm(robot)
     error = roll_error(arm)
@@ -139,7 +139,7 @@ def _roll_error(robot: Dataset) -> Said:
     )
 
 
-@row("What would give it: legs", SAYS, "assumptions", "robot")
+@variant("What would give it: legs", SAYS, "assumptions", "robot")
 def _length_errors(data: Dataset, robot: Dataset) -> Said:
     low, high = float(data.length_error.min()), float(data.length_error.max())
     most = max(-low, high)
@@ -148,7 +148,7 @@ def _length_errors(data: Dataset, robot: Dataset) -> Said:
     tips = float(np.abs(robot.tip_deflection).max())
     return Said(
         ours=f"Legs that are off by {1e3 * low:.1f} to {1e3 * high:+.1f} mm",
-        verdict=judged(near(given, needed) or near(tips, wave), best=REACHES),
+        verdict=judged(near(given, needed) or near(tips, wave), best=REACHES, worst=MISSES),
         reason=f"To stretch by so much, {1e3 * ELASTIC_LENGTH:.0f} mm of piston need {text(needed, 'N')}, the drive "
         f"force is {text(given, 'N')}; to shorten by so much they must bend to a half-wave {1e3 * wave:.0f} mm high "
         f"(shortening pi^2 w^2 / 4 L), tips are {text(tips, 'm', 2)} off.",
@@ -160,7 +160,7 @@ def _half_wave(shortening: float) -> float:
     return 2 * float(np.sqrt(shortening * ELASTIC_LENGTH)) / np.pi
 
 
-@row("What would give it: drives", SAYS, "assumptions")
+@variant("What would give it: drives", SAYS, "assumptions")
 def _drives(data: Dataset) -> Said:
     peaks, (soft, real) = data.deviation_by_drive.values, data.drive_stiffness.values
     sag = float(data.sag_by_drive.values[0, 2])

@@ -5,26 +5,28 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from flexapod import plot
-from flexapod.paper import engine_figures, printed, solid_figure, variant_figures, welded_figure
+from flexapod.paper import engine_figures, outlook_figures, printed, solid_figure, variant_figures, welded_figure
 from flexapod.paper.claim import PAPER_DEVIATION, force_gaps
 from flexapod.paper.claims_actuator import LINEAR
 from flexapod.paper.readings import actuator_preset, robot_preset
 from flexapod.paper.study import PaperStudy
 from flexapod.report.figures import Drawn, store
 from flexapod.results.record import Report
-from flexapod.words import text
+from flexapod.words import number, text
 
 _Plan = tuple[str, str, str, Callable[[], Figure]]
 ACTUATOR, ROBOT, VARIANTS = "Single actuator", "Robot", "What the deviation depends on"
+OUTLOOK = "What the paper asks for next"
 ENGINE = "Independent engine"
 
 
 def paper_figures(result: PaperStudy, folder: Path, progress: Report | None = None) -> dict[str, list[Drawn]]:
     """Draw all figures of the paper's study, by group."""
-    plans = [*_actuator(result), *_robot(result), *_variants(result), *_engine(result)]
+    plans = [*_actuator(result), *_robot(result), *_outlook(result), *_variants(result), *_engine(result)]
     drawn: dict[str, list[Drawn]] = {}
     for i, (group, name, title, make) in enumerate(plans):
         if progress is not None:
@@ -95,7 +97,10 @@ def _robot(result: PaperStudy) -> Iterator[_Plan]:
     yield (ROBOT, "forces-rigid", title, lambda: printed.forces_rigid(rigid))
     title = "Fig. 8 as the paper draws it: all forces in one panel, the two models over each other"
     yield (ROBOT, "forces-overlaid", title, lambda: printed.forces_overlaid(rigid))
-    title = "Drive forces of the robot with flexible legs against those of the rigid one"
+    title = (
+        "Drive forces of the robot with flexible legs against those of the rigid one. What swings too often to be "
+        "drawn is the band that it fills"
+    )
     yield (ROBOT, "forces-flexible", title, lambda: plot.actuator_forces(data))
     title = "Fig. 9: path of the centre of mass in Y and Z, rigid against flexible; the deviation needs its own scale"
     yield (ROBOT, "com-path", title, lambda: plot.com_path(data))
@@ -112,7 +117,27 @@ def _robot(result: PaperStudy) -> Iterator[_Plan]:
     title = "The lowest modes of the robot at the largest roll besides those of Fig. 10; magnified, size arbitrary"
     yield (ROBOT, "modes-lowest", title, lambda: plot.modes_3d(modes, others[:6]))
     yield (ROBOT, "tip-deflections", "Tips of the pistons across their legs", lambda: plot.tip_deflections(data))
-    yield (ROBOT, "energies", "Energies, and how well their balance closes", lambda: plot.energies(data))
+    title = (
+        "Energies, and how well their balance closes. Its burst at the start is the error of the drives' work in the "
+        f"first steps, within the tolerance of {number(data.attrs.get('tolerance', np.nan), 2)}, with which it falls"
+    )
+    yield (ROBOT, "energies", title, lambda: plot.energies(data))
+
+
+def _outlook(result: PaperStudy) -> Iterator[_Plan]:
+    """Of sections 4.3 and 4.4."""
+    title = (
+        "Section 4.4, compensation: commands ahead of time that make up for more and more of what is known beforehand"
+    )
+    yield OUTLOOK, "commands-ahead", title, lambda: outlook_figures.commands_ahead(result["ahead"])
+    title = "Section 4.4, vibration: what the roll leaves, as it is and shaped for the lowest modes"
+    yield OUTLOOK, "shaped-roll", title, lambda: outlook_figures.shaped_roll(result["shaped"])
+    title = "Section 4.4, feedback: drives as stiff as the pistons that give way to the integral of their own force"
+    yield OUTLOOK, "force-feedback", title, lambda: outlook_figures.force_feedback(result["feedback"])
+    title = "Section 4.3, friction: plain joints at both ends of the legs"
+    yield OUTLOOK, "joint-friction", title, lambda: outlook_figures.joint_friction(result["friction"])
+    title = "Section 4.3, imperfections and disturbances: whose microns they are, with tolerances, friction and a floor"
+    yield OUTLOOK, "error-budget", title, lambda: plot.budget(result["budget"])
 
 
 def _variants(result: PaperStudy) -> Iterator[_Plan]:
@@ -121,7 +146,7 @@ def _variants(result: PaperStudy) -> Iterator[_Plan]:
     sweeps = {"Circles as diameters": result["half-angles"], "Circles as radii": result["half-angles-radii"]}
     title = "Half-angles of the joint pairs: the road to the architecture singularity at 30 deg"
     yield (VARIANTS, "half-angles", title, lambda: variant_figures.half_angles(sweeps))
-    title = "Section 1: lighter pistons, hollow or thinner, vibrate more; the heaviest is the paper's"
+    title = "Section 1: lighter pistons, hollow or thinner, deviate and vibrate more; the heaviest is the paper's"
     yield (VARIANTS, "light-pistons", title, lambda: variant_figures.light_pistons(result["light"]))
     title = (
         "Ball joints that carry moments, at rest: roll and place of the centre of mass at which each of the three "

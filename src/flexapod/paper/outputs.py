@@ -98,8 +98,11 @@ def _save_rows(data: Dataset, path: Path) -> None:
         rows.writerow(["variable", "labels", "value", "unit"])
         for name, values in data.data_vars.items():
             unit = values.attrs.get("units", "1")
-            flat = values.stack(all_labels=values.dims) if values.dims else values.expand_dims(all_labels=[()])
-            for label, value in zip(flat.all_labels.values, flat.values, strict=True):
+            labels, numbers = [()], [values.values[()]]
+            if values.dims:
+                flat = values.stack(all_labels=values.dims)
+                labels, numbers = flat.all_labels.values, flat.values
+            for label, value in zip(labels, numbers, strict=True):
                 shown = f"{value:.10g}" if values.dtype.kind == "f" else str(value)
                 rows.writerow([name, _label(label, values.dims), shown, unit])
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
-from flexapod.paper.claim import Claim
+from flexapod.paper.claim import NEXT, OWN, VARIANT, Claim
 from flexapod.paper.study import PaperStudy
 
 
@@ -27,6 +28,7 @@ Numbers = Callable[..., Said | Sequence[Said]]
 class ClaimRow:
     """`numbers` of the named parts, of the whole study if there are none, for what the paper `says` somewhere."""
 
+    whose: str
     where: str
     says: str
     parts: tuple[str, ...]
@@ -38,6 +40,7 @@ class ClaimRow:
         found = self.numbers(*(study[name] for name in self.parts)) if self.parts else self.numbers(study)
         return [
             Claim(
+                whose=self.whose,
                 where=said.where or self.where,
                 says=said.says or self.says,
                 ours=said.ours,
@@ -49,6 +52,14 @@ class ClaimRow:
         ]
 
 
-def row(where: str, says: str, *parts: str, expected: str = "") -> Callable[[Numbers], ClaimRow]:
+def row(where: str, says: str, *parts: str, expected: str = "", whose: str = OWN) -> Callable[[Numbers], ClaimRow]:
     """Decorator of the function of a row's numbers; the words: the fields of `ClaimRow`."""
-    return lambda numbers: ClaimRow(where=where, says=says, parts=parts, expected=expected, numbers=numbers)
+    return lambda numbers: ClaimRow(
+        whose=whose, where=where, says=says, parts=parts, expected=expected, numbers=numbers
+    )
+
+
+#: The same for a row in which the paper is read, or its robot changed, in a way of ours.
+variant = partial(row, whose=VARIANT)
+#: The same for what the paper names as a limit of its study or as work to come.
+outlook = partial(row, whose=NEXT)

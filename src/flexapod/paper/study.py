@@ -15,6 +15,14 @@ from flexapod.paper.claim import axis_motion
 from flexapod.paper.cost import inverse_dynamics_cost
 from flexapod.paper.engines import check_engine, exudyn_flexible, exudyn_rigid, rigid_same_step, undamped
 from flexapod.paper.light import light_pistons
+from flexapod.paper.outlook import (
+    commands_ahead,
+    error_budget,
+    force_feedback,
+    joint_friction,
+    shaped_roll,
+    tolerances,
+)
 from flexapod.paper.printed_lines import printed_lines
 from flexapod.paper.readings import actuator_preset, readings, robot_preset, tripod
 from flexapod.paper.trials import TRIAL_STEP, trials
@@ -167,6 +175,12 @@ STEPS: tuple[StudyPart, ...] = (
     StudyPart("tripod", "a tripod of the same pistons", 1, _robot(tripod, step=TRIAL_STEP)),
     StudyPart("light", "lighter pistons", 1, light_pistons),
     StudyPart("welded", "ball joints that carry moments", 8, welded_map),
+    StudyPart("ahead", "commands ahead of time", 4, commands_ahead),
+    StudyPart("shaped", "a shaped roll", 2, shaped_roll),
+    StudyPart("feedback", "force feedback", 2, force_feedback),
+    StudyPart("friction", "friction of the joints", 4, joint_friction),
+    StudyPart("tolerances", "tolerances", 0.3, tolerances),
+    StudyPart("budget", "error budget", 0.3, error_budget),
     StudyPart("cost", "operations of inverse dynamics", 0.3, lambda _: inverse_dynamics_cost(_DIAMETERS())),
 )
 

@@ -12,9 +12,11 @@ from matplotlib.ticker import NullFormatter, ScalarFormatter
 
 from flexapod.paper.claim import PAPER_DEVIATION
 from flexapod.plot.style import COLUMN, PAGE, SMALL, figure, ink, styled
+from flexapod.plot.swings import MOST, vibration_line
 from flexapod.scene.colours import AXIS_COLORS
 from flexapod.words import scale
 
+START = 0.2  # s after a start with a jump, shown by itself
 _MARKS = {"x": "^", "y": "o", "z": "s"}
 
 
@@ -89,7 +91,7 @@ def _lost(axes: Axes, sweep: xr.Dataset) -> None:
 
 @styled
 def light_pistons(light: xr.Dataset) -> Figure:
-    """Vibration of payload and tips after the roll against the mass of a piston, hollow ones and thinner ones.
+    """Deviation, and vibration after the roll, against the mass of a piston, hollow ones and thinner ones.
 
     Parameters
     ----------
@@ -97,53 +99,67 @@ def light_pistons(light: xr.Dataset) -> Figure:
         From `light.light_pistons`; its first piston is the paper's.
     """
     fig = figure(PAGE, 2.9)
-    panels = fig.subplots(1, 2, sharex=True)
+    panels = fig.subplots(1, 3, sharex=True)
     hollow = light.inner.values > 0
     kinds = {"hollow": hollow, "thinner": ~hollow}
-    titles = {"payload_vibration": "Centre of mass", "tip_vibration": "Tips of the pistons"}
-    for axes, (name, title) in zip(panels, titles.items(), strict=True):
-        for (kind, shown), axis in zip(kinds.items(), "yz", strict=True):
-            chosen = light.isel(piston=np.flatnonzero(shown | (np.arange(len(shown)) == 0)))
+    shown = {
+        "Deviation in z": (light.deviation_peak.sel(axis="z"), "largest deviation [µm]"),
+        "Centre of mass": (light.payload_vibration, "peak to peak after the roll [µm]"),
+        "Tips of the pistons": (light.tip_vibration, "peak to peak after the roll [µm]"),
+    }
+    for axes, (title, (values, label)) in zip(panels, shown.items(), strict=True):
+        for (kind, some), axis in zip(kinds.items(), "yz", strict=True):
+            chosen = np.flatnonzero(some | (np.arange(len(some)) == 0))
             axes.loglog(
-                chosen.piston_mass,
-                1e6 * chosen[name],
+                light.piston_mass[chosen],
+                1e6 * values[chosen],
                 _MARKS[axis] + "-",
                 color=AXIS_COLORS[axis],
                 label=kind,
                 markersize=5,
             )
-        axes.set(title=title, xlabel="mass of a piston [kg]", ylabel="peak to peak after the roll [µm]")
+        axes.set(title=title, xlabel="mass of a piston [kg]", ylabel=label)
         axes.xaxis.set_major_formatter(ScalarFormatter())
         axes.xaxis.set_minor_formatter(NullFormatter())
         axes.set_xticks([0.5, 1.0, 2.0, 3.0])
-    panels[0].legend()
+    panels[0].yaxis.set_major_formatter(ScalarFormatter())
+    panels[0].yaxis.set_minor_formatter(NullFormatter())
+    panels[0].set_yticks([20, 50, 100])
+    fig.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
     return fig
 
 
 @styled
 def start_jump(smooth: xr.Dataset, jump: xr.Dataset) -> Figure:
-    """Deviation with a smooth start against a start whose rate jumps, on one scale, an axis a row.
+    """Deviation with a smooth start against a start whose rate jumps, on one scale, an axis a row, its start beside it.
+
+    A deviation that swings more often than a picture can show is drawn as the band that it fills.
 
     Parameters
     ----------
     smooth, jump : xarray.Dataset
         Results of the same robot and stroke.
     """
-    fig = figure(PAGE, 5.0)
-    rows = fig.subplots(2, 1, sharex=True)
-    unit = scale(jump.com_deviation, "m")
-    for axes, axis in zip(rows, ("y", "z"), strict=True):
-        values = unit(jump.com_deviation.sel(axis=axis))
-        axes.plot(jump.time, values, color=AXIS_COLORS[axis], linewidth=0.8, label="rate jumps at the start")
-        axes.plot(
-            smooth.time, unit(smooth.com_deviation.sel(axis=axis)), color="#222222", linewidth=1.4, label="smooth start"
-        )
-        axes.axhline(0, color="#555555", linewidth=0.7)
+    fig = figure(PAGE, 5.0, gap=0.05)
+    grid = fig.subplots(2, 2, sharex="col", sharey="row", width_ratios=(2.6, 1))
+    unit, first = scale(jump.com_deviation, "m"), jump.time.values <= START
+    for (axes, beside), axis in zip(grid, ("y", "z"), strict=True):
+        values, time = unit(jump.com_deviation.sel(axis=axis)), jump.time.values
+        style = {"color": AXIS_COLORS[axis], "linewidth": 0.9}
+        vibration_line(axes, time, values, MOST / 2, label=f"{axis.upper()}, rate jumps at the start", **style)
+        beside.plot(time[first], values[first], **style)
+        for panel in (axes, beside):
+            calm = unit(smooth.com_deviation.sel(axis=axis))
+            panel.plot(smooth.time, calm, color="#222222", linewidth=1.4, label="smooth start")
+            panel.axhline(0, color="#555555", linewidth=0.7)
         peak = float(np.abs(values).max())
-        axes.set_title(f"Flexible minus rigid, {axis.upper()} (largest with the jump: {peak:.3g} {unit.name})")
+        axes.set_title(f"Flexible minus rigid, {axis.upper()}: up to {peak:.3g} {unit.name}")
         axes.set_ylabel(f"deviation [{unit.name}]")
-        axes.legend(ncols=2, loc="upper right")
-        axes.margins(y=0.2)
-    rows[-1].set_xlabel("time [s]")
-    rows[-1].set_xlim(float(jump.time[0]), float(jump.time[-1]))
+    grid[0, 1].set_title(f"Its first {START:g} s")
+    for panel, last in zip(grid[-1], (float(jump.time[-1]), START), strict=True):
+        panel.set_xlabel("time [s]")
+        panel.set_xlim(float(jump.time[0]), last)
+    words = [axes.get_legend_handles_labels() for axes in grid[:, 0]]
+    lines = {name: line for handles, names in words for line, name in zip(handles, names, strict=True)}
+    fig.legend(list(lines.values()), list(lines), loc="outside upper center", ncols=3)
     return fig

@@ -10,10 +10,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flexapod.plot.style import LINE_STYLES, NOTE, PAGE, figure, flat_on_the_scale_of_others, ink, needs, styled
+from flexapod.plot.swings import is_quick, swings, vibration_line
 from flexapod.scene.colours import FLEXIBLE, LEG_COLORS, RIGID
 from flexapod.words import cleared_lines, number, scale
 
-_SWINGS, _SHOWN = 240, 12  # half swings: more of them are solid ink; and how many of those are shown beside
+_SHOWN = 12  # half swings of a band that are shown beside it
 _LARGER = ("angles", "elevations")  # towards which the tip of an actuator in space is deflected
 
 
@@ -139,22 +140,18 @@ def actuator_modes(data: xr.Dataset) -> Figure:
         labels = [f"{words}, towards larger {larger}" for larger in _LARGER for words in labels]
         amplitudes = amplitudes.stack(mode_of=("direction", "mode")).rename(mode_of="shape")
     time, lines = data.time.values, cleared_lines(amplitudes.transpose(..., "time").values.reshape(len(labels), -1))
-    turns = [_turns(values) for values in lines]
     fig = figure(PAGE, 1.0 + 1.4 * len(labels))
-    zoomed = any(len(at) > _SWINGS for at in turns)
+    zoomed = any(is_quick(values) for values in lines)
     grid = fig.add_gridspec(len(labels), 1 + zoomed, width_ratios=(2.6, 1)[: 1 + zoomed])
     first = fig.add_subplot(grid[0, 0])
     panels = [first, *(fig.add_subplot(grid[i, 0], sharex=first) for i in range(1, len(labels)))]
-    for i, (axes, label, values, at) in enumerate(zip(panels, labels, lines, turns, strict=True)):
+    for i, (axes, label, values) in enumerate(zip(panels, labels, lines, strict=True)):
         unit = scale(values if values.any() else lines, "m")
-        if len(at) > _SWINGS:
-            _band(axes, time, unit(values), at)
-            shown = slice(0, at[_SHOWN] + 1)
+        if vibration_line(axes, time, unit(values), color=FLEXIBLE, linewidth=1.0):
+            shown = slice(0, swings(values)[_SHOWN] + 1)
             beside = fig.add_subplot(grid[i, 1], title=f"its first {time[shown][-1]:.2g} s")
             beside.plot(time[shown], unit(values)[shown], color=FLEXIBLE, linewidth=1.0)
             beside.axhline(0, color="#555555", linewidth=0.7)
-        else:
-            axes.plot(time, unit(values), color=FLEXIBLE, linewidth=1.0)
         axes.axhline(0, color="#555555", linewidth=0.7)
         axes.set(title=label, ylabel=f"amplitude [{unit.name}]")
         axes.tick_params(labelbottom=i == len(labels) - 1)
@@ -162,20 +159,3 @@ def actuator_modes(data: xr.Dataset) -> Figure:
     panels[-1].set_xlabel("time [s]")
     fig.align_ylabels(panels)
     return fig
-
-
-def _turns(values: np.ndarray) -> np.ndarray:
-    """Where a curve turns back: places of its maxima and minima."""
-    return np.flatnonzero(np.diff(np.sign(np.diff(values))) != 0) + 1
-
-
-def _band(axes: Axes, time: np.ndarray, values: np.ndarray, turns: np.ndarray) -> None:
-    """What a curve fills: between its maxima and its minima."""
-    middle = 0.5 * (values[turns[:-1]] + values[turns[1:]])
-    middle = np.interp(time, 0.5 * (time[turns[:-1]] + time[turns[1:]]), middle)
-    above = turns[values[turns] >= middle[turns]]
-    below = turns[values[turns] <= middle[turns]]
-    edges = [np.interp(time, time[side], values[side]) for side in (below, above)]
-    axes.fill_between(time, edges[0], edges[1], color=FLEXIBLE, alpha=0.25, linewidth=0)
-    for edge in edges:
-        axes.plot(time, edge, color=FLEXIBLE, linewidth=0.8)

@@ -8,9 +8,20 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
-from flexapod.plot.style import LINE_STYLES, PAGE, columns, figure, flat_on_the_scale_of_others, mark_end, needs, styled
+from flexapod.plot.style import (
+    LINE_STYLES,
+    PAGE,
+    columns,
+    figure,
+    flat_on_the_scale_of_others,
+    mark_end,
+    needs,
+    styled,
+)
+from flexapod.plot.swings import MOST, vibration_line
 from flexapod.scene.colours import FLEXIBLE, LEG_COLORS, RIGID, colors_of_legs
 from flexapod.scene.drives import drives
 from flexapod.scene.robot import motion_end
@@ -36,14 +47,19 @@ def actuator_forces(data: xr.Dataset) -> Figure:
     big, small = scale(rigid, found.unit), scale(gap, found.unit)
     fig, panels = force_panels([rigid, multibody], [gap], (big, small), (2.2, 1), found.word)
     words = "Newton-Euler" if found.plain else "rigid robot"
+    most, quick = MOST / columns(len(panels), 3), False
     time, label = data.time.values, f"multibody model, {_WORDS.get(str(data.attrs.get('fidelity')), 'flexible legs')}"
     for leg, (above, below) in panels.items():
         above.plot(time, big(rigid.sel(leg=leg)), color=RIGID, linewidth=5, label=f"{words}, rigid legs")
         above.plot(time, big(multibody.sel(leg=leg)), color=FLEXIBLE, linewidth=1.1, label=label)
-        below.plot(time, small(gap.sel(leg=leg)), color=LEG_COLORS[3], linewidth=0.8)
+        quick |= vibration_line(below, time, small(gap.sel(leg=leg)), most, color=LEG_COLORS[3], linewidth=0.8)
         mark_end(above, motion_end(data))
         mark_end(below, motion_end(data))
-    fig.legend(*next(iter(panels.values()))[0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
+    handles, names = next(iter(panels.values()))[0].get_legend_handles_labels()
+    if quick:
+        handles.append(Patch(facecolor=LEG_COLORS[3], alpha=0.25))
+        names.append("what its swings fill")
+    fig.legend(handles, names, loc="outside upper center", ncols=3)
     return fig
 
 

@@ -25,7 +25,7 @@ from flexapod.results.summary import POINT_WORDS
 from flexapod.scene.colours import AXIS_COLORS, ENERGIES, FLEXIBLE, LEG_COLORS, RIGID
 from flexapod.scene.robot import motion_coordinates, motion_end
 from flexapod.ties import first_largest, ranked
-from flexapod.words import NOTHING, Scale, cleared, scale
+from flexapod.words import NOTHING, Scale, cleared, scale, text
 
 _TURNS = ("roll", "pitch", "yaw")
 _UNITS = {"position": ("m", "rad"), "rate": ("m/s", "rad/s"), "acceleration": ("m/s²", "rad/s²")}
@@ -245,12 +245,9 @@ def energies(data: xr.Dataset) -> Figure:
         rows[0].plot(time, big(changes[name]), label=words, color=color, linestyle=LINE_STYLES[i])
     _energy_line(rows[1], time, data.energy_strain, "Strain energy, with that of the drive springs", "energy")
     balance = xr.concat([_SIGN.get(name, 1.0) * data[name] for name in names], dim="part").sum("part")
+    open_by, largest = balance - balance[0], max(float(np.abs(change).max()) for change in changes.values())
     _energy_line(
-        rows[2],
-        time,
-        balance - balance[0],
-        "Balance: energies plus losses minus works, change since the start",
-        "balance",
+        rows[2], time, open_by, f"Balance: energies plus losses minus works{_closed(open_by, largest)}", "balance"
     )
     rows[0].set(title="Energies and works, change since the start", ylabel=f"energy [{big.name}]")
     fig.legend(*rows[0].get_legend_handles_labels(), loc="outside upper center", ncols=3, handlelength=3)
@@ -259,6 +256,14 @@ def energies(data: xr.Dataset) -> Figure:
         mark_end(axes, end, "motion ends" if axes is rows[0] else "")
     fig.align_ylabels(rows)
     return fig
+
+
+def _closed(open_by: xr.DataArray, largest: float) -> str:
+    """How far a balance is open at most, beside the largest change of what it is made of, in words."""
+    most = float(np.abs(open_by).max())
+    if not 0 < most < largest:
+        return ""
+    return f", off by up to {text(most, 'J', 2)} of {text(largest, 'J')}"
 
 
 def _energy_line(axes: Axes, time: np.ndarray, values: xr.DataArray, title: str, label: str) -> None:
