@@ -3,6 +3,7 @@
 By hand, it takes an hour or two (seeds give other faults; what is in the file of results is not tried again):
 
     .venv/bin/python -m tests.faults 100 [--seed 1] [--results build/faults]    try faults, list survivors
+    .venv/bin/python -m tests.faults 100 --rooms control feedforward exchange   in these folders of the package alone
     .venv/bin/python -m tests.faults --list 100                                 show them, try none
     .venv/bin/python -m tests.faults --again                                    survivors of the results once more
     .venv/bin/python -m tests.faults --again kinematics/laws --tests tests/unit/test_rigid_laws.py   by these
@@ -34,7 +35,7 @@ import tempfile
 import time
 import traceback
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import CodeType
 
@@ -224,13 +225,16 @@ def _is_text(node: ast.AST) -> bool:
     return isinstance(node, ast.Constant) and isinstance(node.value, str | None)
 
 
-def faults(count: int, seed: int) -> list[Fault]:
-    """Faults of a seed, one in a function and few in a file; what else changes in the code moves none of the others."""
+def faults(count: int, seed: int, rooms: Sequence[str] = ()) -> list[Fault]:
+    """Faults of a seed, one in a function and few in a file; what else changes in the code moves none of the others.
+
+    With `rooms` from these folders of the package alone.
+    """
     drawn = []
     for path in sorted((ROOT / "src").rglob("*.py")):
         name = str(path.relative_to(ROOT))
         room = name.split("/")[2] if name.count("/") > 2 else ""
-        if FILES.search(name) or name.endswith("__init__.py"):
+        if FILES.search(name) or name.endswith("__init__.py") or (rooms and room not in rooms):
             continue
         for fault in Places(name, path.read_text(encoding="utf-8")).found:
             chance = int(hashlib.sha256(f"{seed} {fault.name}".encode()).hexdigest()[:12], 16) / 16**12
@@ -245,6 +249,10 @@ def faults(count: int, seed: int) -> list[Fault]:
         if len(kept) == count:
             break
     return kept
+
+
+def _rooms() -> list[str]:
+    return sorted(x.name for x in (ROOT / "src" / "flexapod").iterdir() if x.is_dir() and x.name[0] != "_")
 
 
 def faulty(source: str, fault: Fault) -> str:
@@ -457,6 +465,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.faults", description=__doc__.splitlines()[0])
     parser.add_argument("count", type=int, nargs="?", default=100)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--rooms", nargs="+", default=[], choices=_rooms(), metavar="ROOM", help="these alone")
     parser.add_argument("--list", action="store_true", help="show the faults, try none")
     parser.add_argument("--again", nargs="?", const="", help="survivors of the results once more, of this text")
     parser.add_argument("--seconds", type=float, default=120.0, help="of tests for each of those")
@@ -464,7 +473,7 @@ def main() -> int:
     parser.add_argument("--results", type=Path, default=ROOT / "build" / "faults")
     given = parser.parse_args()
     results = Results(given.results)
-    chosen = faults(given.count if given.again is None else 100_000, given.seed)
+    chosen = faults(given.count if given.again is None else 100_000, given.seed, given.rooms)
     if given.again is not None:
         chosen = [x for x in chosen if x.name in results.survivors() and given.again in x.name]
     if given.list:
