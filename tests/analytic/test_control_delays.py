@@ -27,10 +27,10 @@ def gains(value):
 
 
 def test_poles_cross_and_come_back_as_the_delay_rises():
-    """m x'' + c x' + k x = -g x(t - tau), g < k: stable without delay, on both sides of the resonance the loop has size 1.
+    """m x'' + c x' + k x = -g x(t - tau), g < k: on both sides of the resonance the loop has size 1.
 
-    m^2 w^4 + (c^2 - 2 m k) w^2 + k^2 - g^2 = 0; e^(-i w tau) = -(k - m w^2 + i c w) / g. At the larger w a pair begins to
-    grow with each such delay, at the smaller one it ends.
+    m^2 w^4 + (c^2 - 2 m k) w^2 + k^2 - g^2 = 0; e^(-i w tau) = -(k - m w^2 + i c w) / g. At the larger w a pair
+    begins to grow with each such delay, at the smaller one it ends.
     """
     m, c, k, g = 2.0, 1.0, 800.0, 120.0
     low, high = np.sort(np.sqrt(np.roots([m**2, c**2 - 2 * m * k, k**2 - g**2])))
@@ -51,7 +51,7 @@ def test_poles_cross_and_come_back_as_the_delay_rises():
 
 
 def by_points(A, late, delay, count):
-    """Poles of x' = A x + late x(t - delay): the past of x by its values at Chebyshev's points, s x their derivative."""
+    """Poles of x' = A x + late x(t - delay), the past of x by its values at Chebyshev's points."""
     k = np.arange(count + 1)
     x = np.cos(np.pi * k / count)
     c = np.where((k == 0) | (k == count), 2.0, 1.0) * (-1.0) ** k
