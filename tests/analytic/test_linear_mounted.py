@@ -116,14 +116,14 @@ def test_what_jumps_with_a_force_is_the_response_without_end():
 
 
 def test_a_floor_that_turns_shakes_an_uneven_payload_of_a_turned_robot():
-    """Six springs without mass, Newton and Euler in floor axes: M x'' + J' k J x = -m (a + alpha x r), -R I R' alpha."""
+    """Massless springs, Newton and Euler in floor axes: M x'' + J' k J x = -(m (a + alpha x r), R I R' alpha)."""
     rpy, place = {"roll": 0.3, "pitch": -0.2, "yaw": 0.4}, {"surge": 0.05, "sway": -0.03, "heave": 0.04}
     robot = light(machine(damping=0.0))
     inertia = np.array([[120.0, 30.0, -20.0], [30.0, 90.0, 10.0], [-20.0, 10.0, 170.0]])
     robot = robot.replace(payload=robot.payload.replace(inertia=inertia, com=[0.1, -0.05, 0.15], tool=[0.2, 0.1, 0.5]))
     lin = fx.linearize(study(robot, fidelity="lumped"), {**place, **rpy}, inputs="floor", outputs=["tool", "com"])
     R = Rotation.from_euler("xyz", [*rpy.values()]).as_matrix()
-    origin = robot.home_position + [*place.values()]
+    origin = robot.home_position + np.array([*place.values()])
     tips, r = origin + robot.platform_joints @ R.T, origin + R @ robot.com
     axes = tips - robot.base_joints
     axes /= np.linalg.norm(axes, axis=1)[:, None]

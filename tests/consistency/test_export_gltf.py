@@ -14,7 +14,7 @@ from tests.stepped import section
 
 import flexapod as fx
 from flexapod.kinematics.rotations import exponential, matrix
-from flexapod.model import Guide, Piston, override
+from flexapod.model import CsvMotion, Guide, Piston, override
 from flexapod.results.names import VARIABLES
 from flexapod.scene.geometry import RobotMotion
 
@@ -111,6 +111,24 @@ def test_quaternions_go_the_short_way(motion):
     for (_, path), (_, values) in file.tracks.items():
         if path == "rotation":
             assert (values[1:] * values[:-1]).sum(axis=1).min() > 0
+
+
+def test_between_samples_a_platform_turns_on_where_its_quaternion_changes_sign(tmp_path):
+    """Rocking twice past half a turn, a viewer's mean of two samples is half the way between their yaws, by hand."""
+    study, home, time = fx.preset("paper-robot"), np.radians(178.0), np.linspace(0.0, 1.0, 41)
+    robot = study.robot.replace(home=study.robot.home.replace(rotation=[0.0, 0.0, home]))
+    yaw = 0.1 * (1 - np.cos(4 * np.pi * time))
+    motion = CsvMotion(time=time, pose=np.stack([*np.zeros((5, 41)), yaw], axis=1))
+    study = study.replace(robot=robot, motion=motion)
+    study = override(study, fidelity="rigid", output_step=0.025, duration=1.0)
+    file = GlbReader(fx.export(study, "gltf", tmp_path / "robot.glb", data=fx.simulate(study)).path)
+    _, turns = file.tracks[file.nodes["payload"], "rotation"]
+    for k in range(40):
+        x, y, z, w = turns[k : k + 2].sum(axis=0) / np.linalg.norm(turns[k : k + 2].sum(axis=0))
+        half = home + 0.5 * (yaw[k] + yaw[k + 1])
+        assert [x, y] == pytest.approx([0, 0], abs=8 * FLOAT32)
+        assert abs(w * np.cos(half / 2) + z * np.sin(half / 2)) == pytest.approx(1.0, abs=8 * FLOAT32)
+    assert (np.diff(np.sign(np.cos((home + yaw) / 2))) != 0).sum() == 4  # it passes half a turn four times
 
 
 def test_a_node_for_each_body_and_names_of_results_alone(motion):
