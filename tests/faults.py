@@ -283,14 +283,21 @@ class Trial:
 class Watch:
     """Of pytest: the first failure, times, and where the fault was reached."""
 
-    def __init__(self) -> None:
-        self.trial, self.file = Trial(), ""
+    def __init__(self, answer: Path) -> None:
+        self.trial, self.file, self.answer = Trial(), "", answer
 
     def here(self, value):
         """Stands around the faulty expression."""
         if self.file not in self.trial.reached:
             self.trial.reached.append(self.file)
+            self.tell()
         return value
+
+    def tell(self):
+        """Whole at each moment: its process may be ended."""
+        new = self.answer.with_suffix(".new")
+        new.write_text(json.dumps(dataclasses.asdict(self.trial)))
+        new.replace(self.answer)
 
     def pytest_runtest_logstart(self, nodeid):
         self.file = nodeid.split("::")[0]
@@ -386,7 +393,7 @@ class Copy:
         os.environ |= {"PYTHONPATH": f"{self.folder / 'src'}:{self.folder / 'told'}", "FLEXAPOD_CACHE": str(kernels),
                        "OPENBLAS_NUM_THREADS": "1"}  # fmt: skip
         kernels.mkdir(parents=True, exist_ok=True, mode=0o700)
-        watch = Watch()
+        watch = Watch(answer)
         builtins.fault_here = watch.here
         for test in tests:  # what is not run is not read either
             codes = {}
@@ -395,7 +402,7 @@ class Copy:
             pytest.main([test, "-x", "-q", "-p", "no:cacheprovider"], plugins=[watch])
             sys.setprofile(None)
             watch.trial.called[test] = sorted(filter(None, map(self._name, codes.values())))
-            answer.write_text(json.dumps(dataclasses.asdict(watch.trial)))
+            watch.tell()
             if watch.trial.failed:
                 break
         done.touch()
@@ -452,6 +459,9 @@ def tried(
     copy.mapped = set(results.called)
     trial = copy.tried(chosen, seconds, fault)
     results.learn(trial)
+    if trial.failed == "time" and (not trial.reached or copy.tried(chosen, seconds).failed == "time"):
+        print("    takes as long without the fault", flush=True)
+        chosen, trial.failed, trial.why = [], None, "unsound: time"  # what has not ended is asked again
     if trial.failed and not results.sound(trial.failed, lambda: copy.tried([trial.failed], seconds)):
         print(f"    fails without the fault, too: {trial.failed}", flush=True)
         trial.failed, trial.why = None, f"unsound: {trial.failed}"
