@@ -496,7 +496,7 @@ def main() -> int:
     os.environ.setdefault("FLEXAPOD_CACHE_MEGABYTES", "1000")
     near = Nearness(ROOT)
     with tempfile.TemporaryDirectory(prefix="faults-") as name:
-        copy = Copy(Path(name), given.results / "kernels")
+        copy = Copy(Path(name), given.results.resolve() / "kernels")
         rounds = ROUNDS if given.again is None else ((given.seconds, math.inf),)
         for nth, (seconds, enough) in enumerate(rounds):
             for k, fault in sorted(enumerate(chosen), key=lambda x: x[1].symbolic):  # all kernels anew: last
