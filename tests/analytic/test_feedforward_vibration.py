@@ -63,6 +63,7 @@ def test_a_path_that_turns_far_shakes_the_tool_as_newton_says() -> None:
     study = turning()
     found = vibration_along(study, MOVING, MOVING + AFTER)
     exact = tool_beside_its_path(study.robot, found.time)
+    assert found.time[-1] >= MOVING + AFTER - 1e-12
     moving = found.time <= MOVING
     for part in (moving, ~moving):
         size = np.abs(exact[part]).max()
