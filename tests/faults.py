@@ -3,6 +3,7 @@
 By hand, it takes an hour or two (seeds give other faults; what is in the file of results is not tried again):
 
     .venv/bin/python -m tests.faults 100 [--seed 1] [--results build/faults]    try faults, list survivors
+    .venv/bin/python -m tests.faults 100 --rooms control feedforward exchange   in these folders of the package alone
     .venv/bin/python -m tests.faults --list 100                                 show them, try none
     .venv/bin/python -m tests.faults --again                                    survivors of the results once more
     .venv/bin/python -m tests.faults --again kinematics/laws --tests tests/unit/test_rigid_laws.py   by these
@@ -34,7 +35,7 @@ import tempfile
 import time
 import traceback
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import CodeType
 
@@ -224,13 +225,16 @@ def _is_text(node: ast.AST) -> bool:
     return isinstance(node, ast.Constant) and isinstance(node.value, str | None)
 
 
-def faults(count: int, seed: int) -> list[Fault]:
-    """Faults of a seed, one in a function and few in a file; what else changes in the code moves none of the others."""
+def faults(count: int, seed: int, rooms: Sequence[str] = ()) -> list[Fault]:
+    """Faults of a seed, one in a function and few in a file; what else changes in the code moves none of the others.
+
+    With `rooms` from these folders of the package alone.
+    """
     drawn = []
     for path in sorted((ROOT / "src").rglob("*.py")):
         name = str(path.relative_to(ROOT))
         room = name.split("/")[2] if name.count("/") > 2 else ""
-        if FILES.search(name) or name.endswith("__init__.py"):
+        if FILES.search(name) or name.endswith("__init__.py") or (rooms and room not in rooms):
             continue
         for fault in Places(name, path.read_text(encoding="utf-8")).found:
             chance = int(hashlib.sha256(f"{seed} {fault.name}".encode()).hexdigest()[:12], 16) / 16**12
@@ -245,6 +249,10 @@ def faults(count: int, seed: int) -> list[Fault]:
         if len(kept) == count:
             break
     return kept
+
+
+def _rooms() -> list[str]:
+    return sorted(x.name for x in (ROOT / "src" / "flexapod").iterdir() if x.is_dir() and x.name[0] != "_")
 
 
 def faulty(source: str, fault: Fault) -> str:
@@ -275,14 +283,21 @@ class Trial:
 class Watch:
     """Of pytest: the first failure, times, and where the fault was reached."""
 
-    def __init__(self) -> None:
-        self.trial, self.file = Trial(), ""
+    def __init__(self, answer: Path) -> None:
+        self.trial, self.file, self.answer = Trial(), "", answer
 
     def here(self, value):
         """Stands around the faulty expression."""
         if self.file not in self.trial.reached:
             self.trial.reached.append(self.file)
+            self.tell()
         return value
+
+    def tell(self):
+        """Whole at each moment: its process may be ended."""
+        new = self.answer.with_suffix(".new")
+        new.write_text(json.dumps(dataclasses.asdict(self.trial)))
+        new.replace(self.answer)
 
     def pytest_runtest_logstart(self, nodeid):
         self.file = nodeid.split("::")[0]
@@ -378,7 +393,7 @@ class Copy:
         os.environ |= {"PYTHONPATH": f"{self.folder / 'src'}:{self.folder / 'told'}", "FLEXAPOD_CACHE": str(kernels),
                        "OPENBLAS_NUM_THREADS": "1"}  # fmt: skip
         kernels.mkdir(parents=True, exist_ok=True, mode=0o700)
-        watch = Watch()
+        watch = Watch(answer)
         builtins.fault_here = watch.here
         for test in tests:  # what is not run is not read either
             codes = {}
@@ -387,7 +402,7 @@ class Copy:
             pytest.main([test, "-x", "-q", "-p", "no:cacheprovider"], plugins=[watch])
             sys.setprofile(None)
             watch.trial.called[test] = sorted(filter(None, map(self._name, codes.values())))
-            answer.write_text(json.dumps(dataclasses.asdict(watch.trial)))
+            watch.tell()
             if watch.trial.failed:
                 break
         done.touch()
@@ -444,6 +459,9 @@ def tried(
     copy.mapped = set(results.called)
     trial = copy.tried(chosen, seconds, fault)
     results.learn(trial)
+    if trial.failed == "time" and (not trial.reached or copy.tried(chosen, seconds).failed == "time"):
+        print("    takes as long without the fault", flush=True)
+        chosen, trial.failed, trial.why = [], None, "unsound: time"  # what has not ended is asked again
     if trial.failed and not results.sound(trial.failed, lambda: copy.tried([trial.failed], seconds)):
         print(f"    fails without the fault, too: {trial.failed}", flush=True)
         trial.failed, trial.why = None, f"unsound: {trial.failed}"
@@ -457,6 +475,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.faults", description=__doc__.splitlines()[0])
     parser.add_argument("count", type=int, nargs="?", default=100)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--rooms", nargs="+", default=[], choices=_rooms(), metavar="ROOM", help="these alone")
     parser.add_argument("--list", action="store_true", help="show the faults, try none")
     parser.add_argument("--again", nargs="?", const="", help="survivors of the results once more, of this text")
     parser.add_argument("--seconds", type=float, default=120.0, help="of tests for each of those")
@@ -464,7 +483,7 @@ def main() -> int:
     parser.add_argument("--results", type=Path, default=ROOT / "build" / "faults")
     given = parser.parse_args()
     results = Results(given.results)
-    chosen = faults(given.count if given.again is None else 100_000, given.seed)
+    chosen = faults(given.count if given.again is None else 100_000, given.seed, given.rooms)
     if given.again is not None:
         chosen = [x for x in chosen if x.name in results.survivors() and given.again in x.name]
     if given.list:
@@ -477,7 +496,7 @@ def main() -> int:
     os.environ.setdefault("FLEXAPOD_CACHE_MEGABYTES", "1000")
     near = Nearness(ROOT)
     with tempfile.TemporaryDirectory(prefix="faults-") as name:
-        copy = Copy(Path(name), given.results / "kernels")
+        copy = Copy(Path(name), given.results.resolve() / "kernels")
         rounds = ROUNDS if given.again is None else ((given.seconds, math.inf),)
         for nth, (seconds, enough) in enumerate(rounds):
             for k, fault in sorted(enumerate(chosen), key=lambda x: x[1].symbolic):  # all kernels anew: last

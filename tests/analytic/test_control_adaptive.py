@@ -84,6 +84,47 @@ def test_a_tracker_finds_a_frequency(hertz):
     assert state[2] / (2 * np.pi) == pytest.approx(hertz, rel=2e-3)
 
 
+@pytest.mark.parametrize("width", [0.2, 0.7, 1.5])
+def test_an_oscillator_follows_as_fast_as_its_width_says(width):
+    """At a frequency that is held, a' = w (k (y - a) - b), b' = w a: from rest under a cosine at w, by its closed form.
+
+    a = cos wt - e^(-dt) (cos vt - d / v sin vt), b = sin wt - w / v e^(-dt) sin vt; d = k w / 2, v^2 = w^2 - d^2.
+    """
+    w, T = 2 * np.pi * 10.0, 1e-4
+    tracker = fc.Tracker(frequency="10 Hz", width=width, speed=0.0)
+    d, v, state = width * w / 2, w * np.sqrt(1 - width**2 / 4), tracker.start()
+    for k in range(3000):
+        state = tracker.step(np.cos(w * (k + 0.5) * T), state, T)
+        if k % 100 == 99:
+            t = (k + 1) * T
+            fades = np.exp(-d * t)
+            a = np.cos(w * t) - fades * (np.cos(v * t) - d / v * np.sin(v * t))
+            b = np.sin(w * t) - fades * w / v * np.sin(v * t)
+            # frequencies are bent by (w T)^2 / 12 = 3e-6, over 19 rad; readings hold for a step: (w T)^2 / 24
+            np.testing.assert_allclose(state[:2], [a, b], atol=2e-4)
+    assert state[2] == pytest.approx(w, rel=1e-12)
+
+
+@pytest.mark.parametrize("width", [0.3, 1.0, 2.0])
+def test_a_tracker_finds_a_frequency_with_its_time_constant_whatever_its_width(width):
+    """In the oscillator's steady state the mean of its law is w' = -speed (w - w_y); it lags by 2 / (width w).
+
+    Both together: error exp(s t) with 2 / (width w) s^2 + s + speed = 0.
+    """
+    w, speed, T = 2 * np.pi * 20.0, 1.0, 5e-4
+    tracker = fc.Tracker(frequency="20.4 Hz", width=width, speed=speed)
+    state, off = tracker.start(), []
+    for k in range(int(1.5 / T)):
+        state = tracker.step(np.sin(w * k * T), state, T)
+        off.append(state[2] - 2 / T * np.tan(w * T / 2))  # the midpoint rule swings slower than its own frequency
+    period = round(2 * np.pi / w / T)
+    early, late = (np.mean(off[at : at + period]) for at in (round(0.4 / T), round(1.4 / T)))
+    lag = 2 / (width * w)
+    slow = (1 - np.sqrt(1 - 4 * speed * lag)) / (2 * lag)
+    # terms of second order of the detuning, half of the 2 % that there are at first
+    assert np.log(early / late) == pytest.approx(slow, rel=0.01)
+
+
 @pytest.mark.parametrize("k", [2e3, 2e4])
 def test_adaptive_damping_damps_a_mode_whose_frequency_it_does_not_know(k):
     m, c, g, T = 2.0, 0.2, 6.0, 5e-4

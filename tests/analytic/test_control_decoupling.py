@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import flexapod as fx
 import flexapod.control as fc
@@ -135,3 +136,28 @@ def test_what_cannot_be_told_apart_is_refused():
         fc.by_jacobian([[1.0, 1.0], [1.0, 1.0]])
     with pytest.raises(InputError, match="has the shape"):
         gravimeter().close(fc.Decoupled(fc.gain(1.0), into=np.eye(2), out=np.eye(3)))
+
+
+def test_the_centre_of_stiffness_of_a_robot_that_is_turned_at_home():
+    """Legs by hand in world axes; K_tr changes evenly with the point p, the sum of its squares is least at one."""
+    rpy, place, springs = np.array([0.5, -0.3, 0.7]), [0.05, -0.1, 0.8], np.array([1.0, 2.0, 3.0, 1.5, 0.7, 2.2]) * 1e6
+    robot = fx.preset("paper-robot").robot
+    robot = robot.replace(home=robot.home.replace(position=place, rotation=rpy))
+    tips = place + robot.platform_joints @ Rotation.from_euler("xyz", rpy).as_matrix().T  # R = Rz Ry Rx
+    axes = (tips - robot.base_joints) / np.linalg.norm(tips - robot.base_joints, axis=1)[:, None]
+
+    def legs(p):
+        return np.hstack([axes, np.cross(tips - p, axes)])
+
+    def coupling(p):
+        return (axes.T @ (springs[:, None] * legs(p)[:, 3:])).ravel()
+
+    none = coupling(np.zeros(3))
+    change = np.stack([coupling(e) - none for e in np.eye(3)], axis=1)
+    centre = np.linalg.lstsq(change, -none, rcond=None)[0]
+    found = fc.robot_jacobian(robot, "cok", springs)
+    # rounding, over a condition of some 10
+    np.testing.assert_allclose(found, legs(centre), rtol=0, atol=1e-12)
+    com = place + Rotation.from_euler("xyz", rpy).as_matrix() @ robot.com
+    np.testing.assert_allclose(fc.robot_jacobian(robot), legs(com), rtol=0, atol=1e-12)
+    assert np.linalg.norm(centre - com) > 0.05

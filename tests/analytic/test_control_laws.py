@@ -43,6 +43,30 @@ def test_laws_have_their_transfers(name):
     np.testing.assert_allclose(law.at(HZ), exact, rtol=1e-10)
 
 
+@pytest.mark.parametrize("law", [fc.low_pass, fc.high_pass])
+def test_filters_of_two_are_those_of_butterworth_where_no_damping_is_given(law):
+    """|H|^2 = 1 / (1 + r^4), r = f / corner or corner / f."""
+    hz = np.array([3.0, 12.0, 50.0])
+    r = hz / 12.0 if law is fc.low_pass else 12.0 / hz
+    np.testing.assert_allclose(np.abs(law(12.0, 2).at(hz)), 1 / np.sqrt(1 + r**4), rtol=1e-10)
+
+
+@pytest.mark.parametrize("to_force", [1.0, 1e-9, 1e9])
+@pytest.mark.parametrize("to_place", [1.0, 1e-9])
+def test_zeros_do_not_depend_on_units(to_force, to_place):
+    """Force on the first of two masses, its acceleration seen: poles of the second alone on its springs, 0 twice."""
+    m, k, c = 2.0, 700.0, 3.0
+    near = np.array([[-2.0, 1.0], [1.0, -2.0]]) / m
+    A = np.block([[np.zeros((2, 2)), np.eye(2)], [k * near, c * near]])
+    plant = fc.StateSpace(
+        A=A, B=to_force * np.array([[0], [0], [1 / m], [0]]), C=to_place * A[2:3], D=[[to_place * to_force / m]],
+        inputs=("u",), outputs=("y",), states=("x1", "x2", "v1", "v2"), units={},
+    )  # fmt: skip
+    exact = np.roots([m, 2 * c, 2 * k, 0, 0])
+    # two zeros in one place are as uncertain as the root of rounding
+    np.testing.assert_allclose(np.sort_complex(np.round(plant.zeros(), 5)), np.sort_complex(exact), atol=1e-5)
+
+
 @pytest.mark.parametrize("name", list(LAWS))
 def test_products_and_sums(name):
     """Behind each other transfers multiply, beside each other they add, whichever of the two takes the rate."""

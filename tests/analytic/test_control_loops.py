@@ -198,6 +198,23 @@ def test_the_best_gain_of_iff_is_its_closed_form():
     assert found.least_damping_ratio.max() <= found.damping_ratio
 
 
+def test_the_best_gain_holds_what_falls_by_itself():
+    """x' = a x - g x falls without g > a; beside it z'' + c z' + (1 + g) k z = 0 is damped less the larger g: g = a."""
+    a, c, k = 3.0, 0.8, 5.0
+    plant = fc.StateSpace(
+        A=[[a, 0, 0], [0, 0, 1], [0, -k, -c]], B=[[1, 0], [0, 0], [0, k]], C=[[1, 0, 0], [0, 1, 0]], D=np.zeros((2, 2)),
+        inputs=("drive:1", "drive:2"), outputs=("stroke:1", "stroke:2"), states=("x", "z", "v"), units={},
+    )  # fmt: skip
+    found = fc.best_gain(plant, fc.Decentralised(fc.gain(1.0), sensor="stroke"), least=0.1, most=100.0)
+    exact = c / 2 / np.sqrt((1 + a) * k)
+    # a jump at a: between two factors 1 / 40 of a decade apart, 6 %, the larger one is sure to be found
+    assert a < found.gain.item() < a * 10 ** (1 / 40)
+    assert found.damping_ratio.item() == pytest.approx(exact, rel=0.03) and found.damping_ratio.item() < exact
+    factor, least = found.factor.values, found.least_damping_ratio.values
+    assert (least[factor < a] == -1).all()
+    assert least[factor > a] == pytest.approx(c / 2 / np.sqrt((1 + factor[factor > a]) * k), rel=1e-9)
+
+
 def test_branches_of_a_root_locus_go_from_poles_to_zeros():
     kp = 400.0
     plant, z = strut(c=0.0, parallel=kp), np.sqrt(kp / M)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from tests.consistency.test_mounts import BASE, light
 from tests.machines import machine, study
 
@@ -112,3 +113,28 @@ def test_what_jumps_with_a_force_is_the_response_without_end():
     # the last mode is at 1.27 kHz, damped by springs' dampers whose share falls with 1 / f: c / (m w) = 20 / 6e9
     assert lin.at([1e9])[:, :, 0] == pytest.approx(lin.D, abs=1e-6 * np.abs(lin.D).max())
     assert np.abs(lin.D[:, 6:]).max() > 0.5  # 1 kg and some of the rods'
+
+
+def test_a_floor_that_turns_shakes_an_uneven_payload_of_a_turned_robot():
+    """Massless springs, Newton and Euler in floor axes: M x'' + J' k J x = -(m (a + alpha x r), R I R' alpha)."""
+    rpy, place = {"roll": 0.3, "pitch": -0.2, "yaw": 0.4}, {"surge": 0.05, "sway": -0.03, "heave": 0.04}
+    robot = light(machine(damping=0.0))
+    inertia = np.array([[120.0, 30.0, -20.0], [30.0, 90.0, 10.0], [-20.0, 10.0, 170.0]])
+    robot = robot.replace(payload=robot.payload.replace(inertia=inertia, com=[0.1, -0.05, 0.15], tool=[0.2, 0.1, 0.5]))
+    lin = fx.linearize(study(robot, fidelity="lumped"), {**place, **rpy}, inputs="floor", outputs=["tool", "com"])
+    R = Rotation.from_euler("xyz", [*rpy.values()]).as_matrix()
+    origin = robot.home_position + np.array([*place.values()])
+    tips, r = origin + robot.platform_joints @ R.T, origin + R @ robot.com
+    axes = tips - robot.base_joints
+    axes /= np.linalg.norm(axes, axis=1)[:, None]
+    J = np.hstack([axes, np.cross(tips - r, axes)])
+    k = np.array([x.piston.EA / x.piston.length for x in robot.legs])
+    M = np.zeros((6, 6))
+    M[:3, :3], M[3:, 3:] = robot.payload.mass * np.eye(3), R @ inertia @ R.T
+    shaken = M @ np.block([[np.eye(3), -cross(r)], [np.zeros((3, 3)), np.eye(3)]])
+    x = np.stack([np.linalg.solve(s**2 * M + J.T @ (k[:, None] * J), -shaken) for s in S], axis=2)
+    tool = np.einsum("ij,jkf->ikf", np.block([[np.eye(3), -cross(R @ (robot.tool - robot.com))], [np.eye(6)[3:]]]), x)
+    H = lin.at(HZ)
+    # rounding, over the distance from the resonances
+    assert H[:6] == pytest.approx(tool, abs=1e-7 * np.abs(tool).max())
+    assert H[6:] == pytest.approx(x[:3], abs=1e-7 * np.abs(x).max())

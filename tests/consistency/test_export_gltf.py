@@ -14,8 +14,9 @@ from tests.stepped import section
 
 import flexapod as fx
 from flexapod.kinematics.rotations import exponential, matrix
-from flexapod.model import Guide, Piston, override
+from flexapod.model import CsvMotion, Guide, Piston, override
 from flexapod.results.names import VARIABLES
+from flexapod.scene.colours import LEG_COLORS
 from flexapod.scene.geometry import RobotMotion
 
 SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
@@ -111,6 +112,42 @@ def test_quaternions_go_the_short_way(motion):
     for (_, path), (_, values) in file.tracks.items():
         if path == "rotation":
             assert (values[1:] * values[:-1]).sum(axis=1).min() > 0
+
+
+def test_between_samples_a_platform_turns_on_where_its_quaternion_changes_sign(tmp_path):
+    """Rocking twice past half a turn, a viewer's mean of two samples is half the way between their yaws, by hand."""
+    study, home, time = fx.preset("paper-robot"), np.radians(178.0), np.linspace(0.0, 1.0, 41)
+    robot = study.robot.replace(home=study.robot.home.replace(rotation=[0.0, 0.0, home]))
+    yaw = 0.1 * (1 - np.cos(4 * np.pi * time))
+    motion = CsvMotion(time=time, pose=np.stack([*np.zeros((5, 41)), yaw], axis=1))
+    study = study.replace(robot=robot, motion=motion)
+    study = override(study, fidelity="rigid", output_step=0.025, duration=1.0)
+    file = GlbReader(fx.export(study, "gltf", tmp_path / "robot.glb", data=fx.simulate(study)).path)
+    _, turns = file.tracks[file.nodes["payload"], "rotation"]
+    for k in range(40):
+        x, y, z, w = turns[k : k + 2].sum(axis=0) / np.linalg.norm(turns[k : k + 2].sum(axis=0))
+        half = home + 0.5 * (yaw[k] + yaw[k + 1])
+        assert [x, y] == pytest.approx([0, 0], abs=8 * FLOAT32)
+        assert abs(w * np.cos(half / 2) + z * np.sin(half / 2)) == pytest.approx(1.0, abs=8 * FLOAT32)
+    assert (np.diff(np.sign(np.cos((home + yaw) / 2))) != 0).sum() == 4  # it passes half a turn four times
+
+
+def test_each_leg_has_its_colour(motion):
+    """Of what is painted: pistons in the colour of their leg, light as sRGB's power says; cylinders alike in grey."""
+    study, _, file = motion
+    painted = {}
+    for mesh in file.json["meshes"]:
+        material = file.json["materials"][mesh["primitives"][0]["material"]]
+        painted[mesh["name"]] = material["name"], material["pbrMetallicRoughness"]["baseColorFactor"]
+    for i in range(study.robot.count):
+        name, colour = painted[f"piston_{i + 1}"]
+        wanted = [int(LEG_COLORS[i % len(LEG_COLORS)][k : k + 2], 16) / 255 for k in (1, 3, 5)]
+        assert name == f"leg_{i + 1}" and np.array(colour[:3]) ** (1 / 2.2) == pytest.approx(wanted, abs=1e-12)
+        if f"cylinder_{i + 1}" in painted:
+            assert painted[f"cylinder_{i + 1}"][0] == "cylinder"
+    names = [material["name"] for material in file.json["materials"]]
+    assert len(set(names)) == len(names)  # each stands there once
+    assert painted["base"][0] == "base" and painted["payload"][0] == "payload"
 
 
 def test_a_node_for_each_body_and_names_of_results_alone(motion):

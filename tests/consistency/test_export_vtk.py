@@ -117,3 +117,6 @@ def test_plates_turn_with_their_platform_and_lines_belong_to_their_legs(series):
         rails = [leg for leg, _ in lines[2 * robot.count :]]
         assert rails == [i + 1 for i, leg in enumerate(robot.legs) if leg.carriage is not None]
     assert np.ptp(seen, axis=0).max() < 1e-12
+    # each corner is half a thickness, 0.02 of the robot's size, from a joint of the platform
+    away = np.linalg.norm(robot.platform_joints - robot.com - seen[0][:, None], axis=2).min(axis=1)
+    assert away.max() < 0.1 * np.ptp(robot.platform_joints, axis=0).max()

@@ -91,6 +91,26 @@ def test_inputs_are_the_march_with_extrapolated_commands(units):
         assert np.abs(one.get("com_position") - wanted.pose[k, :3]).max() < 1e-12
 
 
+def test_a_command_with_an_acceleration_is_the_one_that_is_told_anew_in_each_step(units):
+    """Servos with dampers: once for 20 steps, or at each step's end value and rate by hand, without an acceleration."""
+    unit, _ = units("nano-hexapod")
+    start, change = unit.start("drive_command"), np.array([0.5, -1.0, 0.75, 0.25, -0.5, 1.0])
+    once, anew = Instance(unit), Instance(unit)
+    for k in range(3):
+        t = 20 * k * STEP
+        once.set("drive_command", start + change * t**2 / 2)
+        once.set("drive_command_rate", change * t)
+        once.set("drive_command_acceleration", change)
+        assert once.steps(20 * STEP) == 0, once.said
+        for t in STEP * np.arange(20 * k + 1, 20 * k + 21):
+            anew.set("drive_command", start + change * t**2 / 2 - STEP * change * t)
+            anew.set("drive_command_rate", change * t)
+            assert anew.steps(STEP) == 0, anew.said
+        # rounding; the rate is some 1e-2 m/s at the dampers' 20 N s/m, 0.2 N
+        np.testing.assert_allclose(once.get("drive_force"), anew.get("drive_force"), rtol=0, atol=1e-6)
+        np.testing.assert_allclose(once.get("drive_position"), anew.get("drive_position"), rtol=0, atol=1e-12)
+
+
 def run(unit, count, force=0.0):
     one = Instance(unit)
     if force:

@@ -99,6 +99,18 @@ def test_deck_of_a_robot_uses_what_both_programs_share(robot):
     assert max(len(entry.strip()) for line in numbers for entry in line.split(",")) <= 20
 
 
+@pytest.mark.parametrize("turned", [0.0, 0.4])
+def test_a_deck_says_its_pose(robot, turned):
+    """As it was given, from home, however that is turned."""
+    given = {"surge": 0.01, "sway": -0.02, "heave": 0.03, "roll": 0.1, "pitch": -0.2, "yaw": 0.3}
+    robot = robot.replace(home=robot.home.replace(rotation=[0.0, 0.0, turned]))
+    text = abaqus_deck(robot, given, elements=2).replace("\n** ", " ")
+    told = dict(re.findall(r"(\w+) (-?[\d.]+) (?:mm|deg)", text.partition("Pose from home: ")[2].partition(" Run ")[0]))
+    for name, value in given.items():
+        exact = np.rad2deg(value) if name in ("roll", "pitch", "yaw") else 1e3 * value
+        assert float(told[name]) == pytest.approx(exact, rel=1e-5)  # six figures are written
+
+
 def test_no_displacement_is_followed_twice_or_follows_a_follower(robot):
     first, rest = [], set()
     for card in lines(abaqus_deck(robot, elements=2), "EQUATION"):
