@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexapod.arrays import Array
+from flexapod.arrays import Array, floats
 from flexapod.control.response_tables import Response, table_responses
 from flexapod.errors import InputError
 from flexapod.runtime.files import LARGEST_TABLE, path_of, read_bytes
+from flexapod.schema.array_files import mat_arrays, texts_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -214,33 +215,27 @@ def _numbers(lines: list[str], width: int, kind: int, even: bool) -> Array:
 
 
 def _mat(content: bytes) -> list[Response]:
-    from io import BytesIO
-
-    from scipy.io import loadmat
-
     try:
-        data = loadmat(BytesIO(content))
-    except Exception as error:  # scipy lets errors of any kind out of files that are damaged
-        newer = "v7.3" in str(error)
-        words = "is of MATLAB 7.3" if newer else f"cannot be read: {error}"
+        data = mat_arrays(content, lambda name: name.lower() in KNOWN or name in LABELS)
+    except ValueError as error:
+        newer = "7.3" in str(error)
+        words = f"cannot be read: {error}"
         raise InputError(words, allowed="versions 4 and 5", next_step='Save it with "-v7"' if newer else None) from None
     names = {key: next((k for k in data if k.lower() in words), None) for key, words in WORDS.items()}
     if names["frequency"] is None or names["frf"] is None:
         raise InputError("lacks a variable", allowed="frequency and frf, with outputs, inputs, or without")
-    f, H = _numeric(data, names["frequency"], float).ravel(), _numeric(data, names["frf"], complex)
+    f, H = _numbers_of(data, names["frequency"], real=True).ravel(), _numbers_of(data, names["frf"], real=False)
     H = H.reshape(1, 1, -1) if H.size == len(f) else H[:, None] if H.ndim == 2 else H
     if H.ndim != 3 or H.shape[2] != len(f):
         raise InputError(f"has the shape {H.shape}", key=names["frf"], allowed=f"(outputs, inputs, {len(f)})")
 
     def texts(key: str, count: int, plain: str) -> list[str]:
-        given = data.get(key)
-        if given is None:
-            return [plain.format(i + 1) for i in range(count)]
-        if np.size(given) != count:
-            raise InputError(f"has {np.size(given)} names", key=key, allowed=f"{count}, one for each")
-        return [
-            str(np.ravel(cell)[0]) if np.size(cell) else plain.format(i + 1) for i, cell in enumerate(np.ravel(given))
-        ]
+        found = texts_of(data.get(key, [""] * count))
+        if found is None:
+            raise InputError("are no texts", key=key, allowed="a cell of texts, or rows of letters")
+        if len(found) != count:
+            raise InputError(f"has {len(found)} names", key=key, allowed=f"{count}, one for each")
+        return [text or plain.format(i + 1) for i, text in enumerate(found)]
 
     outputs, inputs = texts("outputs", H.shape[0], "response {}"), texts("inputs", H.shape[1], "input {}")
     top, bottom = texts("output_units", H.shape[0], "1"), texts("input_units", H.shape[1], "1")
@@ -251,14 +246,19 @@ def _mat(content: bytes) -> list[Response]:
     ]
 
 
-def _numeric(data: Mapping[str, object], name: str, kind: type) -> np.ndarray:
+def _numbers_of(data: Mapping[str, Any], name: str, *, real: bool) -> np.ndarray:
+    """Real or complex numbers of a variable."""
     try:
-        return np.asarray(data[name], dtype=kind)
-    except (TypeError, ValueError):
-        raise InputError("is no array of numbers", key=name) from None
+        if data[name].dtype.kind not in "biufc":
+            raise ValueError
+        return floats(data[name]) if real else np.asarray(data[name], dtype=np.complex128)
+    except ValueError:
+        raise InputError("is no array of numbers", key=name, allowed="real ones" if real else None) from None
 
 
 WORDS = {"frequency": ("frequency", "freq", "f", "hz"), "frf": ("frf", "h", "response", "frequency_response")}
+KNOWN = {word for words in WORDS.values() for word in words}
+LABELS = ("outputs", "inputs", "output_units", "input_units")
 READERS: dict[str, Callable[[bytes], list[Response]]] = {
     ".uff": _universal,
     ".unv": _universal,
