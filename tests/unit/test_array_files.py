@@ -1,4 +1,4 @@
-"""Arrays in files of others: what SciPy and NumPy wrote is read as they read it, what is damaged or hostile is refused."""
+"""Arrays in files of others: read as SciPy and NumPy read what they wrote; damaged and hostile ones are refused."""
 
 import io
 import json
@@ -22,7 +22,7 @@ from flexapod.model import preset_text
 from flexapod.schema.array_files import json_arrays, mat_arrays, npz_arrays, texts_of
 from flexapod.schema.systems import read_system
 
-ROOM = 600_000_000  # bytes that a hostile file of some megabytes may cost; Python with NumPy and pint has 120 of them
+ROOM = 600_000_000  # bytes; Python with NumPy and what is imported takes 120 of them, a file of the largest size thrice its own
 
 
 def everything(_):
@@ -212,7 +212,7 @@ def zlib_of_zeros(size):
 
 
 def mat_bomb():
-    data = zlib_of_zeros(200_000_000)
+    data = zlib_of_zeros(112_000_000)
     return b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM" + pack("<II", 15, len(data)) + data
 
 
@@ -224,9 +224,9 @@ def deep_cells():
 
 
 HOSTILE = {
-    "zeros.npz": lambda: member("A.npy", npy((25_000_000,), b"\0" * 200_000_000)),
-    "zeros-8.npz": lambda: member("A.npy", npy((90_000_000,), b"\0" * 90_000_000, "|b1")),
-    "lies.npz": lambda: member("A.npy", npy((15_000_000,), b"\0" * 120_000_000), size=1000),
+    "zeros.npz": lambda: member("A.npy", npy((14_000_000,), b"\0" * 112_000_000)),
+    "zeros-8.npz": lambda: member("A.npy", npy((13_000_000,), b"\0" * 13_000_000, "|b1")),
+    "lies.npz": lambda: member("A.npy", npy((6_000_000,), b"\0" * 48_000_000), size=1000),
     "packed.npz": lambda: member("A.npy", npy((2,), b"\0" * 16), kind=zipfile.ZIP_LZMA),
     "shape.npz": lambda: member("A.npy", npy((10**12,))),
     "shapes.npz": lambda: member("A.npy", npy((10**12, 0, 7), b"\0")),
@@ -234,10 +234,10 @@ HOSTILE = {
     "nothing.npz": lambda: member("A.npy", npy((10**12,), letters="<U0")),
     "objects.npz": lambda: member("A.npy", npy((1,), b"\0" * 8, "|O")),
     "deep.npz": lambda: member("A.npy", npy((1,)).replace(b"'<f8'", b"(" * 4000)),
-    "names.npz": lambda: member("inputs.npy", npy((11_000_000,), b"\0" * 44_000_000, "<U1")),
+    "names.npz": lambda: member("inputs.npy", npy((13_000_000,), b"\0" * 13_000_000, "|S1")),
     "zeros.mat": mat_bomb,
     "deep.mat": deep_cells,
-    "cells.mat": lambda: written({"A": np.array([0.0] * 20_000, dtype=object)}),
+    "cells.mat": lambda: written({"A": np.array([0.0] * 10_001, dtype=object)}),
     "struct.mat": lambda: written({"A": {"a": 1.0}}),
     "rows.json": lambda: b'{"A": [' + b"[]," * 1_000_000 + b"[]]}",
     "numbers.json": lambda: b'{"A": [' + b"0," * 13_000_000 + b"0]}",
@@ -277,7 +277,7 @@ def test_hostile_files_cost_little(tmp_path):
     assert len(lines) == len(paths), done.stderr[-2000:]
     for name, seconds, said in (line.split("\t") for line in lines):
         assert said.startswith("refused"), (name, said)
-        assert float(seconds) < 5, (name, seconds)  # the slowest takes 0.3 s on an idle machine
+        assert float(seconds) < 5, (name, seconds)  # the slowest takes 0.3
     assert float(memory) < ROOM
 
 
@@ -303,7 +303,7 @@ def damaged(content, seed):
 
 
 def files(given):
-    one = {name: x.astype(str) if getattr(x, "dtype", None) == object else x for name, x in given.items()}
+    one = {name: x.astype(str) if x.dtype.kind == "O" else x for name, x in given.items()}
     for how in (np.savez, np.savez_compressed):
         buffer = io.BytesIO()
         how(buffer, **one)
@@ -313,7 +313,7 @@ def files(given):
     yield ".mat", written({k: one[k] for k in one}, format="4")
 
 
-@pytest.mark.parametrize("count", [400])
+@pytest.mark.parametrize("count", [40, 400])
 def test_damaged_files_are_read_or_refused(tmp_path, count):
     """SciPy's reader ends Python on some of these. Numbers that are read nevertheless are finite ones."""
     began = time.monotonic()
