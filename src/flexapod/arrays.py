@@ -5,10 +5,29 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Array", "Mask"]
+__all__ = ["Array", "Mask", "floats"]
 
 Array = NDArray[np.float64]
 """A float64 array; SI units."""
 
 Mask = NDArray[np.bool_]
 """A Boolean array."""
+
+
+def floats(value: object) -> Array:
+    """A new array of real numbers of whatever holds some.
+
+    Raises
+    ------
+    ValueError
+        Complex numbers, whose imaginary parts NumPy leaves out; numbers beyond floats; dates; lists that are no array.
+    """
+    try:
+        found = np.asarray(value)
+        if found.dtype.kind == "c" and not found.imag.any():
+            found = found.real
+        if found.dtype.kind not in "biufOUS":
+            raise ValueError
+        return np.array(found, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError, RecursionError):
+        raise ValueError("are no real numbers") from None

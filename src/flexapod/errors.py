@@ -133,7 +133,10 @@ class InputError(FlexapodError):
 
     def as_dict(self) -> dict[str, str | None]:
         """The parts of the message, for machine-readable output."""
-        value = None if self.value is None else str(self.value)
+        try:
+            value = None if self.value is None else str(self.value)
+        except Exception:  # see `_short`
+            value = _short(self.value)
         return {
             "what": self.what,
             "file": self.file,
@@ -191,7 +194,10 @@ def _rebuild_input(
 
 
 def _short(value: object) -> str:
-    text = " ".join(repr(value).split())
+    try:
+        text = " ".join(repr(value).split())
+    except Exception:  # a whole number of thousands of digits, lists too deep, or an object's own error
+        text = f"a {type(value).__name__} that cannot be written"
     return text if len(text) <= 80 else text[:77] + "..."
 
 

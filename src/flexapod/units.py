@@ -190,12 +190,13 @@ def _factor(unit: str, dimension: str) -> float | str:
     registry, wanted = _registry(), DIMENSIONS[dimension]
     try:
         given = registry.Unit(unit.replace("²", "^2").replace("³", "^3"))
+        fits = given.is_compatible_with(registry.Unit(wanted.unit))
     except Exception:  # pint lets errors of any kind out of its parser, AssertionError among them
         return f"has an unknown unit ({unit})"
     if dimension.startswith("temperature") and given != registry.Unit(wanted.unit):  # others count from another zero
         return f"is not in {'kelvin' if wanted.unit == 'K' else 'degrees Celsius'} ({unit})"
     has_angle = any(name.endswith(_ANGLES) or name.startswith("revolution") for name in given._units)
-    if not given.is_compatible_with(registry.Unit(wanted.unit)) or has_angle != wanted.angle:
+    if not fits or has_angle != wanted.angle:
         return f"is not {_article(dimension)}: {unit} does not measure one"
     return float(registry.Quantity(1.0, given).to(wanted.unit).magnitude)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.arrays import Array
+from flexapod.arrays import Array, floats
 from flexapod.errors import InputError
 from flexapod.units import DIMENSIONS, to_si
 
@@ -45,8 +45,8 @@ def flag(given: object, key: str) -> bool:
 def matrix(given: ArrayLike, key: str, shape: str) -> Array:
     """A matrix of finite numbers; what has fewer axes is a row of one."""
     try:
-        found = np.atleast_2d(np.asarray(given, dtype=float))
-    except (TypeError, ValueError):
+        found = np.atleast_2d(floats(given))
+    except ValueError:
         found = np.full((1, 1), np.nan)
     if found.ndim != 2 or not np.isfinite(found).all():
         raise InputError("is no matrix of finite numbers", key=key, value=given, allowed=shape)
@@ -70,8 +70,8 @@ def numbers(given: ArrayLike, key: str, allowed: str) -> Array:
     """
     try:
         found = np.asarray(given)
-        found = np.atleast_1d(np.asarray(given, dtype=float)) if found.dtype.kind in "iufO" else np.full(1, np.nan)
-    except (TypeError, ValueError):
+        found = np.atleast_1d(floats(given)) if found.dtype.kind in "iufO" else np.full(1, np.nan)
+    except ValueError:
         found = np.full(1, np.nan)
     if found.ndim != 1 or not np.isfinite(found).all():
         raise InputError("are no finite numbers in a row", key=key, value=given, allowed=allowed)

@@ -125,11 +125,13 @@ class Measured:
     units: Mapping[str, str]
 
 
-def frf_dataset(
-    frequency: Array, values: Complex, outputs: tuple[str, ...], inputs: tuple[str, ...], units: Mapping[str, str]
-) -> xr.Dataset:
-    """`frequency_response` of values (outputs, inputs, f) at frequencies [Hz], from wherever they are."""
-    return response_dataset(Measured(inputs=inputs, outputs=outputs, units=units), frequency, values)
+def frf_dataset(frequency: Array, values: Complex, outputs: Mapping[str, str], inputs: Mapping[str, str]) -> xr.Dataset:
+    """`frequency_response` of values (outputs, inputs, f) at frequencies [Hz], from wherever they are.
+
+    `outputs` and `inputs` are units by name: at the point where a structure is hit both have one name and two units.
+    """
+    data = response_dataset(Measured(inputs=(*inputs,), outputs=(*outputs,), units={}), frequency, values)
+    return data.assign_coords(output_units=("output", [*outputs.values()]), input_units=("input", [*inputs.values()]))
 
 
 def h2_dataset(system: StateSpace, values: Array, why: dict[tuple[int, int], str]) -> xr.Dataset:

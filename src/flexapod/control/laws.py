@@ -9,7 +9,7 @@ from math import comb
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flexapod.arrays import Array
+from flexapod.arrays import Array, floats
 from flexapod.control.arguments import frequencies, number, numbers
 from flexapod.control.frequency import divided
 from flexapod.errors import InputError
@@ -52,8 +52,8 @@ class ControlLaw:
         n = int(np.shape(self.A)[0]) if np.ndim(self.A) == 2 else 0
         for name, shape in (("A", (n, n)), ("B", (n, 2)), ("C", (n,)), ("D", (2,))):
             try:
-                value = np.asarray(getattr(self, name), dtype=float)
-            except (TypeError, ValueError):
+                value = floats(getattr(self, name))
+            except ValueError:
                 value = np.full(1, np.nan)
             if value.shape != shape or not np.isfinite(value).all():
                 allowed = f"finite numbers of the shape {shape}, of {n} states"

@@ -40,7 +40,12 @@ CUTS, ROUNDS = 41, 6  # of a bracket: 41^-6 of it is left; its middle, often an 
 BESIDE = 1e-5  # of the least or over the largest of all frequencies: as good as rest and no end of them
 SETTLED = 1e-3  # relative change of a loop from there to twice as far that is a number's
 ENDS: tuple[Kind, Kind] = ("real", "nearest")
-CLOSE = 3  # brackets of each loop in which the nearest point to -1 is looked for
+CLOSE = 3  # brackets of each loop in which the nearest point to -1 is looked for, and each margin of a delayed one
+PARTS, TURNS = 8, 2500  # parts of a turn of the delay; most turns that are followed
+FINER = 8  # parts of these, of several loops
+LARGE, FAINT = 0.1, 1e-3  # gains of loops that are followed in any case, and at most
+AT_ONCE = 4000  # frequencies
+STEPS_TO_ONE, SIZE_ONE = 20, 1e-12  # until an eigenvalue has the size 1, and how nearly
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,8 +79,14 @@ def margins(system: StateSpace, controller: Controller | StateSpace, *, delay: f
     poles = closed(system, law).poles()
     hz = _frequencies(np.concatenate([system.poles(), law.poles(), poles]), system.sample)
     whole = around(hz)
-    cut = _cut(whole, late, hz)
-    found = _refined([*_brackets(cut, hz)], lambda f: _cut(around(f), late, f))
+    fine, gains = _followed(around, hz, whole, late)
+    beside = _beside(gains, late, fine)
+    fine, gains = _interpolated(gains, late, fine)
+    cut = _cut(gains, late, fine)
+    brackets = _brackets(cut, fine)
+    if late:
+        brackets = _decisive(brackets, cut, beside, fine)
+    found = _refined(brackets, lambda f: _cut(around(f), late, f))
     found += _ends(lambda f: _cut(around(f), late, f), hz, system.sample, late)
     each = [_of_loop(k, found) for k in range(len(law.outputs))]
     return margins_dataset(law.outputs, each, _growing(poles, system.sample, late, around, hz, whole))
@@ -101,6 +112,116 @@ def _cut(whole: Complex, delay: float, hz: Array) -> Complex:
         inner = np.eye(len(o)) - L[:, o][:, :, o]
         found[k] = -(L[:, k, k] + (L[:, [k]][:, :, o] @ np.linalg.solve(inner, L[:, o][:, :, [k]]))[:, 0, 0])
     return found
+
+
+def _followed(around: Gains, hz: Array, whole: Complex, delay: float) -> tuple[Array, Complex]:
+    """Frequencies [Hz] between which the delay turns no loop further than an eighth, and the gains there, (f, k, k).
+
+    First where loops are large, then where they are as large as the largest that is met at a limit below 1: beyond that
+    no limit is nearer. A loop of gain g, with the others closed, is no larger than g / (1 - g).
+
+    InputError: more turns than `TURNS`.
+    """
+    parts = np.ceil(PARTS * delay * np.diff(hz))
+    if not (parts > 1).any():
+        return hz, whole
+    gain = np.linalg.norm(whole, 2, axis=(1, 2))
+    larger = np.maximum(gain[1:], gain[:-1])
+    wanted = (larger >= LARGE * min(1.0, gain.max())) & (larger > 0)
+    if (asked := parts[wanted].sum()) > PARTS * TURNS:
+        raise InputError(
+            f"turns the loop {asked / PARTS:.3g} times where it is large", key="delay", value=delay,
+            allowed=f"at most {TURNS} turns, {delay * PARTS * TURNS / asked:.3g} s here",
+        )  # fmt: skip
+    fine, gains = _parted(around, hz, whole, np.where(wanted, parts, 1))
+    sizes = np.array([max((x for x in _crossings(L)[1] if x < 1), default=0.0) for L in _cut(gains, delay, fine)])
+    order = np.argsort(-larger, kind="stable")
+    order = order[np.cumsum(parts[order]) <= PARTS * TURNS]
+    more = wanted.copy()
+    more[order] |= larger[order] >= max(FAINT, float((sizes / (1 + sizes)).min()))
+    return (fine, gains) if (more == wanted).all() else _parted(around, hz, whole, np.where(more, parts, 1))
+
+
+def _parted(around: Gains, hz: Array, whole: Complex, parts: Array) -> tuple[Array, Complex]:
+    """Frequencies whose intervals are cut in `parts`, and the gains there."""
+    if not (parts > 1).any():
+        return hz, whole
+    _, _, fine = _shares(hz, parts)
+    return fine, np.concatenate([around(f) for f in np.array_split(fine, len(fine) // AT_ONCE + 1)])
+
+
+def _shares(hz: Array, parts: Array) -> tuple[NDArray[np.intp], Array, Array]:
+    """Intervals that are cut in `parts`: of each point the interval before it, its share of that, its frequency."""
+    counts = np.append(np.maximum(parts, 1).astype(int), 1)
+    at = np.repeat(np.arange(len(hz)), counts)
+    share = (np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)) / np.repeat(counts, counts)
+    return at, share, hz[at] + share * np.append(np.diff(hz), 0.0)[at]
+
+
+def _interpolated(gains: Complex, delay: float, hz: Array) -> tuple[Array, Complex]:
+    """Gains of several loops between frequencies that a turn of the delay tells apart, to see where loops cross.
+
+    Each cut loop then turns as often as the others bring it near its limit, and not only with the delay.
+    """
+    if gains.shape[1] == 1 or not delay:
+        return hz, gains
+    at, share, fine = _shares(hz, np.minimum(np.ceil(FINER * PARTS * delay * np.diff(hz)), FINER))
+    after = np.minimum(at + 1, len(hz) - 1)
+    return fine, gains[at] + share[:, None, None] * (gains[after] - gains[at])
+
+
+def _beside(gains: Complex, delay: float, hz: Array) -> list[tuple[float, float]]:
+    """Frequencies about which an eigenvalue of several delayed loops is nearest to 1: each loop is near -1 there."""
+    values = -np.exp(-2j * np.pi * hz * delay)[:, None] * np.linalg.eigvals(gains)
+    if values.shape[1] == 1 or not delay:
+        return []
+    for i in range(1, len(values)):
+        values[i] = values[i][linear_sum_assignment(np.abs(values[i - 1][:, None] - values[i]))[1]]
+    return [_about(hz, i) for locus in values.T for i in _close(locus)]
+
+
+def _about(hz: Array, i: int) -> tuple[float, float]:
+    """Ends of the interval that begins at a frequency and of its neighbours."""
+    return float(hz[max(i - 1, 0)]), float(hz[min(i + 2, len(hz) - 1)])
+
+
+def _crossings(L: Complex) -> tuple[NDArray[np.intp], Array]:
+    """Where a loop (f,) crosses the negative real axis between neighbours, and its size there."""
+    at = np.flatnonzero((L.imag[1:] * L.imag[:-1] < 0) & (L.real[1:] + L.real[:-1] < 0))
+    return at, np.exp(_between(np.log(np.abs(L)), L.imag, at))
+
+
+def _close(L: Complex) -> list[int]:
+    """Crossings of a loop nearest to -1, from both sides."""
+    at, size = _crossings(L)
+    sides = (np.flatnonzero(side) for side in (size > 1, size <= 1))
+    return [
+        i for side in sides for i in at[side[np.argsort(np.abs(np.log(size[side])), kind="stable")[:CLOSE]]].tolist()
+    ]
+
+
+def _between(values: Array, zero: Array, at: NDArray[np.intp]) -> Array:
+    """Values between neighbours where `zero` changes its sign."""
+    share = zero[at] / (zero[at] - zero[at + 1])
+    return values[at] + share * (values[at + 1] - values[at])
+
+
+def _decisive(brackets: list[Bracket], cut: Complex, beside: list[tuple[float, float]], hz: Array) -> list[Bracket]:
+    """Of many brackets of a delayed loop those that may be its margins, by what is read between neighbours."""
+    chosen = [b for b in brackets if b.kind == "nearest"]
+    for k, L in enumerate(cut):
+        own = _close(L)
+        chosen += [Bracket(loop=k, kind="real", low=float(hz[i]), high=float(hz[i + 1])) for i in own]
+        for low, high in dict.fromkeys((*beside, *(_about(hz, i) for i in own))):
+            chosen.append(Bracket(loop=k, kind="nearest", low=low, high=high))
+        level = np.log(np.abs(L))
+        at = np.flatnonzero(level[1:] * level[:-1] < 0)
+        turn = np.angle(-L[at]) + level[at] / (level[at] - level[at + 1]) * np.angle(L[at + 1] / L[at])
+        late = turn % (2 * np.pi) / hz[at]
+        first = (np.argsort(x, kind="stable")[:CLOSE] for x in (np.abs(np.angle(np.exp(1j * turn))), late))
+        for i in at[np.unique(np.concatenate([*first]))].tolist():
+            chosen.append(Bracket(loop=k, kind="one", low=float(hz[i]), high=float(hz[i + 1])))
+    return chosen
 
 
 def _brackets(cut: Complex, hz: Array) -> list[Bracket]:
@@ -192,13 +313,30 @@ def _growing(poles: Complex, sample: float | None, delay: float, around: Gains, 
         values[i] = values[i][linear_sum_assignment(np.abs(values[i - 1][:, None] - values[i]))[1]]
     size = np.abs(values)
     for i, j in np.argwhere((size[1:] - 1) * (size[:-1] - 1) < 0).tolist():
-        share = (1 - size[i, j]) / (size[i + 1, j] - size[i, j])
-        at = float(hz[i] + share * (hz[i + 1] - hz[i]))
-        there = np.linalg.eigvals(around(np.array([at])))[0]
-        angle = float(np.angle(there[np.abs(there - (1 - share) * values[i, j] - share * values[i + 1, j]).argmin()]))
+        at, angle = _of_size_one(around, hz[i : i + 2], values[i : i + 2, j])
         turns = max(0, int(np.ceil((delay - (angle % (2 * np.pi)) / (2 * np.pi * at)) / (1 / at))))
         count += 2 * turns * (1 if size[i + 1, j] < size[i, j] else -1)
     return count
+
+
+def _of_size_one(around: Gains, hz: Array, values: Complex) -> tuple[float, float]:
+    """Frequency [Hz] between two others at which an eigenvalue of the loops has the size 1, and its angle [rad] there.
+
+    By false positions, whose kept end counts half from step to step. Many turns of a delay ask for many digits.
+    """
+    ends, sizes, at, value = hz.astype(float), np.log(np.abs(values)), float(hz[0]), values[0]
+    for _ in range(STEPS_TO_ONE):
+        share = float(sizes[0] / (sizes[0] - sizes[1]))
+        at = float(ends[0] + share * (ends[1] - ends[0]))
+        there = np.linalg.eigvals(around(np.array([at])))[0]
+        value = there[np.abs(there - (1 - share) * values[0] - share * values[1]).argmin()]
+        size = float(np.log(np.abs(value)))
+        if abs(size) < SIZE_ONE:
+            break
+        side = int(size * sizes[1] > 0)
+        ends[side], values = at, np.where(np.arange(2) == side, value, values)
+        sizes = np.where(np.arange(2) == side, size, sizes / 2)
+    return at, float(np.angle(value))
 
 
 def _frequencies(poles: Complex, sample: float | None) -> Array:

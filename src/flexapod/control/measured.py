@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from flexapod.arrays import Array
+from flexapod.arrays import Array, floats
+from flexapod.control.response_tables import Response, table_responses
 from flexapod.errors import InputError
 from flexapod.runtime.files import LARGEST_TABLE, path_of, read_bytes
-from flexapod.schema.csv_tables import table_lines
-from flexapod.units import to_si
+from flexapod.schema.array_files import mat_arrays, texts_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -26,19 +23,8 @@ RESPONSE = 4  # function type of a frequency response
 REAL, COMPLEX = (2, 4), (5, 6)  # ordinate data types, single and double
 DIRECTIONS = ("", "x", "y", "z", "rx", "ry", "rz")
 HEAD = 11  # lines of a dataset 58 before its numbers
-FIRST = "frequency [Hz],tool:z/wrench:fz real,tool:z/wrench:fz imag"  # line of a table
+MOST_VALUES = 20_000_000  # of all outputs by all inputs: 320 MB
 SAME = 1e-6  # relative: frequencies of responses that stand beside each other
-
-
-@dataclass(frozen=True, kw_only=True)
-class Response:
-    """One response: frequencies (f,) [Hz], values (f,), names and units of output and input."""
-
-    frequency: Array
-    values: NDArray[np.complex128]
-    output: str
-    input: str
-    units: tuple[str, str] = ("1", "1")
 
 
 def read_frf(path: str | Path) -> Dataset:
@@ -48,11 +34,13 @@ def read_frf(path: str | Path) -> Dataset:
     ----------
     path : path
         ``.uff``, ``.unv``, ``.58``: ASCII datasets 58 whose function is a frequency response. ``.csv``: a line of
-        names, then frequency [Hz], or in the unit of its name, ``f [kHz]``, and for each response two columns, ``real``
-        and ``imag`` or ``magnitude`` (``[dB]``) and ``phase [deg]``; names before them say which, as
-        ``tool:z/wrench:fz real``. ``.mat``: ``frequency`` [Hz] and
+        names, then ``frequency [Hz]`` (``f``, ``freq``; in another unit, ``f [kHz]``), and for each response two
+        columns. Each is named NAME WORD [UNIT]: ``real`` and ``imag``, both in one unit, or ``magnitude`` and ``phase
+        [deg]`` (or ``[rad]``, ``[mrad]``); names say which, as ``tool:z/wrench:fz real``. Units are those of the
+        output over the input, ``[um/N]``, ``[(m/s^2)/N]``, ``[rad/(N m)]``, for magnitudes also ``[dB]`` or ``[dB re 1
+        um/N]``; values become SI ones, without a unit they are taken as they are. ``.mat``: ``frequency`` [Hz] and
         ``frf`` (outputs, inputs, f), (outputs, f) or (f,), complex, with ``outputs``, ``inputs``, ``output_units``,
-        ``input_units`` or without.
+        ``input_units`` or without. Frequencies rise from 0 or more.
 
     Returns
     -------
@@ -62,7 +50,7 @@ def read_frf(path: str | Path) -> Dataset:
     Raises
     ------
     InputError
-        A file that cannot be read, or without responses, or with frequencies that differ.
+        A file that cannot be read, or without responses, or with frequencies that differ or do not rise.
 
     Examples
     --------
@@ -102,21 +90,52 @@ def _together(found: list[Response], path: Path) -> Dataset:
         raise InputError("has responses that are infinite", file=path)
     if not np.isfinite(f).all():
         raise InputError("has frequencies that are not finite", file=path)
+    _check_rise(f, path)
     for one in found[1:]:
         if len(one.frequency) != len(f) or np.abs(one.frequency - f).max() > SAME * np.abs(f).max():
             raise InputError(
                 f"has other frequencies for {one.output} by {one.input} than for {found[0].output} by {found[0].input}",
                 file=path, allowed="the same frequencies for all responses",
             )  # fmt: skip
-    outputs, inputs = (list(dict.fromkeys(getattr(one, key) for one in found)) for key in ("output", "input"))
+    outputs, inputs = (_units(found, side, path) for side in ("output", "input"))
+    if len(outputs) * len(inputs) * len(f) > MOST_VALUES:
+        words = f"has {len(outputs)} outputs by {len(inputs)} inputs at {len(f)} frequencies"
+        raise InputError(words, file=path, allowed=f"at most {MOST_VALUES} values of all together")
+    row, column = ({name: i for i, name in enumerate(names)} for names in (outputs, inputs))
     values = np.full((len(outputs), len(inputs), len(f)), np.nan + 0j)
-    units = {}
     for one in found:
-        if not np.isnan(values[outputs.index(one.output), inputs.index(one.input)]).all():
+        at = row[one.output], column[one.input]
+        if not np.isnan(values[at]).all():
             raise InputError(f"has {one.output} by {one.input} twice", file=path, allowed="each response once")
-        values[outputs.index(one.output), inputs.index(one.input)] = one.values
-        units |= {one.output: one.units[0], one.input: one.units[1]}
-    return frf_dataset(f, values, tuple(outputs), tuple(inputs), units)
+        values[at] = one.values
+    try:
+        return frf_dataset(f, values, outputs, inputs)
+    except InputError as error:
+        raise error.located(file=path) from None
+
+
+def _units(found: list[Response], side: str, path: Path) -> dict[str, str]:
+    """Units of outputs or inputs by name, in the order of the file."""
+    units: dict[str, str] = {}
+    for one in found:
+        name, unit = getattr(one, side), one.units[side == "input"]
+        if units.setdefault(name, unit) != unit:
+            words = f"has the {side} {name} in {units[name]} and in {unit}"
+            raise InputError(words, file=path, allowed="one unit for each channel, in all of its responses")
+    return units
+
+
+def _check_rise(f: Array, path: Path) -> None:
+    """Refuse frequencies below 0 and such that do not rise."""
+    wrong = np.flatnonzero(np.diff(f) <= 0)
+    if f[0] >= 0 and not wrong.size:
+        return
+    at = 0 if f[0] < 0 else int(wrong[0]) + 1
+    what = "is below 0" if at == 0 else "is not above the one before it"
+    raise InputError(
+        what, file=path, key=f"frequency {at + 1}", value=float(f[at]), allowed="frequencies from 0 Hz on that rise",
+        next_step="Sort the lines, and leave out doubles and negative frequencies",
+    )  # fmt: skip
 
 
 def _universal(content: bytes) -> list[Response]:
@@ -195,100 +214,28 @@ def _numbers(lines: list[str], width: int, kind: int, even: bool) -> Array:
     return np.array(found)
 
 
-def _csv(content: bytes) -> list[Response]:
-    rows = table_lines(Path(), _text(content))
-    if not rows:
-        raise InputError("is empty", next_step="First line: " + FIRST)
-    heads = [cell.strip() for cell in rows[0][1]]
-    if len(heads) < 3 and any(mark in heads[0] for mark in (";", "\t")):
-        words = "has semicolons or tabs between its columns"
-        raise InputError(words, key=f"line {rows[0][0]}", allowed="commas; before decimals points")
-    if len(heads) < 3 or len(heads) % 2 == 0 or len(rows) < 2:
-        raise InputError(
-            f"has {len(heads)} columns" if len(rows) > 1 else "has no line of numbers",
-            key="columns",
-            allowed="frequency, then two of each response: real, imag, or magnitude, phase [deg]",
-        )
-    table = np.array([_row(number, cells, heads) for number, cells in rows[1:]])
-    frequency = table[:, 0] * _hertz(heads[0])
-    return [_pair(frequency, heads, table, k) for k in range(1, len(heads), 2)]
-
-
-def _text(content: bytes) -> str:
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise InputError("is not UTF-8 text", next_step="Save it as CSV in UTF-8") from None
-
-
-def _row(number: int, cells: list[str], heads: list[str]) -> list[float]:
-    """Numbers of a line; of a response that was not measured nan."""
-    if len(cells) != len(heads):
-        raise InputError(f"has {len(cells)} cells for {len(heads)} columns", key=f"line {number}")
-    row = []
-    for head, cell in zip(heads, cells, strict=True):
-        try:
-            row.append(float(cell))
-        except ValueError:
-            raise InputError("is no number", key=f"line {number}, column {head!r}", value=cell) from None
-    return row
-
-
-def _hertz(head: str) -> float:
-    """Factor of the column of frequencies, whose name may have a unit: ``f [kHz]``."""
-    unit = head.rpartition("[")[2].removesuffix("]").strip() if head.endswith("]") else "Hz"
-    return to_si(f"1 {unit}", "frequency", key=f"column {head!r}")
-
-
-def _pair(frequency: Array, heads: list[str], table: Array, k: int) -> Response:
-    """The response in two columns."""
-    one, other = heads[k].lower(), heads[k + 1].lower()
-    a, b = table[:, k], table[:, k + 1]
-    names = [head.partition(" ")[0] if "/" in head else None for head in heads[k : k + 2]]
-    if None not in names and names[0] != names[1]:
-        raise InputError(f"has the columns {heads[k]!r}, {heads[k + 1]!r}", allowed="two columns of each response")
-    if any(word.startswith("im") or word.endswith("imag") for word in re.split("[^a-z]+", other)):
-        values = a + 1j * b
-    elif "phase" in other or "angle" in other:
-        turn = b if "rad" in other else np.radians(b)
-        size = 10 ** (a / 20) if "db" in one.split("[")[-1] else a
-        values = size * np.exp(1j * turn)
-    else:
-        words = "real, imag, or magnitude, phase"
-        raise InputError(f"has the columns {heads[k]!r}, {heads[k + 1]!r}", allowed=words)
-    output, _, input = (names[0] or "").partition("/")
-    labels = (output or f"response {(k + 1) // 2}", input or "input")
-    return Response(frequency=frequency, values=values.astype(complex), output=labels[0], input=labels[1])
-
-
 def _mat(content: bytes) -> list[Response]:
-    from io import BytesIO
-
-    from scipy.io import loadmat
-
     try:
-        data = loadmat(BytesIO(content))
-    except Exception as error:  # scipy lets errors of any kind out of files that are damaged
-        newer = "v7.3" in str(error)
-        words = "is of MATLAB 7.3" if newer else f"cannot be read: {error}"
+        data = mat_arrays(content, lambda name: name.lower() in KNOWN or name in LABELS)
+    except ValueError as error:
+        newer = "7.3" in str(error)
+        words = f"cannot be read: {error}"
         raise InputError(words, allowed="versions 4 and 5", next_step='Save it with "-v7"' if newer else None) from None
     names = {key: next((k for k in data if k.lower() in words), None) for key, words in WORDS.items()}
     if names["frequency"] is None or names["frf"] is None:
         raise InputError("lacks a variable", allowed="frequency and frf, with outputs, inputs, or without")
-    f, H = _numeric(data, names["frequency"], float).ravel(), _numeric(data, names["frf"], complex)
+    f, H = _numbers_of(data, names["frequency"], real=True).ravel(), _numbers_of(data, names["frf"], real=False)
     H = H.reshape(1, 1, -1) if H.size == len(f) else H[:, None] if H.ndim == 2 else H
     if H.ndim != 3 or H.shape[2] != len(f):
         raise InputError(f"has the shape {H.shape}", key=names["frf"], allowed=f"(outputs, inputs, {len(f)})")
 
     def texts(key: str, count: int, plain: str) -> list[str]:
-        given = data.get(key)
-        if given is None:
-            return [plain.format(i + 1) for i in range(count)]
-        if np.size(given) != count:
-            raise InputError(f"has {np.size(given)} names", key=key, allowed=f"{count}, one for each")
-        return [
-            str(np.ravel(cell)[0]) if np.size(cell) else plain.format(i + 1) for i, cell in enumerate(np.ravel(given))
-        ]
+        found = texts_of(data.get(key, [""] * count))
+        if found is None:
+            raise InputError("are no texts", key=key, allowed="a cell of texts, or rows of letters")
+        if len(found) != count:
+            raise InputError(f"has {len(found)} names", key=key, allowed=f"{count}, one for each")
+        return [text or plain.format(i + 1) for i, text in enumerate(found)]
 
     outputs, inputs = texts("outputs", H.shape[0], "response {}"), texts("inputs", H.shape[1], "input {}")
     top, bottom = texts("output_units", H.shape[0], "1"), texts("input_units", H.shape[1], "1")
@@ -299,18 +246,23 @@ def _mat(content: bytes) -> list[Response]:
     ]
 
 
-def _numeric(data: Mapping[str, object], name: str, kind: type) -> np.ndarray:
+def _numbers_of(data: Mapping[str, Any], name: str, *, real: bool) -> np.ndarray:
+    """Real or complex numbers of a variable."""
     try:
-        return np.asarray(data[name], dtype=kind)
-    except (TypeError, ValueError):
-        raise InputError("is no array of numbers", key=name) from None
+        if data[name].dtype.kind not in "biufc":
+            raise ValueError
+        return floats(data[name]) if real else np.asarray(data[name], dtype=np.complex128)
+    except ValueError:
+        raise InputError("is no array of numbers", key=name, allowed="real ones" if real else None) from None
 
 
 WORDS = {"frequency": ("frequency", "freq", "f", "hz"), "frf": ("frf", "h", "response", "frequency_response")}
+KNOWN = {word for words in WORDS.values() for word in words}
+LABELS = ("outputs", "inputs", "output_units", "input_units")
 READERS: dict[str, Callable[[bytes], list[Response]]] = {
     ".uff": _universal,
     ".unv": _universal,
     ".58": _universal,
-    ".csv": _csv,
+    ".csv": table_responses,
     ".mat": _mat,
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from flexapod.arrays import floats
 from flexapod.control.arguments import whole
 from flexapod.control.sampling import period_of
 from flexapod.errors import InputError
@@ -38,8 +39,8 @@ def ring_down(samples: ArrayLike, period: float | str, order: int = 10) -> NDArr
     """
     T = period_of(period)
     try:
-        x = np.atleast_1d(np.asarray(samples, dtype=float))
-    except (TypeError, ValueError):
+        x = np.atleast_1d(floats(samples))
+    except ValueError:
         x = np.full(1, np.nan)
     if not x.size or not np.isfinite(x).all():
         raise InputError("are no finite numbers", key="samples", allowed="(T,) or (T, m), equally spaced")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flexapod.arrays import Array
+from flexapod.arrays import Array, floats
 from flexapod.control.channels import chosen
 from flexapod.control.integrators import moved_and_shown
 from flexapod.errors import InputError
@@ -90,8 +90,8 @@ def _source(system: StateSpace, name: str, group: str, table: Floor | Spectrum |
     rates = FLOOR_RATES[table.of] if isinstance(table, Floor) else 0
     if isinstance(table, tuple):
         try:
-            frequency, density = (np.asarray(part, dtype=float) for part in table)
-        except (TypeError, ValueError):
+            frequency, density = map(floats, table)
+        except ValueError:
             raise InputError("is no spectrum", key=f"sources[{name}]", value=table, allowed=EXAMPLE) from None
         density = density[:, None] if density.ndim == 1 else density
         check_density(frequency, density)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flexapod.arrays import Array
+from flexapod.arrays import Array, floats
 from flexapod.control.arguments import frequencies, number
 from flexapod.control.channels import Names, chosen, groups
 from flexapod.control.frequency import response
@@ -66,8 +66,8 @@ class StateSpace:
         n, m, p = len(self.states), len(self.inputs), len(self.outputs)
         for name, shape in (("A", (n, n)), ("B", (n, m)), ("C", (p, n)), ("D", (p, m))):
             try:
-                value = np.array(getattr(self, name), dtype=float)
-            except (TypeError, ValueError):
+                value = floats(getattr(self, name))
+            except ValueError:
                 raise InputError("is no matrix of numbers", key=name, value=getattr(self, name)) from None
             if value.shape != shape:
                 raise InputError(

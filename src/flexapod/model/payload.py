@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from pydantic import field_validator, model_validator
 
-from flexapod.arrays import Array
+from flexapod.arrays import Array, floats
 from flexapod.errors import InputError
 from flexapod.schema.axes import diagonal, normal_of
 from flexapod.schema.base import Matrix3, Quantity, Vec3
@@ -68,7 +68,7 @@ class Payload(Table):
     @classmethod
     def _from_principal(cls, value: object) -> object:
         if np.shape(value) == (3,):  # type: ignore[arg-type]
-            return np.diag(np.asarray(value, dtype=np.float64))
+            return np.diag(floats(value))
         return value
 
     def _shown(self) -> dict[str, str]:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import kinematics, model
+from flexapod.arrays import floats
 from flexapod.errors import InputError
 
 POSE_KEYS = model.AXES
@@ -120,12 +121,12 @@ def _coordinates(pose: Mapping[str, float] | ArrayLike | None) -> np.ndarray:
             raise InputError("is not an axis", key=f"pose.{unknown[0]}", allowed=", ".join(POSE_KEYS))
         pose = [pose.get(name, 0.0) for name in POSE_KEYS]
     try:
-        values = np.asarray(pose, dtype=float)
-    except (TypeError, ValueError):
+        values = floats(pose)
+    except ValueError:
         values = np.full(0, np.nan)
     if values.shape != (6,) or not np.isfinite(values).all():
         raise InputError(
-            "is not a pose", key="pose", value=np.asarray(pose).tolist(),
+            "is not a pose", key="pose", value=pose,
             allowed="surge, sway, heave [m], roll, pitch, yaw [rad] from home, as names or six numbers",
         )  # fmt: skip
     return values

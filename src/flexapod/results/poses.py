@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from flexapod import kinematics, model
-from flexapod.arrays import Array
+from flexapod.arrays import Array, floats
 from flexapod.errors import InputError
 from flexapod.results.arguments import POSE_KEYS, PoseLike
 from flexapod.words import number
@@ -45,8 +45,8 @@ def as_many(robot: model.Robot, pose: PoseLike) -> kinematics.Poses:
         if unknown:
             raise InputError("is not an axis", key=f"pose.{unknown[0]}", allowed=", ".join(POSE_KEYS))
         try:
-            columns = np.broadcast_arrays(*[np.asarray(pose.get(name, 0.0), dtype=float) for name in POSE_KEYS])
-        except (TypeError, ValueError):
+            columns = np.broadcast_arrays(*[floats(pose.get(name, 0.0)) for name in POSE_KEYS])
+        except ValueError:
             raise InputError("has arrays that do not fit each other", key="pose", allowed="lengths alike") from None
         values = np.stack(columns, axis=-1)
     else:
@@ -97,6 +97,6 @@ def batches(count: int) -> Iterator[slice]:
 
 def _numbers(pose: object) -> Array:
     try:
-        return np.asarray(pose, dtype=float)
-    except (TypeError, ValueError):
+        return floats(pose)
+    except ValueError:
         return np.full(0, np.nan)

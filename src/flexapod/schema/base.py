@@ -22,7 +22,7 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from flexapod.arrays import Array
+from flexapod.arrays import Array, floats
 from flexapod.errors import InputError, check_known, closest
 from flexapod.units import DIMENSIONS
 from flexapod.words import number
@@ -123,8 +123,8 @@ def array_of(shape: tuple[int | None, ...]) -> Callable[[object], Array]:
 
     def convert(value: object) -> Array:
         try:
-            array = np.array(value, dtype=np.float64)
-        except (TypeError, ValueError, OverflowError):  # the last: a whole number beyond floats
+            array = floats(value)
+        except ValueError:
             raise ValueError(f"must be {words} numbers") from None
         if array.ndim != len(shape) or any(n not in (None, m) for n, m in zip(shape, array.shape, strict=True)):
             raise ValueError(f"must be {words} numbers, got {' x '.join(map(str, array.shape)) or 'a single one'}")

@@ -90,7 +90,7 @@ def _read(
     return table
 
 
-def table_lines(path: Path, text: str) -> list[tuple[int, list[str]]]:
+def table_lines(path: Path | None, text: str) -> list[tuple[int, list[str]]]:
     """Cells of the lines that are neither empty nor comments, with their numbers."""
     try:
         rows = list(enumerate(csv.reader(io.StringIO(text, newline="")), start=1))
@@ -99,7 +99,7 @@ def table_lines(path: Path, text: str) -> list[tuple[int, list[str]]]:
     return [(n, row) for n, row in rows if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#")]
 
 
-def _unreadable(path: Path, why: str) -> Unreadable:
+def _unreadable(path: Path | None, why: str) -> Unreadable:
     return Unreadable(f"cannot be read: {why}", file=path, next_step="Give its place relative to the study file")
 
 

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from flexapod.arrays import Array, floats
 from flexapod.errors import InputError
 from flexapod.runtime.files import LARGEST_TABLE, read_bytes
+from flexapod.schema.array_files import json_arrays, mat_arrays, npz_arrays, texts_of
 from flexapod.schema.csv_tables import Unreadable
 
 __all__ = ["SYSTEM_FILES", "read_system"]
 
 MATRICES, NAMES = ("A", "B", "C", "D"), ("inputs", "outputs")
+MOST_CHANNELS = 10_000
 
 
 def read_system(path: Path) -> dict[str, Any]:
@@ -37,8 +38,8 @@ def read_system(path: Path) -> dict[str, Any]:
             f"cannot be read: {error.strerror}", next_step="Give its place relative to the study file"
         ) from None
     try:
-        data = reader(content)
-    except Exception as error:  # readers let errors of any kind out of files that are damaged
+        data = reader(content, {*MATRICES, *NAMES, "sample"}.__contains__)
+    except ValueError as error:
         raise Unreadable(f"cannot be read: {error}", next_step="Write it with StateSpace.save") from None
     try:
         return _checked(data)
@@ -50,14 +51,14 @@ def _checked(data: Mapping[str, Any]) -> dict[str, Any]:
     for name in (*MATRICES, *NAMES):
         if name not in data:
             raise InputError("is missing", key=name, allowed=f"{', '.join((*MATRICES, *NAMES))}, and sample [s] or not")
-    names = {name: _texts(data[name]) for name in NAMES}
+    names = {name: _names(data[name], name) for name in NAMES}
     for name, given in names.items():
         if not given or len({*given}) < len(given):
             raise InputError("are none, or one of them twice", key=name, value=", ".join(given))
-    n, m, p = int(np.sqrt(np.size(data["A"]))), len(names["inputs"]), len(names["outputs"])
+    matrices = [_matrix(data[name], name) for name in MATRICES]
+    n, m, p = int(np.sqrt(matrices[0].size)), len(names["inputs"]), len(names["outputs"])
     found: dict[str, Any] = dict(names)
-    for name, shape in zip(MATRICES, ((n, n), (n, m), (p, n), (p, m)), strict=True):
-        matrix = _matrix(data[name], name)
+    for name, matrix, shape in zip(MATRICES, matrices, ((n, n), (n, m), (p, n), (p, m)), strict=True):
         if matrix.shape != shape and not matrix.size == np.prod(shape) == 0:  # matrices of no states have no rows
             raise InputError(
                 f"has the shape {matrix.shape}", key=name, allowed=f"{shape}: {n} states, {m} inputs, {p} outputs"
@@ -69,39 +70,26 @@ def _checked(data: Mapping[str, Any]) -> dict[str, Any]:
     return found | {"sample": float(period[0]) or None}
 
 
-def _matrix(value: object, name: str) -> np.ndarray:
+def _matrix(value: object, name: str) -> Array:
     try:
-        found = np.array(value, dtype=float)
-    except (TypeError, ValueError):
+        found = floats(value)
+    except ValueError:
         found = np.array(np.nan)
     if not np.isfinite(found).all():
-        raise InputError("is no matrix of finite numbers", key=name)
+        raise InputError("is no matrix of finite numbers", key=name, allowed="real numbers in rows of one length")
     return found
 
 
-def _texts(value: object) -> tuple[str, ...]:
-    """Names of a list, of cells of MATLAB, or of its rows of letters."""
-    cells = np.ravel(np.array(value, dtype=object))
-    return tuple(str(np.ravel(cell)[0]).strip() for cell in cells if np.size(cell))
-
-
-def _json(content: bytes) -> Mapping[str, Any]:
-    data = json.loads(content.decode("utf-8-sig"))
-    if not isinstance(data, Mapping):
-        raise ValueError("it holds no names with matrices")
-    return data
-
-
-def _npz(content: bytes) -> Mapping[str, Any]:
-    with np.load(BytesIO(content), allow_pickle=False) as data:
-        return dict(data)
-
-
-def _mat(content: bytes) -> Mapping[str, Any]:
-    from scipy.io import loadmat
-
-    return loadmat(BytesIO(content))
+def _names(value: object, name: str) -> tuple[str, ...]:
+    found = texts_of(value)
+    if found is None:
+        raise InputError("are no names", key=name, allowed="texts in a row")
+    if len(found) > MOST_CHANNELS:
+        raise InputError(f"are {len(found)} names", key=name, allowed=f"at most {MOST_CHANNELS}")
+    return tuple(filter(None, found))
 
 
 #: Readers by the end of the name.
-SYSTEM_FILES: dict[str, Callable[[bytes], Mapping[str, Any]]] = {".npz": _npz, ".mat": _mat, ".json": _json}
+SYSTEM_FILES: dict[str, Callable[[bytes, Callable[[str], bool]], Mapping[str, Any]]] = {
+    ".npz": npz_arrays, ".mat": mat_arrays, ".json": json_arrays,
+}  # fmt: skip

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import kinematics, model
-from flexapod.arrays import Array
+from flexapod.arrays import Array, floats
 from flexapod.elements.known import refuse_tables
 from flexapod.errors import InputError
 from flexapod.kinematics.rotations import quaternion
@@ -255,8 +255,8 @@ def _named(path: RigidPath, values: dict[str, Array], remarks: list[str]) -> Dat
 
 def _numbers(values: ArrayLike, key: str, allowed: str) -> Array:
     try:
-        return np.asarray(values, dtype=float)
-    except (TypeError, ValueError):
+        return floats(values)
+    except ValueError:
         raise InputError("are not numbers", key=key, allowed=allowed) from None
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.linalg import expm
 
-from flexapod.arrays import Array
+from flexapod.arrays import Array, floats
 from flexapod.errors import InputError
 from flexapod.kinematics.robot import robot_limbs
 from flexapod.kinematics.rotations import quaternion
@@ -241,8 +241,8 @@ class SampledLoop:
             y = np.ctypeslib.as_array(readings, (p,)).copy()  # type: ignore[arg-type]
             given = self.sampled.function(t, y)  # type: ignore[misc]
             try:
-                found = np.asarray(given, dtype=float)
-            except (TypeError, ValueError):
+                found = floats(given)
+            except ValueError:
                 found = np.full(0, np.nan)
             if found.shape != (m,) or not np.isfinite(found).all():
                 shown = found.tolist() if found.size else repr(given)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import kinematics, model
-from flexapod.arrays import Array
+from flexapod.arrays import Array, floats
 from flexapod.errors import InputError, check_known
 from flexapod.model import AXES
 from flexapod.results.poses import from_home
@@ -116,7 +116,7 @@ def _fixed(at: Mapping[str, float], axes: Axes) -> Array:
             raise InputError("varies in this map: it cannot be fixed, too", key=f"at.{name}", value=value)
         try:
             number = float(value)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             number = np.nan
         if not np.isfinite(number):
             raise InputError("is not a number", key=f"at.{name}", value=value, allowed=f"a number in {UNITS[name]}")
@@ -157,8 +157,8 @@ def _values(
 
 def _given_values(name: str, given: ArrayLike) -> Array:
     try:
-        values = np.atleast_1d(np.asarray(given, dtype=float))
-    except (TypeError, ValueError):
+        values = np.atleast_1d(floats(given))
+    except ValueError:
         values = np.zeros(0)
     if values.ndim != 1 or not values.size or not np.isfinite(values).all() or (np.diff(values) <= 0).any():
         raise InputError(

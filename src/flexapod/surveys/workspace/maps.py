@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import model
-from flexapod.arrays import Array
+from flexapod.arrays import Array, floats
 from flexapod.error_budget.rows import names_of_rows
 from flexapod.errors import InputError
 from flexapod.results.arguments import LoadLike, RobotLike, at_pose
@@ -156,8 +156,8 @@ def _unit(direction: str | ArrayLike) -> Array:
 
 def _vector(key: str, given: ArrayLike) -> Array:
     try:
-        vector = np.asarray(given, dtype=float)
-    except (TypeError, ValueError):
+        vector = floats(given)
+    except ValueError:
         vector = np.zeros(0)
     if vector.shape != (3,) or not np.isfinite(vector).all():
         raise InputError("is not a vector", key=key, value=given, allowed="three finite numbers, world axes")
