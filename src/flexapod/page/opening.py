@@ -10,7 +10,9 @@ import numpy as np
 
 from flexapod import model
 from flexapod.errors import InputError
+from flexapod.model.stored import stored_tables
 from flexapod.page.document import Document
+from flexapod.schema.named_files import NamedFiles
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -25,6 +27,11 @@ class StudySource:
     data: Dataset | None = None
 
 
+def _document(study: model.Study | model.ActuatorStudy, path: str) -> Document:
+    """The text of a study with its tables: visitors change the text, and nothing else of this machine is read."""
+    return Document(study.source_text, path, NamedFiles(Path(), closed=True, stored=stored_tables(study)))
+
+
 _RESULTS = (".nc", ".nc4", ".netcdf")
 
 
@@ -35,7 +42,7 @@ def open_source(file: Path) -> StudySource:
     """
     if file.suffix.lower() not in _RESULTS:
         study = model.load(file)
-        return StudySource(document=Document(study.source_text, str(file)), study=study)
+        return StudySource(document=_document(study, str(file)), study=study)
     from flexapod.results.stored_run import check_run
     from flexapod.study.store import open_results
 
@@ -50,7 +57,7 @@ def open_source(file: Path) -> StudySource:
         study = _without_tables(data, text, str(file))
         text, path = study.source_text, str(file)
     _check_kind(study, data, str(file))
-    return StudySource(document=Document(text, str(path)), study=study, data=data)
+    return StudySource(document=_document(study, str(path)), study=study, data=data)
 
 
 def _check_kind(study: model.Study | model.ActuatorStudy, data: Dataset, file: str) -> None:

@@ -75,7 +75,7 @@ class Session:
             self._stop()
             self._drop_panels()
             self.study, self.data, self._valid = source.study, source.data, True
-            self._build(source.document)
+            self._build(source.document.beside(self._sent.folder))
             self.time_panel.show_data(None)
             self.modes_panel.show_study(self.study)
             self.budget_panel.show(self.study)

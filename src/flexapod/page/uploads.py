@@ -11,6 +11,7 @@ from flexapod import model
 from flexapod.errors import InputError
 from flexapod.page.document import Document, read
 from flexapod.runtime.files import scratch
+from flexapod.schema.named_files import NamedFiles, Unreadable
 from flexapod.schema.toml import parsed
 
 if TYPE_CHECKING:
@@ -56,9 +57,15 @@ def read_upload(name: str, content: bytes, folder: Path) -> Document:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise InputError("cannot be read: it is not UTF-8 text", file=name, allowed="a study file (TOML)") from None
-    for key, file in _files(parsed(text, name)):
-        _check_table(name, key, file, folder)
-    found = read(Document(text, str(folder / name)))
+    sent = NamedFiles(folder, closed=True)
+    for key, file in _named(parsed(text, name)):
+        try:
+            sent.place(file)
+        except Unreadable as error:
+            raise InputError(
+                error.what, file=name, key=key, value=file, allowed=error.allowed, next_step=error.next_step
+            ) from None
+    found = read(Document(text, name, sent))
     if found.error is not None:
         raise found.error
     return found.document
@@ -94,33 +101,19 @@ def _plain(name: str) -> str:
     return kept or "study.toml"
 
 
-def _files(data: object) -> list[tuple[str, object]]:
-    """Key paths and values of every ``file = ...``, however deep."""
-    found: list[tuple[str, object]] = []
+def _named(data: object) -> list[tuple[str, str]]:
+    """Key paths and values of every ``file = ...``, however deep: what is missing is told before all else."""
+    found: list[tuple[str, str]] = []
     waiting = [("", data)]
     while waiting:
         path, value = waiting.pop()
         if isinstance(value, dict):
             inner = [(name, f"{path}.{name}" if path else name, item) for name, item in value.items()]
-            found += [(key, item) for name, key, item in inner if name == "file"]
+            found += [(key, item) for name, key, item in inner if name == "file" and isinstance(item, str)]
             waiting += [(key, item) for _, key, item in inner]
         elif isinstance(value, list):
             waiting += [(f"{path}[{i}]", item) for i, item in enumerate(value, start=1)]
     return found
-
-
-def _check_table(name: str, key: str, file: object, folder: Path) -> None:
-    if not isinstance(file, str):
-        return  # the reader says what is wrong with it
-    if file != _plain(file) or not (folder / file).is_file():
-        raise InputError(
-            "is a table that was not sent",
-            file=name,
-            key=key,
-            value=file,
-            allowed="the plain name of a CSV file that was uploaded before; no other file is read",
-            next_step="Upload the table first, then the study",
-        )
 
 
 MOST_INSTANTS = 500_000

@@ -1,6 +1,7 @@
 """A table of a study file: read by the fields of its class, kept as it was written, written back."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
@@ -9,12 +10,28 @@ from flexapod.schema.base import Frozen, same
 from flexapod.schema.written import Written, together
 
 if TYPE_CHECKING:
+    from flexapod.schema.named_files import Content
     from flexapod.schema.section import Section
 
-__all__ = ["Table", "plain"]
+__all__ = ["Place", "Table", "plain"]
 
 _WRITTEN = "written"  # where an object keeps the table that it was read from
-_CSV = "table.csv"  # for a table in a file, made in Python
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a table of a study stands: its `key`, the number of its `leg`; `cranks`: of which legs the drive turns."""
+
+    key: str = ""
+    leg: int = 1
+    cranks: frozenset[int] = frozenset()
+
+    def force(self, leg: int) -> str:
+        """What the drive of a leg pushes with: "force", or "torque" of a crank."""
+        return "torque" if leg in self.cranks else "force"
+
+
+ANYWHERE = Place()
 
 
 class Table(Frozen):
@@ -53,13 +70,20 @@ class Table(Frozen):
         """Fields that are not read key by key; asked once the keys are known to be right."""
         return {}
 
+    def tabled(self, place: "Place") -> "Content":
+        """What the file under its `FileKey` holds, or would hold; nothing where it has no such table."""
+        return {}
+
     def told(self) -> dict[str, object]:
-        """All that it has to say in a file, by key, in SI; what is None is left out."""
+        """All that it has to say in a file, by key, in SI; what is None is left out.
+
+        A file whose table was given in Python is "": no text names a file that never was.
+        """
         infos = {name: info for name, info in type(self).model_fields.items() if name not in self.derived}
         fields = {name: getattr(self, name) for name in infos}
         fields = {name: x for name, x in fields.items() if name not in self.silent or x != infos[name].default}
-        if "file" in fields and fields["file"] is None and getattr(self, "time", None) is not None:
-            fields["file"] = _CSV
+        if "file" in fields and fields["file"] is None and self.tabled(ANYWHERE):
+            fields["file"] = ""
         return {name: value for name, value in fields.items() if value is not None}
 
     @property
