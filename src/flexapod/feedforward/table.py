@@ -155,7 +155,7 @@ def check_out(study: Study | ActuatorStudy, path: FileLike) -> Path:
         words = f"would replace {table}, a table that the study names"
         raise InputError(words, key="out", value=str(path), next_step="Choose another name")
     if own is not None and isinstance(study, Study):
-        made = {getattr(study.motion, "file", None), "table.csv"}  # the motion's own is written, and that of Python's
+        made = {getattr(study.motion, "file", None)}  # the motion's own is written
         for name in sorted(set(TABLES.findall(study.source_text)) - made):
             if not (place.parent / name).is_file():
                 words = f"lies where {name} is not, a table that the study names"

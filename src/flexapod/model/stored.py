@@ -24,8 +24,9 @@ def stored_tables(study: Study | ActuatorStudy) -> dict[str, Stored]:
 
 
 def files_of(study: Study | ActuatorStudy) -> NamedFiles:
-    """What the text of a study may name: the tables that the study has, and other files in its folder."""
-    return NamedFiles(Path(study.path).parent if study.path else Path(), stored=stored_tables(study))
+    """What the text of a study may name: tables that it has and that are in no file, and files in its folder."""
+    tables = {key: table for key, table in stored_tables(study).items() if study.holds_tables or not table.name}
+    return NamedFiles(Path(study.path).parent if study.path else Path(), stored=tables)
 
 
 def _inside(table: Table, place: Place) -> Iterator[tuple[str, Stored]]:

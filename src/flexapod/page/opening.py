@@ -12,6 +12,8 @@ from flexapod import model
 from flexapod.errors import InputError
 from flexapod.model.stored import stored_tables
 from flexapod.page.document import Document
+from flexapod.results.attributes import study_in
+from flexapod.runtime.files import RESULTS
 from flexapod.schema.named_files import NamedFiles
 
 if TYPE_CHECKING:
@@ -32,15 +34,12 @@ def _document(study: model.Study | model.ActuatorStudy, path: str) -> Document:
     return Document(study.source_text, path, NamedFiles(Path(), closed=True, stored=stored_tables(study)))
 
 
-_RESULTS = (".nc", ".nc4", ".netcdf")
-
-
 def open_source(file: Path) -> StudySource:
     """What a study file or results on disk begin with.
 
     InputError as of `flexapod.load`, or where the file is not a result of a simulation.
     """
-    if file.suffix.lower() not in _RESULTS:
+    if file.suffix.lower() not in RESULTS:
         study = model.load(file)
         return StudySource(document=_document(study, str(file)), study=study)
     from flexapod.results.stored_run import check_run
@@ -50,7 +49,7 @@ def open_source(file: Path) -> StudySource:
     check_run(data, str(file))
     path, text = data.attrs.get("study_file") or str(file), str(data.attrs["study"])
     try:
-        study = model.loads(text, path=path)
+        study = study_in(data.attrs, str(file))
     except InputError as error:
         if "com_deviation" not in data:
             raise InputError(f"carries a study that is refused: {error}", file=file) from None

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["Place", "Table", "plain"]
 
 _WRITTEN = "written"  # where an object keeps the table that it was read from
+_HELD = "held"  # where a study keeps that its tables are all there is
 
 
 @dataclass(frozen=True)
@@ -96,6 +97,16 @@ class Table(Frozen):
         vars(self)[_WRITTEN] = written
         return self
 
+    @property
+    def holds_tables(self) -> bool:
+        """Whether no file stands behind its tables any more: it comes from results, which held them."""
+        return _HELD in vars(self)
+
+    def hold_tables(self) -> Self:
+        """Itself, whose tables are no more read from files."""
+        vars(self)[_HELD] = True
+        return self
+
     def still_says(self, key: str) -> bool:
         """Whether what was written under a key still says what the object has."""
         return self.written is not None and self.written.changed.isdisjoint(self.spells.get(key, (key,)))
@@ -108,10 +119,21 @@ class Table(Frozen):
         InputError
             If a field does not exist or the new value is not allowed.
         """
-        return self._kept_in(super().replace(**changes))
+        return self._kept_in(super().replace(**self._unfiled(changes)))
+
+    def _unfiled(self, changes: dict[str, Any]) -> dict[str, Any]:
+        """Changes, and no file where the table is another one than that in the file."""
+        changed = [name for name in self.derived if name in changes and not same(changes[name], getattr(self, name))]
+        if not changed:
+            return changes
+        from flexapod.schema.columns import columns_of
+
+        return {column.name: None for column in columns_of(type(self)).values() if column.file} | changes
 
     def _kept_in(self, changed: Self) -> Self:
         """A changed object with what still holds of the table of this one."""
+        if self.holds_tables:
+            changed.hold_tables()
         if self.written is None:
             return changed
         fields = (name for name in type(self).model_fields if name not in self.untold)
