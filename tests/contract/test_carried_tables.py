@@ -1,8 +1,10 @@
 """Results hold the whole study: tables of files and arrays of Python come back to the bit, whatever lies around."""
 
+import io
 import os
 import pickle
 import shutil
+import zipfile
 
 import numpy as np
 import pytest
@@ -11,7 +13,11 @@ from xarray import Dataset
 import flexapod as fx
 from flexapod.model.mount import BaseMotion
 from flexapod.model.page import study_data
+from flexapod.model.stored import stored_tables
+from flexapod.page.document import Document, read
 from flexapod.page.opening import open_source
+from flexapod.page.study_files import study_download
+from flexapod.page.uploads import read_upload, store_table
 from flexapod.results.attributes import FORMER, TABLES, attributes, robot_of, study_of
 from flexapod.results.packed_tables import pack, unpack
 from flexapod.schema.named_files import Stored
@@ -261,3 +267,49 @@ def test_the_page_opens_results_with_their_tables(empty):
     source = open_source(empty / "results.nc")
     assert arrays_of(source.study) == arrays_of(study)
     assert "tables" not in " ".join(source.study.notes)
+
+
+@pytest.mark.parametrize("title", EXAMPLES)
+def test_a_study_is_taken_from_the_page_with_its_tables_and_sent_again(title, empty):
+    """What one page gives another one takes: the same study, whatever its tables were called and wherever they lay."""
+    home, sent = empty / "home", empty / "sent"
+    home.mkdir()
+    sent.mkdir()
+    text = EXAMPLES[title]
+    for file, content in reference().files.items():
+        (home / f"my {file}").write_text(content)
+        text = text.replace(f'"{file}"', f'"../home/my {file}"')
+    (home / "study.toml").write_text(text)
+    source = open_source(home / "study.toml")
+    ending, content = study_download(source.document, source.study)
+    assert ending == ".zip"
+    with zipfile.ZipFile(io.BytesIO(content)) as files:
+        found = {name: files.read(name) for name in files.namelist()}
+    for name in found:
+        if name != "study.toml":
+            assert store_table(name, found[name], sent) == name
+    again = read(read_upload("study.toml", found["study.toml"], sent)).study
+    assert arrays_of(again) == arrays_of(source.study)
+    assert len(found) == 1 + len({table.name for table in stored_tables(source.study).values()})
+
+
+def test_a_study_with_arrays_from_python_is_taken_along_whole(empty):
+    sent = empty / "sent"
+    sent.mkdir()
+    save(fx.run(moved()), "results.nc")
+    source = open_source(empty / "results.nc")
+    with zipfile.ZipFile(io.BytesIO(study_download(source.document, source.study)[1])) as files:
+        assert files.namelist() == ["study.toml", "motion.csv"]
+        store_table("motion.csv", files.read("motion.csv"), sent)
+        again = read(read_upload("study.toml", files.read("study.toml"), sent)).study
+    assert arrays_of(again) == arrays_of(moved())
+    plain = fx.preset("paper-robot")
+    assert study_download(Document(plain.source_text, None), plain) == (".toml", plain.source_text.encode())
+
+
+def test_commands_are_not_written_where_a_table_from_python_would_be_lost(empty):
+    wrench = fx.model.CsvWrench(time=T, wrench=np.outer(U, np.ones(6)))
+    study = moved(load=fx.model.Load(wrench=wrench))
+    with pytest.raises(fx.InputError, match=r"load\.wrench\.file: cannot be written"):
+        fx.compensate(study, out="ahead.toml")
+    assert not os.path.exists("ahead.toml")

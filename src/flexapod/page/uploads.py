@@ -41,7 +41,7 @@ def refuse_size(name: str, size: int) -> None:
     """Refuse a file of more than `LARGEST` bytes before it is taken in."""
     if size > LARGEST:
         raise InputError(
-            f"is too large: {size / 1e6:.3g} MB", file=_plain(name), allowed=f"at most {LARGEST / 1e6:g} MB"
+            f"is too large: {size / 1e6:.3g} MB", file=plain_name(name), allowed=f"at most {LARGEST / 1e6:g} MB"
         )
 
 
@@ -51,7 +51,7 @@ def read_upload(name: str, content: bytes, folder: Path) -> Document:
     `folder`: where the tables lie that the same person has sent before; no other file is read. InputError: too large,
     no UTF-8, no TOML, no valid study, or it names a table that was not sent.
     """
-    name = _plain(name)
+    name = plain_name(name)
     refuse_size(name, len(content))
     try:
         text = content.decode("utf-8-sig")
@@ -76,7 +76,7 @@ def store_table(name: str, content: bytes, folder: Path) -> str:
 
     InputError: too large, or no text; or with it there would be more than `MOST_TABLES` or `MOST_BYTES`.
     """
-    name = _plain(name)
+    name = plain_name(name)
     refuse_size(name, len(content))
     try:
         content.decode("utf-8-sig")
@@ -94,7 +94,7 @@ def store_table(name: str, content: bytes, folder: Path) -> str:
     return name
 
 
-def _plain(name: str) -> str:
+def plain_name(name: str) -> str:
     """The last part of a name, with nothing in it that leads elsewhere."""
     last = PurePosixPath(name.replace("\\", "/")).name
     kept = "".join(c for c in last if c.isprintable() and c not in '/\\:*?"<>|')[-100:].lstrip(".")

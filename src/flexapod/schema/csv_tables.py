@@ -15,7 +15,7 @@ import numpy as np
 from flexapod.arrays import Array
 from flexapod.errors import LONGEST_QUOTE, InputError, closest, quoted
 from flexapod.runtime.files import LARGEST_TABLE, read_text
-from flexapod.schema.named_files import Unreadable
+from flexapod.schema.named_files import Content, Unreadable
 from flexapod.units import DIMENSIONS, to_si
 
 POSE = {"surge": "length", "sway": "length", "heave": "length", "roll": "angle", "pitch": "angle", "yaw": "angle"}
@@ -198,6 +198,13 @@ def forces(count: int, dimension: str = "force") -> dict[str, str]:
 def header(columns: Mapping[str, str], along: str = "time") -> str:
     """First line of a table with these columns, in SI units."""
     return ", ".join(f"{name} [{DIMENSIONS[dimension].unit}]" for name, dimension in {along: along, **columns}.items())
+
+
+def table_text(content: Content) -> str:
+    """A CSV file of these columns, in SI units: read again they are the same, to the bit."""
+    first = ", ".join(f"{name} [{DIMENSIONS[dimension].unit}]" for name, (dimension, _) in content.items())
+    rows = np.column_stack([values for _, values in content.values()]).tolist()
+    return "\n".join([first, *(",".join(map(repr, row)) for row in rows)]) + "\n"
 
 
 def beside(table: Mapping[str, Array], names: Iterable[str]) -> Array:
