@@ -116,11 +116,13 @@ def test_arrays_from_python_are_those_of_the_result_and_no_text_names_a_file(emp
     assert float(way[-1] - way[0]) == pytest.approx(1e-3)  # and not the 5 mm of the other one
 
 
-@pytest.mark.parametrize("kind", ["wrench", "base", "heat", "floor", "noise", "law"])
+@pytest.mark.parametrize("kind", ["wrench", "base", "heat", "floor", "noise", "law", "drives"])
 def test_tables_of_every_part_may_come_from_python(kind, empty):
     """What is read of a file may be given as arrays, without a name."""
     study, f = fx.preset("paper-robot"), np.array([1.0, 10.0, 100.0])
     robot, wave = study.robot, np.outer(np.sin(40 * T), np.ones(6))
+    leg, force = robot.legs[0], fx.model.ForceDrive(law="csv", time=T, force=np.sin(T))
+    pushed = leg.replace(drive=fx.model.ForceDrive(law="csv", time=T, force=np.cos(T)))  # one object, two legs
     changes = {
         "wrench": lambda: {"load": fx.model.Load(wrench=fx.model.CsvWrench(time=T, wrench=wave))},
         "base": lambda: {"robot": robot.replace(base_motion=BaseMotion(time=T, values=wave))},
@@ -137,6 +139,7 @@ def test_tables_of_every_part_may_come_from_python(kind, empty):
             )
         },
         "law": lambda: {},
+        "drives": lambda: {"robot": robot.replace(legs=(leg.replace(drive=force), *(leg,) * 3, *[pushed] * 2))},
     }
     if kind == "law":
         law = fx.model.CsvLaw(time=T, value=np.sin(T))

@@ -34,16 +34,24 @@ def _inside(table: Table, place: Place) -> Iterator[tuple[str, Stored]]:
     named = next((column.name for column in columns_of(type(table)).values() if column.file), None)
     if named is not None and (content := table.tabled(place)):
         yield f"{place.key}.{named}", Stored(getattr(table, named) or "", content)
-    for name in type(table).model_fields:
-        value = getattr(table, name)
+    for name, value in vars(table).items():
         if isinstance(table, Robot) and name == "legs":
-            for number, leg in enumerate(value, start=1):
-                yield from _inside(leg, replace(place, key=f"leg[{number}]", leg=number))
+            yield from _legs(value, place)
         elif isinstance(table, Leg) and name == "elements":
             for element in value:
                 yield from _inside(element, replace(place, key=f"{place.key}.{element.at}"))
         elif isinstance(value, Table):
             yield from _inside(value, replace(place, key=_key(table, name, place.key)))
+
+
+def _legs(legs: tuple[Leg, ...], place: Place) -> Iterator[tuple[str, Stored]]:
+    """The tables of all legs; those that are one object and have none are looked at once."""
+    none: Leg | None = None
+    for number, leg in enumerate(legs, start=1):
+        if leg is not none:
+            found = list(_inside(leg, replace(place, key=f"leg[{number}]", leg=number)))
+            none = None if found else leg
+            yield from found
 
 
 def _key(table: Table, name: str, key: str) -> str:

@@ -33,6 +33,7 @@ FACTORS = (1.0, 1e-3, math.pi / 180, 1e-6, 1e-9, 1e3, 1e6, math.pi / 180e3, math
 """Of units in which tables are written; a column in another one is kept by its bits."""
 MOST_DIGITS = 18  # after the decimal point
 LOOKED_AT = 200  # numbers of a column that tell how it was written
+WORTH = 0.7  # share of them from which on it is tried
 KEPT = 4  # packed tables that are remembered: many results of one study follow each other
 
 _packed: OrderedDict[str, Array] = OrderedDict()
@@ -194,18 +195,15 @@ def _made(whole: Array, odd: Array, places: Array) -> tuple[int, tuple[bytes, ..
 
 def _decimal(x: Array) -> tuple[int, float] | None:
     """Digits after the point and unit in which most of the numbers seem to be written; None where there are none."""
-    some = x[:: max(1, x.size // LOOKED_AT)]
-    shares = {
-        (digits, factor): float(_whole(some, digits, factor)[1].mean())
-        for factor in FACTORS
-        for digits in range(MOST_DIGITS + 1)
-        if some.size
-    }
-    best = max(shares, key=lambda way: (shares[way], -way[0]), default=None)
-    return best if best is not None and shares[best] > 0.7 else None
+    some, digits = x[:: max(1, x.size // LOOKED_AT)], np.arange(MOST_DIGITS + 1)
+    if not some.size:
+        return None
+    shares = np.array([_whole(some[:, None], digits, factor)[1].mean(axis=0) for factor in FACTORS])
+    unit, few = np.unravel_index(np.argmax(shares), shares.shape)  # of equal ones the usual unit, and the fewest digits
+    return (int(few), FACTORS[unit]) if shares[unit, few] > WORTH else None
 
 
-def _whole(x: Array, digits: int, factor: float) -> tuple[Array, Array]:
+def _whole(x: Array, digits: int | Array, factor: float) -> tuple[Array, Array]:
     """Whole numbers, and which of them give the numbers back to the bit."""
     with np.errstate(over="ignore"):
         scaled = np.rint(x / factor * 10.0**digits)
@@ -214,6 +212,6 @@ def _whole(x: Array, digits: int, factor: float) -> tuple[Array, Array]:
     return whole, within & (_back(whole, digits, factor).view(np.int64) == x.view(np.int64))
 
 
-def _back(whole: Array, digits: int, factor: float) -> Array:
+def _back(whole: Array, digits: int | Array, factor: float) -> Array:
     """The numbers as a table of them is read: the nearest to the decimal ones, times the unit."""
     return whole / 10.0**digits * factor
