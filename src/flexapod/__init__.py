@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from flexapod.errors import ComputationError, FlexapodError, InputError
     from flexapod.exchange.formats import export
     from flexapod.feedforward import compensate, shape, time_optimal
-    from flexapod.model import ActuatorStudy, Study, load, loads, open_values, preset
+    from flexapod.model import ActuatorStudy, Study, loads, open_values, preset
     from flexapod.paper.study import replicate
     from flexapod.schema.base import Key, Quantity
     from flexapod.study import (
@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     )
     from flexapod.surveys.convergence import converge
     from flexapod.surveys.convergence.ladder import ladder
+    from flexapod.surveys.stored_study import load
     from flexapod.surveys.sweeps import sweep
     from flexapod.surveys.workspace import workspace_map
     from flexapod.version import __version__
@@ -56,7 +57,7 @@ _HOMES = {
     "flexapod.control.measured": ("read_frf",),
     "flexapod.exchange.formats": ("export",),
     "flexapod.feedforward": ("compensate", "shape", "time_optimal"),
-    "flexapod.model": ("ActuatorStudy", "Study", "load", "loads", "open_values", "preset"),
+    "flexapod.model": ("ActuatorStudy", "Study", "loads", "open_values", "preset"),
     "flexapod.paper.study": ("replicate",),
     "flexapod.study": (
         "accuracy",
@@ -80,6 +81,7 @@ _HOMES = {
     ),
     "flexapod.surveys.convergence": ("converge",),
     "flexapod.surveys.convergence.ladder": ("ladder",),
+    "flexapod.surveys.stored_study": ("load",),
     "flexapod.surveys.sweeps": ("sweep",),
     "flexapod.surveys.workspace": ("workspace_map",),
     "flexapod.version": ("__version__",),

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 __all__ = [
+    "LONGEST_QUOTE",
     "ComputationError",
     "FlexapodError",
     "InputError",
@@ -15,7 +16,11 @@ __all__ = [
     "closest",
     "names_of",
     "nearest",
+    "quoted",
 ]
+
+LONGEST_QUOTE = 80
+"""Letters that a message quotes of what stands somewhere: of a cell of a table, of a value."""
 
 
 class FlexapodError(Exception):
@@ -193,12 +198,17 @@ def _rebuild_input(
     return kind(what, file=file, key=key, value=value, allowed=allowed, next_step=next_step)
 
 
+def quoted(text: str) -> str:
+    """A text in quotes, as a message shows it: of a long one the beginning."""
+    return _short(text[:LONGEST_QUOTE])
+
+
 def _short(value: object) -> str:
     try:
         text = " ".join(repr(value).split())
     except Exception:  # a whole number of thousands of digits, lists too deep, or an object's own error
         text = f"a {type(value).__name__} that cannot be written"
-    return text if len(text) <= 80 else text[:77] + "..."
+    return text if len(text) <= LONGEST_QUOTE else text[: LONGEST_QUOTE - 3] + "..."
 
 
 def _sentences(*parts: str | None) -> str:

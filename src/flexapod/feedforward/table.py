@@ -15,9 +15,10 @@ from flexapod.kinematics import Law
 from flexapod.kinematics.laws import spline, spline_law
 from flexapod.model import AXES, ActuatorStudy, CsvLaw, CsvMotion, Motion, Study, load
 from flexapod.model.motion import Axis
+from flexapod.model.stored import stored_tables
 from flexapod.results.arguments import FileLike
 from flexapod.runtime.files import path_of, write_text
-from flexapod.schema.csv_tables import POSE, header
+from flexapod.schema.csv_tables import table_text
 
 __all__ = ["Tabled", "check_out", "named", "saved", "tabled"]
 
@@ -138,6 +139,7 @@ def _graded(knots: Array, count: int, nearest: float) -> Array:
 
 
 TABLES = re.compile(r"""["']([^"'\n]+\.csv)["']""")  # names of tables in a study file
+_WRITTEN = ("motion.file", "motion.rotation.file", "load.torque.file")  # keys of tables that are written with a study
 S = TypeVar("S", bound=Study | ActuatorStudy)
 
 
@@ -154,8 +156,11 @@ def check_out(study: Study | ActuatorStudy, path: FileLike) -> Path:
     if own is not None and place.resolve().parent == own.parent and table in study.source_text:
         words = f"would replace {table}, a table that the study names"
         raise InputError(words, key="out", value=str(path), next_step="Choose another name")
+    if others := [key for key, kept in stored_tables(study).items() if not kept.name and key not in _WRITTEN]:
+        words = "cannot be written: a table of the study was given in Python, and no file holds it"
+        raise InputError(words, key=others[0], next_step="Write that table into a file, and name it in the study")
     if own is not None and isinstance(study, Study):
-        made = {getattr(study.motion, "file", None), "table.csv"}  # the motion's own is written, and that of Python's
+        made = {getattr(study.motion, "file", None)}  # the motion's own is written
         for name in sorted(set(TABLES.findall(study.source_text)) - made):
             if not (place.parent / name).is_file():
                 words = f"lies where {name} is not, a table that the study names"
@@ -175,23 +180,19 @@ def saved(study: S, path: FileLike) -> S:
     """
     place = check_out(study, path)
     beside = place.with_suffix(".csv")
-    written, first, columns = _named(study, beside.name)
-    rows = [",".join(map(repr, row)) for row in columns.tolist()]
-    write_text(beside, "\n".join([first, *rows]) + "\n")
+    written, key = _named(study, beside.name)
+    write_text(beside, table_text(stored_tables(written)[key].content))
     said = "".join(f"# {line}\n" for line in study.notes)
     write_text(place, said + written.source_text)
     found = load(place)
     return found.replace(notes=study.notes)  # type: ignore[return-value]
 
 
-def _named(study: S, name: str) -> tuple[S, str, Array]:
-    """The study with the name of its table, that table's first line, and its columns (n, any)."""
+def _named(study: S, name: str) -> tuple[S, str]:
+    """The study with the name of the table of its commands, and the key of that table."""
     if isinstance(study, Study):
-        motion = cast("CsvMotion", study.motion)
-        columns = np.column_stack([motion.time, motion.pose])
-        return study.replace(motion=motion.replace(file=name)), header(POSE), columns
-    part, key, of = (study.motion, "rotation", "angle") if study.motion.rotation else (study.load, "torque", "torque")
-    law = cast("CsvLaw", getattr(part, key))
-    changed = part.replace(**{key: law.replace(file=name)})
-    changes = {"motion" if key == "rotation" else "load": changed}
-    return study.replace(**changes), header({"value": of}), np.column_stack([law.time, law.value])
+        return study.replace(motion=cast("CsvMotion", study.motion).replace(file=name)), "motion.file"
+    table, key = ("motion", "rotation") if study.motion.rotation else ("load", "torque")
+    part = getattr(study, table)
+    changed = part.replace(**{key: cast("CsvLaw", getattr(part, key)).replace(file=name)})
+    return study.replace(**{table: changed}), f"{table}.{key}.file"

@@ -10,8 +10,9 @@ from pydantic import Field, PlainSerializer, PlainValidator, model_validator
 
 from flexapod.arrays import Array
 from flexapod.errors import InputError
-from flexapod.schema.base import Key, Quantity, Vec6, array_of
-from flexapod.schema.table import Table
+from flexapod.schema.base import FileKey, Key, Quantity, Vec6, array_of
+from flexapod.schema.named_files import Content
+from flexapod.schema.table import Place, Table
 
 if TYPE_CHECKING:
     from flexapod.model.motion import Motion
@@ -176,7 +177,9 @@ class FileControl(_Sampled):
 
     derived: ClassVar[tuple[str, ...]] = ("A", "B", "C", "D", "inputs", "outputs", "own")
     law: Annotated[Literal["file"], Key("what is fed back")] = "file"
-    file: Annotated[str, Key("state space as `StateSpace.save` writes it: .json, .npz, .mat, relative to this file")]
+    file: Annotated[
+        str | None, FileKey("state space as `StateSpace.save` writes it: .json, .npz, .mat, relative to this file")
+    ] = None
     A: Matrix
     B: Matrix
     C: Matrix
@@ -190,6 +193,11 @@ class FileControl(_Sampled):
         """Its matrices and channels."""
         found = section.linear_system()
         return found | {"own": found.pop("sample")}
+
+    def tabled(self, place: Place) -> Content:
+        """Its matrices and channels."""
+        parts = {name: getattr(self, name) for name in ("A", "B", "C", "D", "inputs", "outputs")}
+        return {name: ("", value) for name, value in (parts | {"sample": self.own}).items()}
 
     @model_validator(mode="after")
     def _samples(self) -> FileControl:

@@ -10,9 +10,10 @@ from pydantic import PlainSerializer, PlainValidator, model_validator
 
 from flexapod.arrays import Array
 from flexapod.errors import InputError
-from flexapod.schema.base import Key, Quantity, Series, array_of
+from flexapod.schema.base import FileKey, Key, Quantity, Series, array_of
 from flexapod.schema.csv_tables import WRENCH
-from flexapod.schema.table import Table
+from flexapod.schema.named_files import Content, columns_of_table
+from flexapod.schema.table import Place, Table
 
 if TYPE_CHECKING:
     from flexapod.model.robot import Robot
@@ -42,13 +43,22 @@ class Spectrum(Table):
     """
 
     derived: ClassVar[tuple[str, ...]] = ("frequency", "density")
-    spectrum: Annotated[str | None, Key("CSV file, relative to this file")] = None
+    spectrum: Annotated[str | None, FileKey("CSV file, relative to this file")] = None
     frequency: Annotated[Series, Quantity("frequency")]
     density: Annotated[Densities, Quantity("force spectrum", "torque spectrum")]
 
     def told(self) -> dict[str, object]:
         """All that it has to say in a file."""
-        return {"spectrum": self.spectrum or "table.csv"}
+        return {"spectrum": self.spectrum or ""}
+
+    def tabled(self, place: Place) -> Content:
+        """Its densities, of the wrench at the tool, of all drives, or of each."""
+        count = self.density.shape[1]
+        if place.key.endswith("wrench"):
+            return columns_of_table(WRENCH_NOISE, self.frequency, self.density, "frequency")
+        each = {f"leg {i}": f"{place.force(i)} spectrum" for i in range(1, count + 1)}
+        columns = {"force": each["leg 1"]} if count == 1 else each
+        return columns_of_table(columns, self.frequency, self.density, "frequency")
 
     @model_validator(mode="after")
     def _table(self) -> Spectrum:
@@ -65,7 +75,7 @@ class Floor(Table):
     derived: ClassVar[tuple[str, ...]] = ("frequency", "density")
     _source: ClassVar[str] = "the curve"
     curve: Annotated[Curve | None, Key("generic vibration criterion")] = None
-    spectrum: Annotated[str | None, Key("CSV file, relative to this file")] = None
+    spectrum: Annotated[str | None, FileKey("CSV file, relative to this file")] = None
     of: Annotated[Literal["acceleration", "velocity", "displacement"], Key("what `spectrum` is the density of")] = (
         "acceleration"
     )
@@ -76,7 +86,13 @@ class Floor(Table):
         """All that it has to say in a file."""
         if self.curve is not None:
             return {"curve": self.curve}  # the rest follows
-        return {"spectrum": self.spectrum or "table.csv", "of": self.of}
+        return {"spectrum": self.spectrum or "", "of": self.of}
+
+    def tabled(self, place: Place) -> Content:
+        """Its densities along x, y, z; nothing of a curve."""
+        if self.curve is not None:
+            return {}
+        return columns_of_table(FLOOR[self.of], self.frequency, self.density, "frequency")
 
     @model_validator(mode="after")
     def _table(self) -> Floor:
@@ -214,7 +230,7 @@ def _spectrum(section: Section, model: type[M], columns: dict[str, str], names: 
         try:
             check_density(frequency, density)
         except InputError as error:
-            raise error.located(file=section.folder / str(section.text("spectrum"))) from None
+            raise error.located(file=section.files.folder / str(section.text("spectrum"))) from None
         return {"frequency": frequency, "density": density}
 
     return section.read(model, then=table)

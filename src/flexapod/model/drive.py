@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
 
 from pydantic import model_validator
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.model.friction import Rubs
 from flexapod.model.motion import check_times
-from flexapod.schema.base import Key, Quantity, Series
+from flexapod.schema.base import FileKey, Key, Quantity, Series
 from flexapod.schema.csv_tables import forces
-from flexapod.schema.table import Table
+from flexapod.schema.named_files import Content, columns_of_table
+from flexapod.schema.table import Place, Table
 
 if TYPE_CHECKING:
     from flexapod.schema.section import Section
@@ -34,6 +36,13 @@ def read_columns(section: Section, dimension: str) -> Mapping[str, object]:
     number, count = section.leg
     found = section.table(forces(count, dimension), needed=True, jumps=True)
     return {"time": found["time"], dimension: found[f"leg {number}"]}
+
+
+def tabled_columns(leg: int, dimension: str, time: Array | None, values: Array | None) -> Content:
+    """What `read_columns` reads, of the one leg."""
+    if time is None or values is None:
+        return {}
+    return columns_of_table({f"leg {leg}": dimension}, time, values[:, None])
 
 
 class PrescribedDrive(Table):
@@ -87,7 +96,7 @@ class ForceDrive(Table):
     law: Annotated[
         Literal["rigid", "constant", "csv"], Key("where the force or the torque comes from", usual="rigid")
     ] = "rigid"
-    file: Annotated[str | None, Key('CSV file of the forces or torques, for law "csv"')] = None
+    file: Annotated[str | None, FileKey('CSV file of the forces or torques, for law "csv"')] = None
     time: Annotated[Series | None, Quantity("time")] = None
     force: Annotated[Series | None, Quantity("force", "torque")] = None
     value: Annotated[
@@ -109,6 +118,10 @@ class ForceDrive(Table):
             return found | ({"force": found.pop(dimension)} if found else {})
 
         return section.read(cls, among=among, then=columns)
+
+    def tabled(self, place: Place) -> Content:
+        """Its forces, of a crank torques."""
+        return tabled_columns(place.leg, place.force(place.leg), self.time, self.force)
 
     @property
     def pushes(self) -> bool:

@@ -9,11 +9,12 @@ from typing import Any
 
 from flexapod.errors import InputError
 from flexapod.model.files import read_study
+from flexapod.schema.named_files import NamedFiles
 from flexapod.schema.notes import NotedField, Notes
 from flexapod.schema.section import Section
 
 
-def read_fields(text: str, path: str | Path | None) -> list[NotedField]:
+def read_fields(text: str, path: str | Path | None, files: NamedFiles | None = None) -> list[NotedField]:
     """Fields of a study text in the order of reading, absent optional ones included.
 
     A text that is refused gives the fields up to the refusal; one that is not TOML gives none.
@@ -24,20 +25,22 @@ def read_fields(text: str, path: str | Path | None) -> list[NotedField]:
         The study file.
     path : path or None
         Where it was read; tables it names are found relative to its folder.
+    files : NamedFiles, optional
+        Those that it may name, in place of all that its path leads to.
     """
     try:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError:
         return []
-    notes, _ = listened(data, Path(path).parent if path else Path())
+    notes, _ = listened(data, files or (Path(path).parent if path else Path()))
     return list(notes.fields.values())
 
 
-def listened(data: Mapping[str, Any], folder: Path) -> tuple[Notes, InputError | None]:
+def listened(data: Mapping[str, Any], files: Path | NamedFiles) -> tuple[Notes, InputError | None]:
     """What is asked of a study's tables, and why they are refused, if they are."""
     notes = Notes()
     try:
-        read_study(Section(data, "", None, folder, notes), "-")
+        read_study(Section(data, "", None, files, notes), "-")
     except InputError as error:
         return notes, error
     return notes, None

@@ -20,6 +20,7 @@ from flexapod.model.robot import Robot, platform_fixed, read_robot
 from flexapod.model.simulation import STRAIGHT, Initial, Simulation, read_simulation, unused_settings
 from flexapod.model.study import ActuatorStudy, Study
 from flexapod.runtime.files import LARGEST_TEXT, check_name, read_text
+from flexapod.schema.named_files import NamedFiles
 from flexapod.schema.section import Section
 from flexapod.schema.table import Table
 from flexapod.schema.toml import parsed
@@ -121,7 +122,12 @@ def loads(text: str, *, path: str | Path | None = None) -> Study | ActuatorStudy
     >>> study.robot.payload.mass
     50.0
     """
-    return read_study(_tables(text, path), text)
+    return loads_among(text, path)
+
+
+def loads_among(text: str, path: str | Path | None, files: NamedFiles | None = None) -> Study | ActuatorStudy:
+    """As `loads`; `files`: those that the study may name, in place of all that its path leads to."""
+    return read_study(_tables(text, path, files), text)
 
 
 def read_study(top: Section, text: str) -> Study | ActuatorStudy:
@@ -129,16 +135,16 @@ def read_study(top: Section, text: str) -> Study | ActuatorStudy:
     return _actuator_study(top, text) if "actuator" in top else _study(top, text)
 
 
-def loads_robot(text: str, *, path: str | Path | None = None) -> Robot:
+def loads_robot(text: str, *, path: str | Path | None = None, files: NamedFiles | None = None) -> Robot:
     """Read the robot alone from the text of its study: tables of its motion and load need not be there."""
-    top = _tables(text, path)
-    return read_robot(top)
+    return read_robot(_tables(text, path, files))
 
 
-def _tables(text: str, path: str | Path | None) -> Section:
+def _tables(text: str, path: str | Path | None, files: NamedFiles | None = None) -> Section:
     file = None if path is None else str(path)
     check_name(file or "")
-    top = Section(parsed(text, file or "study text"), "", file, Path(path).parent if path else Path())
+    beside = Path(path).parent if path else Path()
+    top = Section(parsed(text, file or "study text"), "", file, beside if files is None else files)
     if ("robot" in top) == ("actuator" in top):
         found = "both [robot] and [actuator]" if "robot" in top else "neither [robot] nor [actuator]"
         raise InputError(f"has {found}", file=file or "study text", allowed="one of the two")

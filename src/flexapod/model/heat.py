@@ -12,8 +12,9 @@ from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.model.geometry import PerLeg, check_legs, one_for_all, read_each
 from flexapod.model.motion import check_times
-from flexapod.schema.base import Key, Quantity, Series, array_of
-from flexapod.schema.table import Table
+from flexapod.schema.base import FileKey, Key, Quantity, Series, array_of
+from flexapod.schema.named_files import Content, columns_of_table
+from flexapod.schema.table import Place, Table
 
 if TYPE_CHECKING:
     from flexapod.schema.section import Section
@@ -108,7 +109,7 @@ class Heat(Table):
     ] = None
     expansion: Annotated[Expansion | None, Key("table: thermal expansion of parts", usual="those of materials")] = None
     gradient: Annotated[Gradient | None, Key("table: temperature differences across parts", usual="none")] = None
-    file: Annotated[str | None, Key("CSV with temperatures over time", usual="constant")] = None
+    file: Annotated[str | None, FileKey("CSV with temperatures over time", usual="constant")] = None
     time: Annotated[Series | None, Quantity("time")] = None
     columns: tuple[str, ...] = ()
     table: Annotated[_Rows | None, Quantity("temperature")] = None
@@ -123,6 +124,12 @@ class Heat(Table):
             "gradient": gradient and gradient.read(Gradient),
             **(_over_time(section, section.leg[1]) if "file" in section else {}),
         }
+
+    def tabled(self, place: Place) -> Content:
+        """Its temperatures over time."""
+        if self.table is None:
+            return {}
+        return columns_of_table(dict.fromkeys(self.columns, "temperature"), self.time, self.table)
 
     @model_validator(mode="after")
     def _sensible(self) -> Heat:

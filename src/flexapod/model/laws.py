@@ -8,13 +8,23 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from flexapod.model.motion import Profile, check_times
-from flexapod.schema.base import Key, Quantity, Series, Series6, Vec6
+from flexapod.schema.base import FileKey, Key, Quantity, Series, Series6, Vec6
 from flexapod.schema.csv_tables import WRENCH, beside
-from flexapod.schema.table import Table
+from flexapod.schema.named_files import Content, columns_of_table
+from flexapod.schema.table import Place, Table
 
 if TYPE_CHECKING:
     from flexapod.schema.section import Section
 
+_MEASURED = {  # by a law of a single actuator, under its key
+    "": "number",
+    "rotation": "angle",
+    "elevation": "angle",
+    "extension": "length",
+    "torque": "torque",
+    "elevation_torque": "torque",
+    "force": "force",
+}
 _AMPLITUDE = ("angle", "length", "torque", "force")
 
 
@@ -49,9 +59,13 @@ class CsvLaw(Table):
 
     derived: ClassVar[tuple[str, ...]] = ("time", "value")
     law: Annotated[Literal["csv"], Key("law over time")] = "csv"
-    file: str | None = None
+    file: Annotated[str | None, FileKey()] = None
     time: Annotated[Series, Quantity("time", why="instant of the step")]
     value: Annotated[Series, Quantity(*_AMPLITUDE)]
+
+    def tabled(self, place: Place) -> Content:
+        """Its values; what they measure the key says."""
+        return columns_of_table({"value": _MEASURED[place.key.rpartition(".")[2]]}, self.time, self.value[:, None])
 
     @model_validator(mode="after")
     def _table(self) -> CsvLaw:
@@ -119,7 +133,7 @@ class CsvWrench(Table):
 
     derived: ClassVar[tuple[str, ...]] = ("time", "wrench")
     law: Annotated[Literal["csv"], Key("law over time")] = "csv"
-    file: Annotated[str | None, Key("CSV file of the wrench")] = None
+    file: Annotated[str | None, FileKey("CSV file of the wrench")] = None
     time: Annotated[Series, Quantity("time", why="instant of the step")]
     wrench: Annotated[Series6, Quantity("force", "torque")]
 
@@ -128,6 +142,10 @@ class CsvWrench(Table):
         """Its table."""
         table = section.table(WRENCH, jumps=True)
         return {"time": table["time"], "wrench": beside(table, WRENCH)}
+
+    def tabled(self, place: Place) -> Content:
+        """Its forces and moments."""
+        return columns_of_table(WRENCH, self.time, self.wrench)
 
     @model_validator(mode="after")
     def _table(self) -> CsvWrench:

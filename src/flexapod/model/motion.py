@@ -11,9 +11,10 @@ from pydantic import AfterValidator, Field, model_validator
 
 from flexapod.arrays import Array
 from flexapod.errors import InputError
-from flexapod.schema.base import Key, Quantity, Series, Series6, Vec3
+from flexapod.schema.base import FileKey, Key, Quantity, Series, Series6, Vec3
 from flexapod.schema.csv_tables import POSE, beside, wrong_instant
-from flexapod.schema.table import Table
+from flexapod.schema.named_files import Content, columns_of_table
+from flexapod.schema.table import Place, Table
 from flexapod.units import DIMENSIONS
 from flexapod.words import number, text
 
@@ -240,7 +241,7 @@ class CsvMotion(Table):
     derived: ClassVar[tuple[str, ...]] = ("time", "pose")
     placed: ClassVar[tuple[str, ...]] = ("pivot",)
     type: Annotated[Literal["csv"], Key("kind of motion: an axis, several, points, a table")] = "csv"
-    file: Annotated[str | None, Key("CSV file of the poses")] = None
+    file: Annotated[str | None, FileKey("CSV file of the poses")] = None
     time: Annotated[Series, Quantity("time")]
     pose: Annotated[Series6, Quantity("length", "angle")]
     hold: Hold = 0.0
@@ -253,6 +254,10 @@ class CsvMotion(Table):
         table = section.table(POSE)
         poses = {"time": table["time"], "pose": beside(table, AXES)}
         return {**poses, "independent": section.words("independent", AXES)}
+
+    def tabled(self, place: Place) -> Content:
+        """Its poses."""
+        return columns_of_table(POSE, self.time, self.pose)
 
     def _shown(self) -> dict[str, str]:
         return {"table": f"{self.file or 'given'}, {len(self.time)} rows", "in": f"{number(self.end_time, 4)} s"}

@@ -11,9 +11,10 @@ from pydantic import Field, model_validator
 from flexapod.errors import InputError
 from flexapod.model.motion import check_times
 from flexapod.model.spring import check_lossy
-from flexapod.schema.base import Key, Loss, Matrix3, Matrix6, Quantity, Series, Series6, Vec3
+from flexapod.schema.base import FileKey, Key, Loss, Matrix3, Matrix6, Quantity, Series, Series6, Vec3
 from flexapod.schema.csv_tables import POSE
-from flexapod.schema.table import Table
+from flexapod.schema.named_files import Content, columns_of_table
+from flexapod.schema.table import Place, Table
 
 if TYPE_CHECKING:
     from flexapod.schema.section import Section
@@ -111,7 +112,7 @@ class BaseMotion(Table):
     derived: ClassVar[tuple[str, ...]] = ("time", "values")
     placed: ClassVar[tuple[str, ...]] = ("at",)
 
-    file: Annotated[str | None, Key("CSV file over time, relative to this file")] = None
+    file: Annotated[str | None, FileKey("CSV file over time, relative to this file")] = None
     of: Annotated[Literal["acceleration", "displacement"], Key("what the table holds")] = "acceleration"
     at: Annotated[Vec3, Quantity("length", why="point about which roll, pitch and yaw turn the base, world axes")] = (
         Field(default=ORIGIN, validate_default=True)
@@ -126,6 +127,10 @@ class BaseMotion(Table):
         found = section.table(BASE_ACCELERATION if of == "acceleration" else POSE, jumps=of == "acceleration")
         none = np.zeros(len(found["time"]))
         return {"of": of, "time": found["time"], "values": np.stack([found.get(axis, none) for axis in POSE], axis=1)}
+
+    def tabled(self, place: Place) -> Content:
+        """Its accelerations or displacements."""
+        return columns_of_table(BASE_ACCELERATION if self.of == "acceleration" else POSE, self.time, self.values)
 
     @model_validator(mode="after")
     def _table(self) -> BaseMotion:

@@ -9,15 +9,16 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from flexapod.errors import InputError
-from flexapod.model.drive import ForceDrive, PrescribedDrive, ServoDrive, read_columns
+from flexapod.model.drive import ForceDrive, PrescribedDrive, ServoDrive, read_columns, tabled_columns
 from flexapod.model.friction import ScrewFriction
 from flexapod.model.hydraulic import HydraulicDrive
 from flexapod.model.material import OF_MATERIAL, SPELLS, Material, read_material, spelled
 from flexapod.model.motion import check_times
 from flexapod.model.motor import Brake, Encoder, Limits, Loop, Motor, Ripple, Rotor, summing
 from flexapod.model.spring import check_lossy
-from flexapod.schema.base import Key, Loss, Quantity, Series
-from flexapod.schema.table import Table
+from flexapod.schema.base import FileKey, Key, Loss, Quantity, Series
+from flexapod.schema.named_files import Content
+from flexapod.schema.table import Place, Table
 from flexapod.words import number
 
 if TYPE_CHECKING:
@@ -178,7 +179,7 @@ class ScrewDrive(Table):
         float | None,
         Quantity("torque", why='the force or the torque, for law "constant"', usual="required by law constant"),
     ] = None
-    file: Annotated[str | None, Key('CSV file of the forces or torques, for law "csv"')] = None
+    file: Annotated[str | None, FileKey('CSV file of the forces or torques, for law "csv"')] = None
     time: Annotated[Series | None, Quantity("time")] = None
     torque: Annotated[Series | None, Quantity("torque")] = None
     loop: Annotated[Loop | None, BeforeValidator(summing), Key("table: spring and damper of the loop")] = None
@@ -198,6 +199,10 @@ class ScrewDrive(Table):
     def resolved(cls, section: Section) -> Mapping[str, object]:
         """Its material, and torques over time."""
         return {"material": read_material(section), **read_columns(section, "torque")}
+
+    def tabled(self, place: Place) -> Content:
+        """Its torques."""
+        return tabled_columns(place.leg, "torque", self.time, self.torque)
 
     @model_validator(mode="after")
     def _sensible(self) -> ScrewDrive:

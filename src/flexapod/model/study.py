@@ -373,8 +373,8 @@ def to_toml(study: Table) -> str:
     """The study as TOML text; read again, it is the same study.
 
     What was read from a text and not changed since stands there as it was written, key by key; all else in SI units,
-    numbers to the last digit. Tables stay in the CSV files they came from; one given from Python is named ``table.csv``
-    and must be saved there by whoever wants to read the text again.
+    numbers to the last digit. Tables stay in the CSV files they came from; of one given in Python the name is "", which
+    is refused when the text is read: results of a study hold its tables (`flexapod.load`).
 
     Parameters
     ----------

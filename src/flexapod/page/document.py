@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import tomlkit
@@ -15,32 +16,47 @@ from tomlkit.items import AoT, Table, Whitespace
 from flexapod import model
 from flexapod.errors import InputError
 from flexapod.model.fields import NotedField
+from flexapod.model.files import loads_among
 from flexapod.page.typed import plain
+from flexapod.schema.named_files import NamedFiles
 from flexapod.units import DIMENSIONS, number_and_unit, to_si
 
+NOWHERE = NamedFiles(Path(), closed=True)
 _STEP = re.compile(r"([^.\[\]]+)|\[(\d+)\]")
 
 
 @dataclass(frozen=True)
 class Document:
-    """A study file being changed: its `text` and its `path` (where it was read; None for one that was sent)."""
+    """A study file being changed: its `text`, its `path` (for its name), and the `files` that it may name.
+
+    Without `files` it may name none: whoever changes it is not the one whose files lie around the server.
+    """
 
     text: str
     path: str | None
+    files: NamedFiles = NOWHERE
 
     def changed(self, key: str, value: object) -> Document:
         """With another value at a key path such as ``payload.com[2]``; a key that is not there is added."""
         tree = tomlkit.parse(self.text)
         table, last = _holder(tree, key)
         table[last] = value
-        return Document(tree.as_string(), self.path)
+        return self.saying(tree.as_string())
 
     def without(self, key: str) -> Document:
         """Without the value at a key path."""
         tree = tomlkit.parse(self.text)
         table, last = _holder(tree, key)
         del table[last]
-        return Document(tree.as_string(), self.path)
+        return self.saying(tree.as_string())
+
+    def saying(self, text: str) -> Document:
+        """With another text."""
+        return replace(self, text=text)
+
+    def beside(self, folder: Path) -> Document:
+        """With a folder in which it may name tables, besides those that it has."""
+        return replace(self, files=NamedFiles(folder, closed=True, stored=self.files.stored))
 
     def value(self, key: str) -> object:
         """The value at a key path, as written; None where there is none."""
@@ -191,7 +207,7 @@ class Edit:
 def read(document: Document, removed: tuple[str, ...] = ()) -> Edit:
     """Read a document as `flexapod.load` reads a file."""
     try:
-        study = model.loads(document.text, path=document.path)
+        study = loads_among(document.text, document.path, document.files)
     except InputError as error:
         return Edit(document=document, error=error, removed=removed)
     return Edit(document=document, study=study, removed=removed)

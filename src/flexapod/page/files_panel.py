@@ -16,6 +16,7 @@ from flexapod.errors import FlexapodError
 from flexapod.page import markup
 from flexapod.page.background import Threads
 from flexapod.page.document import Document, read
+from flexapod.page.study_files import study_download
 from flexapod.page.uploads import LARGEST, Sent, limit_uploads, read_upload, store_table
 from flexapod.runtime.files import scratch
 
@@ -149,7 +150,8 @@ class FilesPanel:
 
     def _send_study(self) -> None:
         found = read(self._document())
-        self._send(self._name(".toml"), found.document.text.encode())
+        ending, content = study_download(found.document, found.study)
+        self._send(self._name(ending), content)
         if found.error is not None:
             remark = markup.block("The study is sent as it stands, which is refused:", "warning")
             self._words.content += remark + markup.error_html(found.error)

@@ -10,7 +10,11 @@ import numpy as np
 
 from flexapod import model
 from flexapod.errors import InputError
+from flexapod.model.stored import stored_tables
 from flexapod.page.document import Document
+from flexapod.results.attributes import study_in
+from flexapod.runtime.files import RESULTS
+from flexapod.schema.named_files import NamedFiles
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -25,7 +29,9 @@ class StudySource:
     data: Dataset | None = None
 
 
-_RESULTS = (".nc", ".nc4", ".netcdf")
+def _document(study: model.Study | model.ActuatorStudy, path: str) -> Document:
+    """The text of a study with its tables: visitors change the text, and nothing else of this machine is read."""
+    return Document(study.source_text, path, NamedFiles(Path(), closed=True, stored=stored_tables(study)))
 
 
 def open_source(file: Path) -> StudySource:
@@ -33,9 +39,9 @@ def open_source(file: Path) -> StudySource:
 
     InputError as of `flexapod.load`, or where the file is not a result of a simulation.
     """
-    if file.suffix.lower() not in _RESULTS:
+    if file.suffix.lower() not in RESULTS:
         study = model.load(file)
-        return StudySource(document=Document(study.source_text, str(file)), study=study)
+        return StudySource(document=_document(study, str(file)), study=study)
     from flexapod.results.stored_run import check_run
     from flexapod.study.store import open_results
 
@@ -43,14 +49,14 @@ def open_source(file: Path) -> StudySource:
     check_run(data, str(file))
     path, text = data.attrs.get("study_file") or str(file), str(data.attrs["study"])
     try:
-        study = model.loads(text, path=path)
+        study = study_in(data.attrs, str(file))
     except InputError as error:
         if "com_deviation" not in data:
             raise InputError(f"carries a study that is refused: {error}", file=file) from None
         study = _without_tables(data, text, str(file))
         text, path = study.source_text, str(file)
     _check_kind(study, data, str(file))
-    return StudySource(document=Document(text, str(path)), study=study, data=data)
+    return StudySource(document=_document(study, str(path)), study=study, data=data)
 
 
 def _check_kind(study: model.Study | model.ActuatorStudy, data: Dataset, file: str) -> None:

@@ -14,6 +14,7 @@ import viser
 
 from flexapod.page.background import Latest, Threads
 from flexapod.page.door import Door
+from flexapod.page.kept_results import KeptResults
 from flexapod.page.logs import LOG
 from flexapod.page.running import Cores
 from flexapod.page.visitor import Pool
@@ -46,6 +47,7 @@ class View:
             warnings.filterwarnings("ignore", message=remark)
         few_arenas()
         self._source, self._cores = source, Cores()
+        self._results = KeptResults(released=lambda: self._leftovers.request(SETTLED))
         self._sessions: dict[int, Session] = {}
         self._lock = threading.Lock()
         self._leftovers = Latest(Threads(lambda error: self._fault(None, error)), collect)
@@ -83,7 +85,7 @@ class View:
         self._loading.join()
         from flexapod.page.session import Session
 
-        session = Session(client, self._source, self._cores)
+        session = Session(client, self._source, self._cores, self._results)
         with self._lock:
             self._sessions[client.client_id] = session
         session.start()

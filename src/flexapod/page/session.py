@@ -19,6 +19,7 @@ from flexapod.page.document import Document, Edit, read
 from flexapod.page.files_panel import FilesPanel
 from flexapod.page.header import Header, Picture
 from flexapod.page.inputs import limit_inputs
+from flexapod.page.kept_results import KeptResults
 from flexapod.page.logs import LOG
 from flexapod.page.opening import StudySource
 from flexapod.page.quick import coarse, is_quick, preview_words
@@ -31,19 +32,25 @@ from flexapod.page.uploads import Sent, refuse_length
 if TYPE_CHECKING:
     from xarray import Dataset
 
+DROPPED = (
+    "This result was dropped: others have computed since, and results of all visitors together have a limit. "
+    "Press Simulate to have it again."
+)
 QUIET = 0.15  # time without a change after which the study is simulated [s]
 
 
 class Session:
-    """What one client sees and does, from `source` on; simulations of all sessions share the `cores` of the server.
+    """What one client sees and does, from `source` on.
+
+    Simulations of all sessions share the `cores` of the server, their results the room that `results` has.
 
     `study`: the last valid one; `data`: results of it, or None.
     """
 
     client: ClientHandle
 
-    def __init__(self, client: ClientHandle, source: StudySource, cores: Cores) -> None:
-        self.client, self._cores = client, cores
+    def __init__(self, client: ClientHandle, source: StudySource, cores: Cores, results: KeptResults) -> None:
+        self.client, self._cores, self._results = client, cores, results
         self._threads, self._sent = Threads(self.fault), Sent()
         self.study, self.data = source.study, source.data
         self._lock, self._closed = threading.RLock(), False
@@ -75,7 +82,8 @@ class Session:
             self._stop()
             self._drop_panels()
             self.study, self.data, self._valid = source.study, source.data, True
-            self._build(source.document)
+            self._results.drop(self)
+            self._build(source.document.beside(self._sent.folder))
             self.time_panel.show_data(None)
             self.modes_panel.show_study(self.study)
             self.budget_panel.show(self.study)
@@ -92,6 +100,7 @@ class Session:
             self._drop_panels()
             self._sent.close()
             self.data = None
+            self._results.drop(self)
 
     def simulate(self) -> None:
         """Compute the study as it stands, as the user asks; one that is running is cancelled."""
@@ -162,6 +171,18 @@ class Session:
                 return
             self.data = found
             self._show_data()
+        self._results.take(self, found)
+
+    def forget(self, data: Dataset) -> None:
+        """Drop a result, which others need the room of, unless there is another one already."""
+        with self._lock:
+            if self._closed or self.data is not data:
+                return
+            self.data = None
+            self._show_study()
+            self.budget_panel.show(self.study)
+            if not self.busy:
+                self._say(markup.block(DROPPED, "warning"))
 
     def _tell(self, run: Run, html: str) -> None:
         with self._lock:
@@ -232,6 +253,7 @@ class Session:
                 self._say(markup.block("The study is refused; the picture shows the last valid one.", "error"))
                 return
             self.study, self.data = found.study, None
+            self._results.drop(self)
             self._fault("")
             self._say(markup.block("Changed: rigid preview.", "soft"))
             self._show_study()

@@ -123,7 +123,7 @@ def _with_table(document: Document, name: str, values: dict[str, object]) -> Doc
     table = tomlkit.table()
     table.update(values)
     tree[name] = table
-    return Document(tree.as_string(), document.path)
+    return document.saying(tree.as_string())
 
 
 def _with_point(document: Document) -> Document:
@@ -144,7 +144,7 @@ def _with_point(document: Document) -> Document:
         row.update(last)
         tree["motion"]["points"].append(row)
         text = tree.as_string()
-    return Document(checked(text, expected, POINTS), document.path)
+    return document.saying(checked(text, expected, POINTS))
 
 
 def _without_point(document: Document, place: int) -> Document:
@@ -156,7 +156,7 @@ def _without_point(document: Document, place: int) -> Document:
         text = document.without(f"{POINTS}[{place + 1}]").text
     else:
         text = replaced(document.text, *found[place], [])
-    return Document(checked(text, expected, POINTS), document.path)
+    return document.saying(checked(text, expected, POINTS))
 
 
 def _later(points: list[dict[str, object]]) -> object:
@@ -179,7 +179,7 @@ def _each_leg(document: Document) -> Document:
         lines = renamed(text.splitlines()[first:after], "leg", "[[leg]]")
         copies = [line for _ in range(count - 1) for line in ("", *bare(lines))]
         text = replaced(text, first, after, [*lines, *copies])
-    return Document(checked(text, expected, "leg"), document.path)
+    return document.saying(checked(text, expected, "leg"))
 
 
 def _one_leg(document: Document) -> Document:
@@ -192,7 +192,7 @@ def _one_leg(document: Document) -> Document:
         text = replaced(text, first - blank, after, [])
     for first, after in found[:1]:
         text = replaced(text, first, after, renamed(text.splitlines()[first:after], "leg", "[leg]"))
-    return Document(checked(text, expected, "leg"), document.path)
+    return document.saying(checked(text, expected, "leg"))
 
 
 MOST_ROWS = 20  # rows of a list that are shown

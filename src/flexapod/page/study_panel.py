@@ -161,7 +161,8 @@ class StudyPanel:
 
     def _readable(self, found: Edit) -> list[NotedField]:
         """Fields of the document in its order; where reading stopped, those known before stay as they were."""
-        fields = {field.key: field for field in read_fields(found.document.text, found.document.path)}
+        said = found.document
+        fields = {field.key: field for field in read_fields(said.text, said.path, said.files)}
         if found.error is not None:
             there = found.document.having(key for key, f in self._fields.items() if f.value is not None)
             known = {key: f for key, f in self._fields.items() if f.value is None or key in there}

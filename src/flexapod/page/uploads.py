@@ -11,6 +11,7 @@ from flexapod import model
 from flexapod.errors import InputError
 from flexapod.page.document import Document, read
 from flexapod.runtime.files import scratch
+from flexapod.schema.named_files import NamedFiles, Unreadable
 from flexapod.schema.toml import parsed
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ def refuse_size(name: str, size: int) -> None:
     """Refuse a file of more than `LARGEST` bytes before it is taken in."""
     if size > LARGEST:
         raise InputError(
-            f"is too large: {size / 1e6:.3g} MB", file=_plain(name), allowed=f"at most {LARGEST / 1e6:g} MB"
+            f"is too large: {size / 1e6:.3g} MB", file=plain_name(name), allowed=f"at most {LARGEST / 1e6:g} MB"
         )
 
 
@@ -50,15 +51,21 @@ def read_upload(name: str, content: bytes, folder: Path) -> Document:
     `folder`: where the tables lie that the same person has sent before; no other file is read. InputError: too large,
     no UTF-8, no TOML, no valid study, or it names a table that was not sent.
     """
-    name = _plain(name)
+    name = plain_name(name)
     refuse_size(name, len(content))
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise InputError("cannot be read: it is not UTF-8 text", file=name, allowed="a study file (TOML)") from None
-    for key, file in _files(parsed(text, name)):
-        _check_table(name, key, file, folder)
-    found = read(Document(text, str(folder / name)))
+    sent = NamedFiles(folder, closed=True)
+    for key, file in _named(parsed(text, name)):
+        try:
+            sent.place(file)
+        except Unreadable as error:
+            raise InputError(
+                error.what, file=name, key=key, value=file, allowed=error.allowed, next_step=error.next_step
+            ) from None
+    found = read(Document(text, name, sent))
     if found.error is not None:
         raise found.error
     return found.document
@@ -69,7 +76,7 @@ def store_table(name: str, content: bytes, folder: Path) -> str:
 
     InputError: too large, or no text; or with it there would be more than `MOST_TABLES` or `MOST_BYTES`.
     """
-    name = _plain(name)
+    name = plain_name(name)
     refuse_size(name, len(content))
     try:
         content.decode("utf-8-sig")
@@ -87,40 +94,26 @@ def store_table(name: str, content: bytes, folder: Path) -> str:
     return name
 
 
-def _plain(name: str) -> str:
+def plain_name(name: str) -> str:
     """The last part of a name, with nothing in it that leads elsewhere."""
     last = PurePosixPath(name.replace("\\", "/")).name
     kept = "".join(c for c in last if c.isprintable() and c not in '/\\:*?"<>|')[-100:].lstrip(".")
     return kept or "study.toml"
 
 
-def _files(data: object) -> list[tuple[str, object]]:
-    """Key paths and values of every ``file = ...``, however deep."""
-    found: list[tuple[str, object]] = []
+def _named(data: object) -> list[tuple[str, str]]:
+    """Key paths and values of every ``file = ...``, however deep: what is missing is told before all else."""
+    found: list[tuple[str, str]] = []
     waiting = [("", data)]
     while waiting:
         path, value = waiting.pop()
         if isinstance(value, dict):
             inner = [(name, f"{path}.{name}" if path else name, item) for name, item in value.items()]
-            found += [(key, item) for name, key, item in inner if name == "file"]
+            found += [(key, item) for name, key, item in inner if name == "file" and isinstance(item, str)]
             waiting += [(key, item) for _, key, item in inner]
         elif isinstance(value, list):
             waiting += [(f"{path}[{i}]", item) for i, item in enumerate(value, start=1)]
     return found
-
-
-def _check_table(name: str, key: str, file: object, folder: Path) -> None:
-    if not isinstance(file, str):
-        return  # the reader says what is wrong with it
-    if file != _plain(file) or not (folder / file).is_file():
-        raise InputError(
-            "is a table that was not sent",
-            file=name,
-            key=key,
-            value=file,
-            allowed="the plain name of a CSV file that was uploaded before; no other file is read",
-            next_step="Upload the table first, then the study",
-        )
 
 
 MOST_INSTANTS = 500_000

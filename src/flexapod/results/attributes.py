@@ -5,17 +5,27 @@ from __future__ import annotations
 import hashlib
 import logging
 from collections import OrderedDict
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from flexapod import model, version
+from flexapod.errors import InputError
+from flexapod.model.files import loads_among
+from flexapod.model.stored import stored_tables
+from flexapod.results.packed_tables import pack, unpack
 from flexapod.results.record import Record
+from flexapod.schema.named_files import NamedFiles
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
     from flexapod.solve.time.recording import Counters
 
+TABLES = "study_tables"
+"""Attribute with the tables that the text of a study names; there is none where it names none."""
+FORMER = "table.csv"
+"""Name that former texts gave to a table from Python, of whatever file lay there."""
 KEPT = 16  # of the last studies, so that their results need not be read as text again
 _log = logging.getLogger("flexapod")
 _known: OrderedDict[str, model.Study | model.ActuatorStudy] = OrderedDict()
@@ -26,6 +36,7 @@ def attributes(study: model.Study | model.ActuatorStudy, warnings: Iterable[str]
     """Attributes that every Dataset of a study carries; warnings as lines of text."""
     found, digest = list(dict.fromkeys(warnings)), _digest(study)
     _remember(digest, study)
+    tables = stored_tables(study)
     return {
         "title": "flexapod: single actuator" if isinstance(study, model.ActuatorStudy) else "flexapod: parallel robot",
         "flexapod_version": version.__version__,
@@ -33,6 +44,7 @@ def attributes(study: model.Study | model.ActuatorStudy, warnings: Iterable[str]
         "study_file": study.path or "",
         "study_hash": digest,
         "warnings": "\n".join(found),
+        **({TABLES: pack(tables)} if tables else {}),
     }
 
 
@@ -41,10 +53,17 @@ def _digest(study: model.Study | model.ActuatorStudy) -> str:
     for known, digest in _latest:
         if known is study:
             return digest
-    content = study.model_dump_json(exclude={"source_text", "path", "notes"})  # with the tables that the text names
-    digest = hashlib.sha256(content.encode()).hexdigest()[:16]
+    digest = _hash(_content(study))
     _latest[:] = [(study, digest)]
     return digest
+
+
+def _content(study: model.Study | model.ActuatorStudy) -> str:
+    return study.model_dump_json(exclude={"source_text", "path", "notes"})  # with the tables that the text names
+
+
+def _hash(content: str) -> str:
+    return hashlib.sha256(content.encode()).hexdigest()[:16]
 
 
 def _remember(digest: str, study: model.Study | model.ActuatorStudy) -> None:
@@ -59,13 +78,52 @@ def study_of(data: Dataset) -> model.Study | model.ActuatorStudy:
     Raises
     ------
     InputError
-        It cannot be read any more, as when a table is gone.
+        It cannot be read any more: a table is damaged, or gone that former results name and do not hold.
     """
     known = _recalled(data)
     if known is None:
-        known = model.loads(data.attrs["study"], path=data.attrs.get("study_file") or None)
+        known = study_in(data.attrs)
         _remember(str(data.attrs.get("study_hash")), known)
     return known
+
+
+def study_in(attrs: Mapping[Any, Any], file: str | None = None) -> model.Study | model.ActuatorStudy:
+    """The study in the attributes of a result, with the tables that they hold; `file`: that of the result.
+
+    Raises
+    ------
+    InputError
+        As of `study_of`, or they hold none.
+    """
+    text, path = attrs.get("study"), attrs.get("study_file", "")
+    if not isinstance(text, str) or not isinstance(path, str):
+        raise InputError("holds no study", file=file, key="study", allowed="a result of flexapod")
+    study = loads_among(text, path or file, files_in(attrs))
+    if TABLES in attrs:
+        return study.hold_tables()
+    _check_former(study, str(attrs.get("study_hash")))
+    return study
+
+
+def _check_former(study: model.Study | model.ActuatorStudy, digest: str) -> None:
+    """Refuse another table than the one from Python that a former result names and does not hold."""
+    named = [key for key, table in stored_tables(study).items() if table.name == FORMER]
+    if named and digest not in (_digest(study), _hash(_content(study).replace(f'"{FORMER}"', "null"))):
+        raise InputError(
+            "is not the table of this result, which does not hold it",
+            key=named[0],
+            value=FORMER,
+            allowed="the one that it was computed with",
+            next_step="Compute it again: results hold their tables now",
+        )
+
+
+def files_in(attrs: Mapping[Any, Any]) -> NamedFiles | None:
+    """What the text of a result may name: the tables that it holds; None of a former one, which holds none."""
+    if TABLES not in attrs:
+        return None
+    folder = Path(str(attrs.get("study_file") or "")).parent
+    return NamedFiles(folder, stored=unpack(attrs[TABLES]))
 
 
 def _recalled(data: Dataset) -> model.Study | model.ActuatorStudy | None:
@@ -80,7 +138,8 @@ def robot_of(data: Dataset) -> model.Robot:
     known = _recalled(data)
     if isinstance(known, model.Study):
         return known.robot
-    return model.loads_robot(data.attrs["study"], path=data.attrs.get("study_file") or None)
+    path = data.attrs.get("study_file") or None
+    return model.loads_robot(data.attrs["study"], path=path, files=files_in(data.attrs))
 
 
 def march_attributes(

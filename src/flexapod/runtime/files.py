@@ -23,6 +23,7 @@ from flexapod.errors import InputError
 __all__ = [
     "LARGEST_TABLE",
     "LARGEST_TEXT",
+    "RESULTS",
     "UNFINISHED",
     "check_name",
     "check_regular",
@@ -41,6 +42,8 @@ LARGEST_TEXT = 10_000_000
 """Of a study or a sweep file [byte]: the largest are some hundred kilobytes."""
 LARGEST_TABLE = 100_000_000
 """Of a table [byte]: a million lines of a motion."""
+RESULTS = (".nc", ".nc4", ".netcdf")
+"""Ends of the names of results."""
 UNFINISHED = ".flexapod-*"
 """Names of what is being written: `remove_abandoned` removes what processes left that are gone."""
 WRITER = re.compile(r"\.?flexapod-([0-9a-f]{8})-([0-9]+)-[0-9a-f]{12}(\..*)?")

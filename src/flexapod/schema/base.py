@@ -62,6 +62,13 @@ class Key:
         self.short: str = short
 
 
+class FileKey(Key):
+    """A key that names a file, or holds "" where the table was given in Python.
+
+    What the file holds stands in other fields of the class, its `derived` ones; `Table.tabled` gives it back.
+    """
+
+
 class Quantity(Key):
     """What the number or the array of a field measures: its size lies in the range of that dimension.
 

@@ -11,7 +11,7 @@ import numpy as np
 from annotated_types import Ge, Gt, Le, Lt
 from pydantic.fields import FieldInfo
 
-from flexapod.schema.base import Key, Quantity
+from flexapod.schema.base import FileKey, Key, Quantity
 from flexapod.schema.table import Table
 
 Kind = Literal["number", "vector", "rows", "whole", "text", "words", "flag", "table", "other"]
@@ -39,7 +39,8 @@ class Column:
     `kind` of its value; `dimensions` that a number may have, another key deciding which; `size`: numbers of a vector;
     `choices` of a text; `models`: classes of a table, of which the text under `type` or `law` names one; a number may
     stand in place of a table where both are possible; `default` where it is a number; `why`, `usual`: its words and
-    those of its default, where it has some; `short`: "number" or "text" that may stand for it.
+    those of its default, where it has some; `short`: "number" or "text" that may stand for it; `file`: its text is the
+    name of a file.
     """
 
     name: str
@@ -53,6 +54,7 @@ class Column:
     why: str = ""
     usual: str = ""
     short: str = ""
+    file: bool = False
 
 
 @cache
@@ -71,6 +73,7 @@ def _column(name: str, info: FieldInfo) -> Column:
         word: next((getattr(key, word) for key in keys if getattr(key, word)), "") for word in ("why", "usual", "short")
     }
     found: dict[str, Any] = {"name": name, "bounds": _bounds(parts), **said}
+    found["file"] = any(isinstance(key, FileKey) for key in keys)
     if isinstance(info.default, int | float) and not isinstance(info.default, bool):
         found["default"] = info.default
     models = tuple(kind for kind in kinds if issubclass(kind, Table))

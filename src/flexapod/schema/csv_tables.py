@@ -13,19 +13,17 @@ from pathlib import Path
 import numpy as np
 
 from flexapod.arrays import Array
-from flexapod.errors import InputError, closest
+from flexapod.errors import LONGEST_QUOTE, InputError, closest, quoted
 from flexapod.runtime.files import LARGEST_TABLE, read_text
+from flexapod.schema.named_files import Content, Unreadable
 from flexapod.units import DIMENSIONS, to_si
 
 POSE = {"surge": "length", "sway": "length", "heave": "length", "roll": "angle", "pitch": "angle", "yaw": "angle"}
 WRENCH = {"Fx": "force", "Fy": "force", "Fz": "force", "Mx": "torque", "My": "torque", "Mz": "torque"}
 
+LONGEST_UNIT = 40  # letters; the longest that is written out, (rad/s^2)^2/Hz, has 14
 MOST_KEPT = 2_000_000  # letters of a table that is kept for the next time it is read
 _HEADER = re.compile(r"^\s*(.+?)\s*\[\s*(.+?)\s*\]\s*$")
-
-
-class Unreadable(InputError):
-    """A file that cannot be read as a table, whatever is in it."""
 
 
 def read_table(
@@ -111,17 +109,21 @@ def _header(path: Path, line: int, cells: list[str], dimensions: Mapping[str, st
             raise InputError(
                 "has no unit in the header",
                 file=path,
-                key=f"line {line}, column {cell.strip()!r}",
+                key=f"line {line}, column {quoted(cell.strip())}",
                 allowed="name [unit]",
             )
         name, unit = match[1], match[2]
         if name not in dimensions:
             raise InputError(
-                f"has an unknown column {name!r}",
+                f"has an unknown column {quoted(name)}",
                 file=path,
                 key=f"line {line}",
                 allowed=", ".join(dimensions),
-                next_step=closest(name, dimensions),
+                next_step=closest(name[:LONGEST_QUOTE], dimensions),
+            )
+        if len(unit) > LONGEST_UNIT:
+            raise InputError(
+                "has an unknown unit", file=path, key=f"line {line}, column {name!r}", value=unit[:LONGEST_QUOTE]
             )
         if name in factors:
             raise InputError(f"has the column {name!r} twice", file=path, key=f"line {line}")
@@ -146,7 +148,7 @@ def _row(path: Path, line: int, cells: list[str], names: list[str]) -> list[floa
                 "is empty or no finite number",
                 file=path,
                 key=f"line {line}, column {name!r}",
-                value=cell,
+                value=cell[:LONGEST_QUOTE],
                 next_step="Fill the gap or remove the line",
             )
         row.append(value)
@@ -196,6 +198,13 @@ def forces(count: int, dimension: str = "force") -> dict[str, str]:
 def header(columns: Mapping[str, str], along: str = "time") -> str:
     """First line of a table with these columns, in SI units."""
     return ", ".join(f"{name} [{DIMENSIONS[dimension].unit}]" for name, dimension in {along: along, **columns}.items())
+
+
+def table_text(content: Content) -> str:
+    """A CSV file of these columns, in SI units: read again they are the same, to the bit."""
+    first = ", ".join(f"{name} [{DIMENSIONS[dimension].unit}]" for name, (dimension, _) in content.items())
+    rows = np.column_stack([values for _, values in content.values()]).tolist()
+    return "\n".join([first, *(",".join(map(repr, row)) for row in rows)]) + "\n"
 
 
 def beside(table: Mapping[str, Array], names: Iterable[str]) -> Array:

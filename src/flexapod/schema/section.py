@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 
 from flexapod.arrays import Array
+from flexapod.errors import InputError, quoted
 from flexapod.schema.axes import NO_PLACE, WORDS, axis_of
 from flexapod.schema.columns import Column, columns_of
-from flexapod.schema.csv_tables import Unreadable, read_table
+from flexapod.schema.csv_tables import read_table
+from flexapod.schema.named_files import Content, Unreadable
 from flexapod.schema.systems import read_system
 from flexapod.schema.table import Table
 from flexapod.schema.values import Values
@@ -59,7 +62,8 @@ class Section(Values):
             given = self.data.get(name)
             return self.vector(name, *column.dimensions * (len(given) if isinstance(given, list) else 1))
         if column.kind == "text":
-            return self.text(name, column.choices)
+            found = self.text(name, column.choices)
+            return None if column.file and not found else found  # a table that was given in Python has no file
         if column.kind == "whole":
             return self.whole(name)
         if column.kind == "flag":
@@ -113,16 +117,58 @@ class Section(Values):
         along: str = "time",
     ) -> dict[str, Array]:
         """Columns of the CSV file under `file` or another name (`schema.csv_tables`)."""
-        self.need(name)
+        found = self._stored(name)
+        if found is not None:
+            return self._columns(name, found, {along: along, **columns})
         try:
-            return read_table(self.folder / str(self.text(name)), columns, needed=needed, jumps=jumps, along=along)
+            return read_table(self.place(name), columns, needed=needed, jumps=jumps, along=along)
         except Unreadable as error:
-            raise self.error(error.what, name, next_step=error.next_step) from None
+            raise self.refused(name, error) from None
 
     def linear_system(self, name: str = "file") -> dict[str, Any]:
         """The linear system in the file under `file` or another name (`schema.systems`)."""
+        found = self._stored(name)
+        if found is not None:
+            return {part: value for part, (_, value) in found.items()}
+        try:
+            return read_system(self.place(name))
+        except Unreadable as error:
+            raise self.refused(name, error) from None
+
+    def place(self, name: str) -> Path:
+        """Where the file is that a key names: the only way from a text of a study to a file.
+
+        Raises
+        ------
+        InputError
+            It is missing, or no file that this study may name.
+        """
         self.need(name)
         try:
-            return read_system(self.folder / str(self.text(name)))
+            return self.files.place(str(self.text(name)))
         except Unreadable as error:
-            raise self.error(error.what, name, next_step=error.next_step) from None
+            raise self.refused(name, error) from None
+
+    def refused(self, name: str, error: InputError) -> InputError:
+        """What is wrong with the file that a key names, told of the key."""
+        return self.error(error.what, name, allowed=error.allowed, next_step=error.next_step)
+
+    def _stored(self, name: str) -> Content | None:
+        """What stands for the file that a key names, if anything does."""
+        self.need(name)
+        path = self.key(name)
+        if path.startswith("leg."):  # of a table for all legs that of each
+            path = f"leg[{self.leg[0]}]{path[3:]}"
+        return self.files.content(path, str(self.text(name)))
+
+    def _columns(self, name: str, content: Content, dimensions: Mapping[str, str]) -> dict[str, Array]:
+        """Columns of a table that stands for a file; refused where the key asks for others."""
+        for column, (dimension, _) in content.items():
+            if dimensions.get(column) != dimension:
+                raise self.error(
+                    f"stands for a table with the column {quoted(column)}, {dimension}",
+                    name,
+                    allowed=", ".join(f"{column} ({dimension})" for column, dimension in dimensions.items()),
+                    next_step="Write a table with these columns into a file, and name that",
+                )
+        return {column: values for column, (_, values) in content.items()}

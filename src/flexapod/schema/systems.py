@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from flexapod.arrays import Array, floats
 from flexapod.errors import InputError
 from flexapod.runtime.files import LARGEST_TABLE, read_bytes
 from flexapod.schema.array_files import json_arrays, mat_arrays, npz_arrays, texts_of
-from flexapod.schema.csv_tables import Unreadable
+from flexapod.schema.named_files import Content, Unreadable
 
 __all__ = ["SYSTEM_FILES", "read_system"]
 
@@ -45,6 +46,12 @@ def read_system(path: Path) -> dict[str, Any]:
         return _checked(data)
     except InputError as error:
         raise error.located(file=path) from None
+
+
+def system_text(content: Content) -> str:
+    """A linear system as the text of a ``.json`` file."""
+    parts = {name: value.tolist() if isinstance(value, np.ndarray) else value for name, (_, value) in content.items()}
+    return json.dumps({name: value for name, value in parts.items() if value is not None})
 
 
 def _checked(data: Mapping[str, Any]) -> dict[str, Any]:

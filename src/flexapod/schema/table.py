@@ -1,6 +1,7 @@
 """A table of a study file: read by the fields of its class, kept as it was written, written back."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
@@ -9,12 +10,29 @@ from flexapod.schema.base import Frozen, same
 from flexapod.schema.written import Written, together
 
 if TYPE_CHECKING:
+    from flexapod.schema.named_files import Content
     from flexapod.schema.section import Section
 
-__all__ = ["Table", "plain"]
+__all__ = ["Place", "Table", "plain"]
 
 _WRITTEN = "written"  # where an object keeps the table that it was read from
-_CSV = "table.csv"  # for a table in a file, made in Python
+_HELD = "held"  # where a study keeps that its tables are all there is
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a table of a study stands: its `key`, the number of its `leg`; `cranks`: of which legs the drive turns."""
+
+    key: str = ""
+    leg: int = 1
+    cranks: frozenset[int] = frozenset()
+
+    def force(self, leg: int) -> str:
+        """What the drive of a leg pushes with: "force", or "torque" of a crank."""
+        return "torque" if leg in self.cranks else "force"
+
+
+ANYWHERE = Place()
 
 
 class Table(Frozen):
@@ -53,14 +71,21 @@ class Table(Frozen):
         """Fields that are not read key by key; asked once the keys are known to be right."""
         return {}
 
+    def tabled(self, place: "Place") -> "Content":
+        """What the file under its `FileKey` holds, or would hold; nothing where it has no such table."""
+        return {}
+
     def told(self) -> dict[str, object]:
-        """All that it has to say in a file, by key, in SI; what is None or follows from the rest is left out."""
+        """All that it has to say in a file, by key, in SI; what is None or follows from the rest is left out.
+
+        A file whose table was given in Python is "": no text names a file that never was.
+        """
         left_out = {*self.derived, *self._following(self._given)}
         infos = {name: info for name, info in type(self).model_fields.items() if name not in left_out}
         fields = {name: getattr(self, name) for name in infos}
         fields = {name: x for name, x in fields.items() if name not in self.silent or x != infos[name].default}
-        if "file" in fields and fields["file"] is None and getattr(self, "time", None) is not None:
-            fields["file"] = _CSV
+        if "file" in fields and fields["file"] is None and self.tabled(ANYWHERE):
+            fields["file"] = ""
         return {name: value for name, value in fields.items() if value is not None}
 
     @property
@@ -71,6 +96,16 @@ class Table(Frozen):
     def keep(self, written: Written) -> Self:
         """Itself, with the table that says the same."""
         vars(self)[_WRITTEN] = written
+        return self
+
+    @property
+    def holds_tables(self) -> bool:
+        """Whether no file stands behind its tables any more: it comes from results, which held them."""
+        return _HELD in vars(self)
+
+    def hold_tables(self) -> Self:
+        """Itself, whose tables are no more read from files."""
+        vars(self)[_HELD] = True
         return self
 
     def still_says(self, key: str) -> bool:
@@ -85,10 +120,21 @@ class Table(Frozen):
         InputError
             If a field does not exist or the new value is not allowed.
         """
-        return self._kept_in(super().replace(**changes))
+        return self._kept_in(super().replace(**self._unfiled(changes)))
+
+    def _unfiled(self, changes: dict[str, Any]) -> dict[str, Any]:
+        """Changes, and no file where the table is another one than that in the file."""
+        changed = [name for name in self.derived if name in changes and not same(changes[name], getattr(self, name))]
+        if not changed:
+            return changes
+        from flexapod.schema.columns import columns_of
+
+        return {column.name: None for column in columns_of(type(self)).values() if column.file} | changes
 
     def _kept_in(self, changed: Self) -> Self:
         """A changed object with what still holds of the table of this one."""
+        if self.holds_tables:
+            changed.hold_tables()
         if self.written is None:
             return changed
         fields = (name for name in type(self).model_fields if name not in self.untold)

@@ -10,6 +10,7 @@ from typing import Any, Self, TypeVar
 from flexapod.errors import InputError, Malformed, closest
 from flexapod.schema.axes import plane_order
 from flexapod.schema.columns import Kind
+from flexapod.schema.named_files import NamedFiles
 from flexapod.schema.notes import Notes
 from flexapod.schema.reference import advice, example_line
 from flexapod.schema.table import Table
@@ -30,8 +31,8 @@ class Values:
         Key path, e.g. ``leg.piston``; empty for the whole file.
     file : str, optional
         File name for messages.
-    folder : Path
-        Files named in the study are relative to it.
+    files : Path or NamedFiles
+        Where the files are that the study names: a folder, or more.
     notes : Notes, optional
         Takes down what is asked.
     plane : {"xy", "yz", "zx"}, optional
@@ -45,14 +46,14 @@ class Values:
         data: object,
         path: str,
         file: str | None,
-        folder: Path,
+        files: Path | NamedFiles,
         notes: Notes | None = None,
         plane: str | None = None,
         leg: tuple[int, int] = (1, 1),
     ) -> None:
         self.path: str = path
         self.file: str | None = file
-        self.folder: Path = folder
+        self.files: NamedFiles = files if isinstance(files, NamedFiles) else NamedFiles(files)
         self.notes: Notes | None = notes
         self.plane: str | None = plane
         self.leg: tuple[int, int] = leg
@@ -186,7 +187,7 @@ class Values:
 
     def child(self, data: object, name: str) -> Self:
         """A section for `data` found under `name`."""
-        return type(self)(data, self.key(name), self.file, self.folder, self.notes, self.plane, self.leg)
+        return type(self)(data, self.key(name), self.file, self.files, self.notes, self.plane, self.leg)
 
     def build(self, model: Callable[..., M], /, **fields: object) -> M:
         """A model from this section's values; absent ones (None) take the model's default."""

@@ -5,9 +5,10 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+from collections.abc import Callable
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from flexapod.runtime.files import check_regular, replacing
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset, Variable
 
+T = TypeVar("T")
 BLOCK = 1 << 20
 AGAIN = "Make it again with `flexapod run FILE`"
 NUMBER = 8  # bytes of a number in memory
@@ -63,6 +65,22 @@ def open_results(path: str | Path) -> Dataset:
     InputError
         No such file, none of ours, spoilt, or one that unpacks to more than this machine can hold.
     """
+
+    def loaded(data: Dataset) -> Dataset:
+        for name, array in data.variables.items():
+            _load(array, str(name), path)
+        return data
+
+    return _read(path, loaded)
+
+
+def stored_attributes(path: str | Path) -> dict[Any, Any]:
+    """The attributes of a Dataset that `save` wrote; InputError as of `open_results`."""
+    return _read(path, lambda data: dict(data.attrs))
+
+
+def _read(path: str | Path, read: Callable[[Dataset], T]) -> T:
+    """What is read of a file of ours while it is open."""
     import xarray as xr
 
     try:
@@ -71,9 +89,7 @@ def open_results(path: str | Path) -> Dataset:
         with xr.open_dataset(path, engine="netcdf4", decode_times=False) as data:
             _check_ours(data, path)
             _check_attributes(data, path)
-            for name, array in data.variables.items():
-                _load(array, str(name), path)
-            return data
+            return read(data)
     except InputError:
         raise
     except Exception as error:  # whatever a file that is none of ours makes its reader say
@@ -101,10 +117,15 @@ def _sum(data: Dataset) -> str:
     """Checksum of all attributes of a Dataset and its variables, the same before writing and after reading."""
     parts = {"": data.attrs, **{str(name): array.attrs for name, array in data.variables.items()}}
     plain = {
-        name: {key: np.atleast_1d(np.asarray(value)).tolist() for key, value in sorted(attrs.items()) if key != SUM}
+        name: {key: _summed(value) for key, value in sorted(attrs.items()) if key != SUM}
         for name, attrs in sorted(parts.items())
     }
     return hashlib.sha256(json.dumps(plain).encode()).hexdigest()
+
+
+def _summed(value: object) -> list[Any]:
+    found = np.atleast_1d(np.asarray(value))
+    return [hashlib.sha256(found.tobytes()).hexdigest()] if found.dtype == np.uint8 else found.tolist()
 
 
 def _load(array: Variable, name: str, path: str | Path) -> None:

@@ -13,11 +13,12 @@ from flexapod import version
 from flexapod.arrays import Array
 from flexapod.errors import InputError, check_known
 from flexapod.model import ActuatorStudy, Study
-from flexapod.results.attributes import attributes
+from flexapod.results.attributes import TABLES, attributes
 from flexapod.results.causes import cause_names
 from flexapod.results.leg_results import absent, drive_forms, leg_labels
 from flexapod.results.names import ACTUATOR_FORMS, SPACE_FORMS, VARIABLES, Variable, fixed_labels
 from flexapod.results.of_elements import element_forms
+from flexapod.results.packed_tables import as_text
 from flexapod.results.summary import tip_size
 from flexapod.schema.key_paths import Step, key_text
 from flexapod.surveys.sweeps.plan import Keep
@@ -216,6 +217,7 @@ def _header(points: Points, resolved: Resolved) -> dict[str, Any]:
         "study": study["study"],
         "study_file": study["study_file"],
         "study_hash": study["study_hash"],
+        **({TABLES: as_text(study[TABLES])} if TABLES in study else {}),
         "sweep": points.plan.text,
         "sweep_file": points.plan.file or "",
         "sweep_hash": points.plan.hash,

@@ -8,7 +8,6 @@ import tomllib
 from collections.abc import Callable, Collection, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,10 +16,12 @@ from flexapod.arrays import Array
 from flexapod.errors import InputError, Malformed
 from flexapod.model import ActuatorStudy, Study
 from flexapod.model.key_paths import leg_count, put, value_at
+from flexapod.model.stored import files_of
 from flexapod.results.causes import cause_names
 from flexapod.review.room import check_outputs, check_room, result_bytes
 from flexapod.schema.base import SHORT
 from flexapod.schema.key_paths import Step, copied, key_text, leaves, similar_key
+from flexapod.schema.named_files import NamedFiles
 from flexapod.surveys.sweeps.plan import SweepPlan, Tolerance
 from flexapod.surveys.sweeps.reading import (
     dimension_of,
@@ -110,7 +111,7 @@ class Points:
         self.nominal: Study | ActuatorStudy = study
         self.plan: SweepPlan = plan
         self.data: dict[str, Any] = tomllib.loads(study.source_text)
-        self.folder: Path = Path(study.path).parent if study.path else Path()
+        self.files: NamedFiles = files_of(study)
         self.dimensions: dict[str, str] = {}
         try:
             probe = self._probe()
@@ -151,7 +152,7 @@ class Points:
         InputError
             It cannot be: values that are not physical, or not allowed together.
         """
-        return study_of(self._tables(point)[0], self.folder)
+        return study_of(self._tables(point)[0], self.files)
 
     def packed(self, point: int) -> bytes:
         """The study of a point, pickled; asked for once, it is forgotten."""
@@ -180,7 +181,7 @@ class Points:
                 tables, values = self._tables(point)
                 for array, row in zip(scattered, values, strict=True):
                     array[point] = row
-                self._note(found, point, study_of(tables, self.folder))
+                self._note(found, point, study_of(tables, self.files))
             except Malformed as error:
                 raise error.located(file=self.plan.file) from None
             except InputError as error:
@@ -218,7 +219,7 @@ class Points:
 
     def _probe(self) -> dict[str, Any]:
         """Tables with the first value of every key; what is read of them tells the dimensions."""
-        read_with_dimensions(self.data, self.folder, self.dimensions)
+        read_with_dimensions(self.data, self.files, self.dimensions)
         probe = copied(self.data)
         firsts: list[tuple[tuple[Step, ...], object]] = []
         for block in self.plan.blocks:
@@ -229,7 +230,7 @@ class Points:
         for key, value in firsts:
             put(probe, key, value)
         try:
-            read_with_dimensions(probe, self.folder, self.dimensions)
+            read_with_dimensions(probe, self.files, self.dimensions)
         except Malformed as error:
             if error.what == "unknown key" and error.key:
                 error.next_step = self._hint(error.key) or error.next_step
@@ -245,7 +246,7 @@ class Points:
             trial = copied(good)
             with suppress(InputError):
                 put(trial, key, value)
-                read_with_dimensions(trial, self.folder, self.dimensions)
+                read_with_dimensions(trial, self.files, self.dimensions)
                 good = trial
 
     def _hint(self, key: str) -> str | None:
@@ -272,7 +273,7 @@ class Points:
         tables = copied(self.data)
         try:
             found = [leaf for path in each for leaf, _ in leaves(value_at(tables, path), path)]
-            read_with_dimensions(tables, self.folder, self.dimensions)  # what was spelled out has new paths
+            read_with_dimensions(tables, self.files, self.dimensions)  # what was spelled out has new paths
         except InputError:  # it has a value only where another entry of the sweep gives it one
             found = [leaf for path in each for leaf, _ in leaves(value_at(probe, path), path)]
         dimensions = {dimension_of(leaf, self.dimensions) for leaf in found}

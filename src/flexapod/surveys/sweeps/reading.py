@@ -13,13 +13,14 @@ from flexapod.errors import InputError
 from flexapod.model import ActuatorStudy, Study
 from flexapod.model.files import read_study
 from flexapod.schema.key_paths import Step, key_text
+from flexapod.schema.named_files import NamedFiles
 from flexapod.schema.notes import Notes
 from flexapod.schema.section import Section
 from flexapod.surveys.sweeps.plan import Draws, Hypercube, Spaced
 from flexapod.units import to_si
 
 
-def study_of(data: Mapping[str, Any], folder: Path) -> Study | ActuatorStudy:
+def study_of(data: Mapping[str, Any], files: Path | NamedFiles) -> Study | ActuatorStudy:
     """The study of these tables.
 
     Raises
@@ -29,14 +30,16 @@ def study_of(data: Mapping[str, Any], folder: Path) -> Study | ActuatorStudy:
     InputError
         The values are not allowed together, or not physical.
     """
-    return read_study(Section(data, "", None, folder), "a point of a sweep")
+    return read_study(Section(data, "", None, files), "a point of a sweep")
 
 
-def read_with_dimensions(data: Mapping[str, Any], folder: Path, dimensions: dict[str, str]) -> Study | ActuatorStudy:
+def read_with_dimensions(
+    data: Mapping[str, Any], files: Path | NamedFiles, dimensions: dict[str, str]
+) -> Study | ActuatorStudy:
     """As `study_of`; `dimensions` receives the dimension of every number that is read, by key path."""
     notes = Notes()
     try:
-        return read_study(Section(data, "", None, folder, notes), "a point of a sweep")
+        return read_study(Section(data, "", None, files, notes), "a point of a sweep")
     finally:
         given = (field for field in notes.fields.values() if field.value is not None)
         dimensions.update(number for field in given for number in field.numbers)
