@@ -75,6 +75,14 @@ def leg_tip(shapes: Shapes) -> NamedFunction:
     return x.named("leg_tip", [("q", x.q), ("p", x.p_vector)], [("J", x.by_q.jacobian(x.body.tip))])
 
 
+def leg_line(shapes: Shapes) -> NamedFunction:
+    """The line from the base joint of a leg to its tip, (3,), and its derivatives by the leg's coordinates, (3, n)."""
+    x = _Leg(shapes)
+    line = x.body.tip - x.body.foot
+    outputs = [("line", x.by_q.value(line)), ("J", x.by_q.jacobian(line))]
+    return x.named("leg_line", [("q", x.q), ("p", x.p_vector)], outputs)
+
+
 class _Leg:
     """The inputs of the functions of a leg, its equations, and the springs of its drives by coordinate."""
 
