@@ -16,7 +16,8 @@ from flexapod.control.channels import Names, chosen, groups
 from flexapod.control.frequency import response
 from flexapod.control.histories import histories, instants
 from flexapod.control.norms import h2_norms, hinf_norm, relative_gains
-from flexapod.control.poles import damping_of, poles_of, zeros_of
+from flexapod.control.poles import damping_of, poles_of
+from flexapod.control.zeros import zeros_of
 from flexapod.errors import InputError, names_of
 from flexapod.units import to_si
 
@@ -188,7 +189,7 @@ class StateSpace:
         What no input moves or no output shows is left out: such a pole and its zero cancel.
         """
         part = self._square("zeros", input, output)
-        return zeros_of(part.A, part.B, part.C, part.D, part.poles())
+        return zeros_of(part.A, part.B, part.C, part.D, part.D_rate)
 
     def h2(self, inputs: Names = None, outputs: Names = None) -> Dataset:
         """`h2_norm` (output, input) of each channel, Eq. (T21.25): rms under white noise of density 2, one-sided.
