@@ -132,7 +132,9 @@ def test_commands(kind, signal):
 @pytest.mark.parametrize("signal", [sine, chirp])
 @pytest.mark.parametrize("name", ["paper-robot", "machine-hexapod"])
 def test_floor(name, signal):
-    given = at_rest(name)
+    """Under a load that stands in the world, as weight does, while the floor turns below."""
+    load = model.Load(wrench=model.ConstantWrench(value=[2e3, -1e3, 500.0, 100.0, -200.0, 150.0]))
+    given = at_rest(name).replace(load=load)
     a = 0.1 * signal()[:, None] * np.array([1.0, 0.5, -0.7, 2.0, -1.0, 1.5])
     shaken = BaseMotion(time=TIME, values=a, at=[0.1, -0.2, 0.3])
     moved = given.replace(robot=given.robot.replace(base_motion=shaken))

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod.control.arguments import frequencies
 from flexapod.control.channels import NOISE, RATE, chosen
-from flexapod.control.interconnect import CONTROL, closed, law_of, units_with
+from flexapod.control.interconnect import CONTROL, closed, law_of, noise_names, units_with
 from flexapod.control.sampling import held, period_of
 from flexapod.errors import InputError
 from flexapod.units import to_si
@@ -37,12 +37,13 @@ class DelayedLoop:
     @property
     def inputs(self) -> tuple[str, ...]:
         """Those of the system, then what is added to readings."""
-        return (*self.system.inputs, *(NOISE + name for name in self.controller.inputs if not name.startswith(RATE)))
+        return (*self.system.inputs, *noise_names(self.controller.inputs, self.system.inputs))
 
     @property
     def outputs(self) -> tuple[str, ...]:
-        """Those of the system, then what the controller asks of actuators, before the delay."""
-        return (*self.system.outputs, *(CONTROL + name for name in self.controller.outputs))
+        """Those of the system, then what the controller asks of actuators, before the delay; of inner loops the sum."""
+        asked = (CONTROL + name for name in self.controller.outputs)
+        return tuple(dict.fromkeys((*self.system.outputs, *asked)))
 
     @property
     def units(self) -> dict[str, str]:
@@ -51,16 +52,22 @@ class DelayedLoop:
 
     def at(self, hz: ArrayLike) -> Complex:
         """Complex response (outputs, inputs, frequencies) at frequencies [Hz], Eq. (T21.22)."""
-        late = np.exp(-2j * np.pi * frequencies(hz) * self.delay)[:, None, None]
+        s = 2j * np.pi * frequencies(hz)
+        late = np.exp(-s * self.delay)[:, None, None]
         G, read, K = self.opened(hz)
-        m, at = len(self.system.inputs), self._actuators()
-        noisy = np.array([not name.startswith(RATE) for name in self.controller.inputs])
-        puts = np.eye(m)[:, at]
-        given = np.concatenate([np.broadcast_to(np.eye(m), (len(G), m, m)), late * (puts @ K)[:, :, noisy]], axis=2)
-        u = np.linalg.solve(np.eye(m) - late * (puts @ K @ read), given)
-        asked = K @ (read @ u)
-        asked[:, :, m:] += K[:, :, noisy]
-        return np.moveaxis(np.concatenate([G @ u, asked], axis=1), 0, 2)
+        names, m = self.inputs, len(self.system.inputs)
+        puts = np.eye(len(names))[:, self._actuators()]
+        more = np.zeros((len(G), 1, len(names) - m))
+        G, read = (np.concatenate([x, np.repeat(more, x.shape[1], axis=1)], axis=2) for x in (G, read))
+        for i, name in enumerate(self.controller.inputs):
+            read[:, i, names.index(NOISE + name.removeprefix(RATE))] += s if name.startswith(RATE) else 1.0
+        u = np.linalg.inv(np.eye(len(names)) - late * (puts @ K @ read))
+        places = np.zeros((len(self.outputs), K.shape[1]))
+        for k, name in enumerate(self.controller.outputs):
+            places[self.outputs.index(CONTROL + name), k] = 1.0
+        found = places @ K @ read @ u
+        found[:, : G.shape[1]] += G @ u
+        return np.moveaxis(found, 0, 2)
 
     def opened(self, hz: ArrayLike) -> tuple[Complex, Complex, Complex]:
         """Responses (f, any, any) without the loop: of the system, of what is read of it, of the controller."""

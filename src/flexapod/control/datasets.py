@@ -218,10 +218,11 @@ def impedance_dataset(
 
 
 def system_dataset(system: StateSpace) -> xr.Dataset:
-    """Matrices A, B, C, D with named states, inputs and outputs; `sample` [s], 0 of a continuous system."""
+    """Matrices A, B, C, D (D_rate) with named states, inputs and outputs; `sample` [s], 0 of a continuous system."""
     labels = channel_labels(system, "output", "input")
     labels |= {name: (name, list(system.states)) for name in ("state", "state_b")}
     dims = {"A": ("state", "state_b"), "B": ("state", "input"), "C": ("output", "state"), "D": ("output", "input")}
+    dims |= {} if system.D_rate is None else {"D_rate": dims["D"]}
     found = {name: (dim, getattr(system, name)) for name, dim in dims.items()}
     return composed(found, labels, {"sample": system.sample or 0.0, "sample_units": "s"})
 

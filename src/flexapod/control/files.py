@@ -29,6 +29,12 @@ def to_control(system: StateSpace) -> Any:
         ) from None
     if not (system.inputs and system.outputs):
         raise InputError("has no inputs or no outputs", key="system", value=system, allowed="at least one of each")
+    if system.D_rate is not None:
+        by = ", ".join(system.inputs[k] for k in np.flatnonzero(system.D_rate.any(axis=0)))
+        raise InputError(
+            "has outputs that follow rates of inputs, which python-control has no place for", key="system", value=by,
+            next_step=".select(inputs, outputs) takes others; a low_pass of the controller's rates has none",
+        )  # fmt: skip
     names = {"inputs": list(system.inputs), "outputs": list(system.outputs), "states": list(system.states)}
     return control.ss(system.A, system.B, system.C, system.D, system.sample or 0, **names)
 
@@ -45,11 +51,16 @@ def save(system: StateSpace, path: str | Path) -> Path:
 
 
 def _named(system: StateSpace) -> dict[str, np.ndarray]:
-    """Matrices and names; units beside inputs and outputs; a sample time of 0 is that of a continuous system."""
+    """Matrices and names; units beside inputs and outputs; a sample time of 0 is that of a continuous system.
+
+    `D_rate` only where outputs follow rates of inputs.
+    """
     names = {"inputs": system.inputs, "outputs": system.outputs, "states": system.states}
     units = {f"{name[:-1]}_units": [system.units.get(x, "1") for x in names[name]] for name in ("inputs", "outputs")}
     texts = {name: np.array(list(values), dtype=str) for name, values in (names | units).items()}
-    return {name: getattr(system, name) for name in "ABCD"} | texts | {"sample": np.array(system.sample or 0.0)}
+    matrices = {name: getattr(system, name) for name in "ABCD"}
+    matrices |= {} if system.D_rate is None else {"D_rate": system.D_rate}
+    return matrices | texts | {"sample": np.array(system.sample or 0.0)}
 
 
 def _mat(system: StateSpace, path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -53,7 +54,7 @@ def histories(system: StateSpace, time: Array, *, impulse: bool) -> Array:
     n, m = system.B.shape
     found = np.empty((len(system.outputs), m, len(time)))
     rings = impulse and system.sample is None  # from where the impulse has thrown it
-    moves = system if system.sample is not None else held(system, time[1] - time[0])
+    moves = system if system.sample is not None else held(replace(system.select(), D_rate=None), time[1] - time[0])
     x = np.array(system.B) if rings else np.zeros((n, m))
     for i in range(len(time)):
         u = float(not impulse or (i == 0 and not rings)) * np.eye(m)

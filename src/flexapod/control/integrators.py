@@ -18,12 +18,16 @@ Complex = NDArray[np.complex128]
 
 @dataclass(frozen=True, kw_only=True)
 class Integrated:
-    """A system as A (n, n), B (n, m), C (p, n) beside powers (k, p, m) of 1/s, 1/s^2, ..., Eq. (T21.34)."""
+    """A system as A (n, n), B (n, m), C (p, n) beside powers (k, p, m) of 1/s, 1/s^2, ..., Eq. (T21.34).
+
+    ``most`` (k, p, m): what the powers could add up to without cancelling.
+    """
 
     A: Array
     B: Array
     C: Array
     powers: Array
+    most: Array
 
     def drifting(self, s: Complex) -> Complex:
         """What the integrators answer at points s (f,), (p, m, f)."""
@@ -66,7 +70,7 @@ def without_integrators(A: Array, B: Array, C: Array) -> Integrated:
     N = np.concatenate([down, up])
     part = lambda rows, columns: A[rows][:, columns]  # noqa: E731
     if not len(N) or not len(main):
-        return _as_powers(A, B, C, N, main)
+        return _as_powers(A, B, C, N, main, (np.abs(B), np.abs(C)))
     # (T21.33)  x_main + X x_up and x_down + Y x_main are apart
     X = scipy.linalg.solve_sylvester(part(main, main), -part(up, up), -part(main, up)) if len(up) else None
     Y = scipy.linalg.solve_sylvester(part(down, down), -part(main, main), -part(down, main)) if len(down) else None
@@ -78,19 +82,24 @@ def without_integrators(A: Array, B: Array, C: Array) -> Integrated:
         second[down[:, None], main], undone[down[:, None], main] = Y, -Y
         change, back = change @ second, undone @ back
     if not (np.isfinite(change).all() and np.isfinite(back).all()):
-        return Integrated(A=A, B=B, C=C, powers=np.zeros((0, len(C), B.shape[1])))
-    return _as_powers(back @ A @ change, back @ B, C @ change, N, main)
+        none = np.zeros((0, len(C), B.shape[1]))
+        return Integrated(A=A, B=B, C=C, powers=none, most=none)
+    most = np.abs(back) @ np.abs(B), np.abs(C) @ np.abs(change)
+    return _as_powers(back @ A @ change, back @ B, C @ change, N, main, most)
 
 
-def _as_powers(A: Array, B: Array, C: Array, N: NDArray[np.int_], main: NDArray[np.int_]) -> Integrated:
-    """Integrators as powers of 1/s: their matrix to some power is 0."""
-    power, powers, inner = B[N], [], A[N][:, N]
+def _as_powers(
+    A: Array, B: Array, C: Array, N: NDArray[np.int_], main: NDArray[np.int_], sizes: tuple[Array, Array]
+) -> Integrated:
+    """Integrators as powers of 1/s: their matrix to some power is 0; ``sizes``: of B and C without cancelling."""
+    inner, shape = A[N][:, N], (len(C), B.shape[1])
+    powers, most = [], []
+    power, size = B[N], sizes[0][N]
     while power.any():
         powers.append(C[:, N] @ power)
-        power = inner @ power
+        most.append(sizes[1][:, N] @ size)
+        power, size = inner @ power, np.abs(inner) @ size
     return Integrated(
-        A=A[main][:, main],
-        B=B[main],
-        C=C[:, main],
-        powers=np.array(powers).reshape(len(powers), len(C), B.shape[1]),
-    )
+        A=A[main][:, main], B=B[main], C=C[:, main], powers=np.array(powers).reshape(len(powers), *shape),
+        most=np.array(most).reshape(len(powers), *shape),
+    )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Systems closed by controllers, with what enters at the sensors, (T21.20)-(T21.21)."""
+"""Systems closed by controllers, with what enters at the sensors, (T21.20)-(T21.21), (T21.46)-(T21.47)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from flexapod.errors import InputError
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
 
-__all__ = ["CONTROL", "OnChannels", "closed", "law_of", "opened", "units_with"]
+__all__ = ["CONTROL", "OnChannels", "closed", "law_of", "noise_names", "opened", "units_with"]
 
 CONTROL = "control:"  # before the name of an actuator: what the controller asks of it
 SINGULAR = 1e-12  # distance of a direct gain around a loop from 1 at which nothing says where it ends
@@ -23,44 +23,59 @@ SINGULAR = 1e-12  # distance of a direct gain around a loop from 1 at which noth
 
 @dataclass(frozen=True, kw_only=True)
 class Readings:
-    """What a controller reads: C x + D u + w, `noise` (readings, m + new) of all inputs and new ones by `names`."""
+    """What a controller reads: C x + D u + D_rate u', errors of sensors among the inputs, new ones by `names`.
+
+    ``C`` (readings, n); ``D``, ``D_rate`` (readings, m + new).
+    """
 
     C: Array
     D: Array
-    noise: Array
+    D_rate: Array
     names: tuple[str, ...]
 
 
+def noise_names(readings: Sequence[str], inputs: Sequence[str]) -> list[str]:
+    """Inputs for errors of the sensors that are read, plainly or by their rate, without those that are there."""
+    names = dict.fromkeys(NOISE + name.removeprefix(RATE) for name in readings)
+    return [name for name in names if name not in inputs]
+
+
 def _readings(system: StateSpace, readings: tuple[str, ...]) -> Readings:
-    """Outputs by their names, rates of outputs exactly, Eq. (T21.20); errors of readings as further inputs.
+    """Outputs by their names, rates of outputs and of their errors exactly, Eqs. (T21.20), (T21.46).
 
     Raises
     ------
     InputError
         A rate of what jumps with an input.
     """
+    new = noise_names(readings, system.inputs)
+    every = [*system.inputs, *new]
     plain = [name.removeprefix(RATE) for name in readings]
     rows = [chosen(name, system.outputs, "sensor")[0] for name in plain]
-    C, D = np.array(system.C[rows]), np.array(system.D[rows])
+    C, D, D_rate = np.array(system.C[rows]), *np.zeros((2, len(rows), len(every)))
+    D[:, : len(system.inputs)] = system.D[rows]
+    if system.D_rate is not None:
+        D_rate[:, : len(system.inputs)] = system.D_rate[rows]
+    errors = np.array([name.startswith(NOISE) for name in every])
     for i, name in enumerate(readings):
-        if not name.startswith(RATE):
-            continue
-        if system.sample is not None or D[i].any():
-            raise InputError(
-                "has no rate: it jumps with an input" if D[i].any() else "has no rate between samples",
-                key="sensor",
-                value=plain[i],
-                next_step="Give the controller a low_pass",
-            )
-        C[i], D[i] = C[i] @ system.A, C[i] @ system.B
-    names = tuple(NOISE + name for name in dict.fromkeys(readings) if not name.startswith(RATE))
-    new = tuple(name for name in names if name not in system.inputs)
-    every = [*system.inputs, *new]
-    noise = np.zeros((len(readings), len(every)))
-    for i, name in enumerate(readings):
-        if not name.startswith(RATE):
-            noise[i, every.index(NOISE + name)] = 1.0
-    return Readings(C=C, D=D, noise=noise, names=new)
+        if name.startswith(RATE):
+            jumps = bool(D[i, ~errors].any() or D_rate[i].any())
+            if system.sample is not None or jumps:
+                raise InputError(
+                    "has no rate: it jumps with an input" if jumps else "has no rate between samples",
+                    key="sensor",
+                    value=plain[i],
+                    next_step="Give the controller a low_pass",
+                )
+            D_rate[i] = D[i]
+            C[i], D[i] = C[i] @ system.A, _extended(C[i : i + 1] @ system.B, len(new))[0]
+        (D_rate if name.startswith(RATE) else D)[i, every.index(NOISE + plain[i])] += 1.0
+    return Readings(C=C, D=D, D_rate=D_rate, names=tuple(new))
+
+
+def _extended(matrix: Array, new: int) -> Array:
+    """A matrix with further columns of 0."""
+    return np.hstack([matrix, np.zeros((len(matrix), new))])
 
 
 @runtime_checkable
@@ -110,40 +125,49 @@ def closed(system: StateSpace, controller: StateSpace) -> StateSpace:
     if system.sample != controller.sample:
         words = f"of the controller is {controller.sample}, of the system {system.sample}"
         raise InputError(f"differs: that {words}", key="sample", next_step="Sample both with .sampled(period)")
+    if controller.D_rate is not None:
+        raise InputError(
+            "answers the rate of one of its inputs", key="controller", value=controller,
+            next_step="Give the loop inside it a low_pass, or .select other channels of it",
+        )  # fmt: skip
     at = [chosen(name, system.inputs, "actuator")[0] for name in controller.outputs]
     read = _readings(system, controller.inputs)
-    n, new = len(system.A), len(read.names)
-    m = len(system.inputs) + new
-    B, D = np.hstack([system.B, np.zeros((n, new))]), np.hstack([system.D, np.zeros((len(system.D), new))])
-    Dy = np.hstack([read.D, np.zeros((len(read.D), new))])
-    puts = np.eye(m)[:, at]
-    loop = np.eye(m) - puts @ controller.D @ Dy
+    new = len(read.names)
+    names = (*system.inputs, *read.names)
+    B, D = _extended(system.B, new), _extended(system.D, new)
+    D_rate = np.zeros(D.shape) if system.D_rate is None else _extended(system.D_rate, new)
+    puts = np.eye(len(names))[:, at]
+    through = puts @ controller.D
     if np.abs(1.0 - np.linalg.eigvals(controller.D @ read.D[:, at])).min(initial=1.0) < SINGULAR:
         raise InputError(
             "feeds a sensor straight through to the actuator that moves it",
             key="controller",
             allowed="a direct gain times the sensor's direct response other than 1",
         )
-    # (T21.21)  u = r + P (Ck xk + Dk (Cy x + Dy u + w))
-    by_x, by_k, by_r = (
-        np.linalg.solve(loop, matrix)
-        for matrix in (puts @ controller.D @ read.C, puts @ controller.C, np.eye(m) + puts @ controller.D @ read.noise)
+    # (T21.21)  u = r + P (Ck xk + Dk (Cy x + Dy u + Dy' u')), r with the errors of sensors
+    by_x, by_k, by_r, by_rate = (
+        np.linalg.solve(np.eye(len(names)) - through @ read.D, matrix)
+        for matrix in (through @ read.C, puts @ controller.C, np.eye(len(names)), through @ read.D_rate)
     )
-    asked = np.hstack([by_x[at], by_k[at]]).astype(float), np.asarray(by_r[at] - puts.T, dtype=float)
     A = np.block(
         [
             [system.A + B @ by_x, B @ by_k],
-            [controller.B @ (read.C + Dy @ by_x), controller.A + controller.B @ Dy @ by_k],
+            [controller.B @ (read.C + read.D @ by_x), controller.A + controller.B @ read.D @ by_k],
         ]
     )
-    outputs, C, D = _asked_for(system, controller, np.hstack([system.C + D @ by_x, D @ by_k]), D @ by_r, asked)
-    names = (*system.inputs, *read.names)
+    own = np.hstack([system.C + D @ by_x, D @ by_k, D @ by_r, D_rate + D @ by_rate])
+    asked: Array = np.hstack([by_x[at], by_k[at], by_r[at] - puts.T, by_rate[at]]).astype(np.float64)
+    outputs, rows = _asked_for(system, controller, own, asked)
+    C, D, D_rate = np.split(rows, [len(A), len(A) + len(names)], axis=1)
+    # (T21.47)  states less what rates of inputs add to them
+    ahead = np.vstack([B @ by_rate, controller.B @ (read.D @ by_rate + read.D_rate)])
     return replace(
         system.select(),
         A=A,
-        B=np.vstack([B @ by_r, controller.B @ (Dy @ by_r + read.noise)]),
+        B=np.vstack([B @ by_r, controller.B @ read.D @ by_r]) + A @ ahead,
         C=C,
-        D=D,
+        D=D + C @ ahead,
+        D_rate=D_rate,
         inputs=names,
         outputs=outputs,
         states=(*system.states, *_fresh(controller.states, system.states)),
@@ -151,20 +175,17 @@ def closed(system: StateSpace, controller: StateSpace) -> StateSpace:
     )
 
 
-def _asked_for(
-    system: StateSpace, controller: StateSpace, C: Array, D: Array, asked: tuple[Array, Array]
-) -> tuple[tuple[str, ...], Array, Array]:
+def _asked_for(system: StateSpace, controller: StateSpace, rows: Array, asked: Array) -> tuple[tuple[str, ...], Array]:
     """Outputs with what the controllers ask of actuators; of an inner and an outer loop the sum."""
     outputs = list(system.outputs)
-    for name, c, d in zip(controller.outputs, *asked, strict=True):
+    for name, row in zip(controller.outputs, asked, strict=True):
         own = CONTROL + name
         if own in outputs:
-            C[outputs.index(own)] += c
-            D[outputs.index(own)] += d
+            rows[outputs.index(own)] += row
         else:
             outputs.append(own)
-            C, D = np.vstack([C, c]), np.vstack([D, d])
-    return tuple(outputs), C, D
+            rows = np.vstack([rows, row])
+    return tuple(outputs), rows
 
 
 def _fresh(names: tuple[str, ...], taken: tuple[str, ...]) -> list[str]:

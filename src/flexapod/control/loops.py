@@ -11,9 +11,10 @@ from scipy.optimize import linear_sum_assignment, minimize_scalar
 
 from flexapod.control.arguments import number, numbers
 from flexapod.control.interconnect import closed, opened
-from flexapod.control.poles import damping_of, poles_of, zeros_of
+from flexapod.control.poles import damping_of
 from flexapod.control.sampling import law_beside
 from flexapod.control.state_space import a_system
+from flexapod.control.zeros import zeros_of
 from flexapod.errors import InputError
 from flexapod.units import to_si
 
@@ -122,4 +123,4 @@ def _least_ratio(system: StateSpace, law: StateSpace, factor: float, edge: float
 def _open_zeros(system: StateSpace, law: StateSpace) -> Complex:
     """Zeros of the loop from its actuators back to them: where branches end as the factor grows without end."""
     A, B, C, D = opened(system, law)
-    return zeros_of(A, B, C, D, poles_of(A))
+    return zeros_of(A, B, C, D)

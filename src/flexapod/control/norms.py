@@ -8,8 +8,8 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from flexapod.arrays import Array
-from flexapod.control.integrators import integrators, moved_and_shown, reached
+from flexapod.arrays import Array, Mask
+from flexapod.control.integrators import Integrated, integrators, moved_and_shown, reached, without_integrators
 from flexapod.control.poles import INTEGRATES, swings_of
 from flexapod.control.reduction import Subsystem, apart
 from flexapod.errors import ComputationError
@@ -54,18 +54,26 @@ def h2_norms(system: StateSpace) -> tuple[Array, dict[tuple[int, int], str]]:
     """H2 norm of each channel (outputs, inputs), Eq. (T21.25), and why some are infinite by (output, input)."""
     A, B, C, D = system.A, system.B, system.C, system.D
     found, why = np.zeros(D.shape), {}
+    rates = np.zeros(D.shape) if system.D_rate is None else system.D_rate
     links = A != 0
     shown = np.stack([reached(links.T, row != 0) for row in C]) if len(C) else np.zeros((0, len(A)), bool)
     drifting = integrators(A) if system.sample is None else np.zeros(len(A), dtype=bool)
     for j in range(B.shape[1]):
         moved = reached(links, B[:, j] != 0)
-        drifts = (shown & drifting & moved).any(axis=1)
-        for i in np.flatnonzero(drifts):
+        may = np.flatnonzero((shown & drifting & moved).any(axis=1))
+        still, of = _without_drift(A, B[:, j], C[may], moved) if may.size else (np.zeros(0, dtype=bool), None)
+        for i in may[~still]:
             why[int(i), j] = "an integrator: a pole at 0 Hz"
         if system.sample is None:
+            for i in np.flatnonzero(rates[:, j]):
+                why.setdefault((int(i), j), "it follows the rate of the input, which grows with frequency without end")
             for i in np.flatnonzero(D[:, j]):
                 why.setdefault((int(i), j), "feed-through: it follows what has no end of frequencies")
         ends = np.array([(i, j) not in why for i in range(len(C))], dtype=bool)
+        if of is not None and (rows := np.array([k for k in np.flatnonzero(still) if ends[may[k]]], dtype=int)).size:
+            found[may[rows], j], lasting = _h2_of(of.A, of.B[:, 0], of.C[rows], D[may[rows], j], None)
+            why |= {(int(i), j): words for i, words in zip(may[rows], lasting, strict=True) if words}
+            ends[may[rows]] = False
         kept = np.flatnonzero(moved & shown[ends].any(axis=0))
         rows = np.flatnonzero(ends)
         values, lasting = _h2_of(A[kept][:, kept], B[kept, j], C[rows][:, kept], D[rows, j], system.sample)
@@ -74,6 +82,18 @@ def h2_norms(system: StateSpace) -> tuple[Array, dict[tuple[int, int], str]]:
     for at in why:
         found[at] = np.inf
     return found, why
+
+
+def _without_drift(A: Array, b: Array, C: Array, moved: Mask) -> tuple[Mask, Integrated]:
+    """Outputs (p,) in which what integrators add cancels, Eq. (T21.34), and the system beside these integrators."""
+    at = np.flatnonzero(moved)
+    of = without_integrators(A[at][:, at], b[at, None], C[:, at])
+    return _cancels(of)[:, 0], of
+
+
+def _cancels(of: Integrated) -> Mask:
+    """Channels (p, m) in which powers of 1/s add up to rounding."""
+    return np.asarray((np.abs(of.powers) <= SHOWN * of.most).all(axis=0))
 
 
 def _h2_of(A: Array, b: Array, C: Array, d: Array, sample: float | None) -> tuple[Array, list[str]]:
@@ -121,7 +141,11 @@ def hinf_norm(system: StateSpace) -> tuple[float, float]:
     Bruinsma & Steinbuch, Systems & Control Letters 14, 1990: levels which no frequency reaches have Hamiltonian
     matrices without eigenvalues on the imaginary axis. Infinite, at its pole, of what never decays.
     """
+    if system.D_rate is not None:
+        return np.inf, np.inf
     A, B, C = moved_and_shown(system.A, system.B, system.C)
+    if system.sample is None and len((of := without_integrators(A, B, C)).A) < len(A) and _cancels(of).all():
+        A, B, C = of.A, of.B, of.C
     D, poles = system.D, np.linalg.eigvals(A).astype(complex)
     if not len(A):
         return float(np.linalg.norm(D, 2)) if D.size else 0.0, 0.0

@@ -51,8 +51,9 @@ def held(system: StateSpace, period: float, delay: float = 0.0, delayed: Sequenc
 
     `delay` [s] of the inputs `delayed` (all), Eq. (T21.18).
     """
+    late = list(range(system.B.shape[1])) if delayed is None else list(delayed)
+    system = _with_rates_beside(system)
     n, m = system.B.shape
-    late = list(range(m)) if delayed is None else list(delayed)
     if abs(delay) <= NEARLY * period or not late:
         step, push = _integrals(system.A, system.B, period)
         return without_rates(replace(system.select(), A=step, B=push, sample=period))
@@ -86,6 +87,20 @@ def held(system: StateSpace, period: float, delay: float = 0.0, delayed: Sequenc
     past = tuple(f"{system.inputs[i]} {j + 1} before" for j in range(length) for i in late)
     return without_rates(
         replace(system.select(), A=A, B=enters, C=C, D=D, states=(*system.states, *past), sample=period)
+    )
+
+
+def _with_rates_beside(system: StateSpace) -> StateSpace:
+    """A system whose rates of inputs, if outputs follow some, are inputs of their own, which drive no states."""
+    if system.D_rate is None:
+        return system
+    at = np.flatnonzero(system.D_rate.any(axis=0))
+    return replace(
+        system,
+        B=np.hstack([system.B, np.zeros((len(system.A), at.size))]),
+        D=np.hstack([system.D, system.D_rate[:, at]]),
+        inputs=(*system.inputs, *(RATE + system.inputs[k] for k in at)),
+        D_rate=None,
     )
 
 

@@ -16,7 +16,8 @@ from flexapod.control.channels import Names, chosen, groups
 from flexapod.control.frequency import response
 from flexapod.control.histories import histories, instants
 from flexapod.control.norms import h2_norms, hinf_norm, relative_gains
-from flexapod.control.poles import damping_of, poles_of, zeros_of
+from flexapod.control.poles import damping_of, poles_of
+from flexapod.control.zeros import zeros_of
 from flexapod.errors import InputError, names_of
 from flexapod.units import to_si
 
@@ -34,7 +35,7 @@ Complex = NDArray[np.complex128]
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class StateSpace:
-    """x' = A x + B u, y = C x + D u, Eq. (T21.1), or from sample to sample x_next = A x + B u.
+    """x' = A x + B u, y = C x + D u + D_rate u', Eqs. (T21.1), (T21.46), or from sample to sample x_next = A x + B u.
 
     Parameters
     ----------
@@ -45,6 +46,8 @@ class StateSpace:
         Units of inputs and outputs by the name of the channel.
     sample : float, optional
         Time between samples [s]; None of a continuous system.
+    D_rate : ndarray, shape (p, m), optional
+        Of rates of inputs, as loops without a filter have of errors of sensors; None where there are none.
     """
 
     A: Array
@@ -56,6 +59,7 @@ class StateSpace:
     states: tuple[str, ...]
     units: Mapping[str, str]
     sample: float | None = None
+    D_rate: Array | None = None
 
     def __post_init__(self) -> None:
         """Read-only matrices whose shapes fit the names."""
@@ -64,7 +68,10 @@ class StateSpace:
         if not isinstance(self.units, Mapping):
             raise InputError("are no units", key="units", value=self.units, allowed='by channel, as {"tool:z": "m"}')
         n, m, p = len(self.states), len(self.inputs), len(self.outputs)
-        for name, shape in (("A", (n, n)), ("B", (n, m)), ("C", (p, n)), ("D", (p, m))):
+        if self.D_rate is not None and not np.any(np.asarray(self.D_rate)):
+            object.__setattr__(self, "D_rate", None)
+        shapes = {"A": (n, n), "B": (n, m), "C": (p, n), "D": (p, m)}
+        for name, shape in (shapes if self.D_rate is None else shapes | {"D_rate": (p, m)}).items():
             try:
                 value = floats(getattr(self, name))
             except ValueError:
@@ -79,6 +86,8 @@ class StateSpace:
             object.__setattr__(self, name, value)
         if self.sample is not None:
             object.__setattr__(self, "sample", number(self.sample, "sample", "time", above=0.0))
+            if self.D_rate is not None:
+                raise InputError("is of continuous systems", key="D_rate", allowed="None of a sampled one")
 
     def __repr__(self) -> str:
         """How large it is, and its channels by group."""
@@ -102,10 +111,14 @@ class StateSpace:
             states=self.states,
             units=self.units,
             sample=self.sample,
+            D_rate=None if self.D_rate is None else self.D_rate[np.ix_(out, into)],
         )
 
     def sampled(self, period: float | str, delay: float | str = 0.0) -> StateSpace:
-        """The same between samples, inputs held for a `period` [s] (or "5 kHz") and late by a `delay` [s], (T21.17)."""
+        """The same between samples, inputs held for a `period` [s] (or "5 kHz") and late by a `delay` [s], (T21.17).
+
+        Rates of inputs are their last differences, Eq. (T21.19).
+        """
         from flexapod.control.sampling import held, period_of
 
         if self.sample is not None:
@@ -157,7 +170,8 @@ class StateSpace:
     def at(self, hz: ArrayLike) -> Complex:
         """Complex response (outputs, inputs, frequencies) at frequencies [Hz], Eqs. (T21.1)-(T21.3)."""
         s = np.asarray(2j * np.pi * frequencies(hz), dtype=np.complex128)
-        return response(self.A, self.B, self.C, self.D, s if self.sample is None else np.exp(s * self.sample))
+        found = response(self.A, self.B, self.C, self.D, s if self.sample is None else np.exp(s * self.sample))
+        return found if self.D_rate is None else found + self.D_rate[:, :, None] * s
 
     def frequency_response(self, hz: ArrayLike) -> Dataset:
         """Response at frequencies [Hz] as a Dataset: `frequency_response` (output, input, frequency, part)."""
@@ -175,7 +189,7 @@ class StateSpace:
         What no input moves or no output shows is left out: such a pole and its zero cancel.
         """
         part = self._square("zeros", input, output)
-        return zeros_of(part.A, part.B, part.C, part.D, part.poles())
+        return zeros_of(part.A, part.B, part.C, part.D, part.D_rate)
 
     def h2(self, inputs: Names = None, outputs: Names = None) -> Dataset:
         """`h2_norm` (output, input) of each channel, Eq. (T21.25): rms under white noise of density 2, one-sided.
@@ -234,7 +248,10 @@ class StateSpace:
         return source_dataset(part, *shaken(part, sources))
 
     def step(self, duration: float | None = None, step: float | None = None) -> Dataset:
-        """`step_response` (output, input, time) after unit steps at 0, exact; by itself as long as motions last."""
+        """`step_response` (output, input, time) after unit steps at 0, exact; by itself as long as motions last.
+
+        Without impulses at 0, where outputs follow rates of inputs.
+        """
         from flexapod.control.datasets import history_dataset
 
         time = instants(self, duration, step)

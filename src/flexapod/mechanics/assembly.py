@@ -90,6 +90,14 @@ def parts_of_elements(shapes: Shapes, values: Sequence[Array]) -> dict[Slot, lis
     return {one: parts_without_number(x.body.elements[one], x.damping_forces(one), variables, values) for one in own}
 
 
+def leg_line(shapes: Shapes) -> NamedFunction:
+    """The line from the base joint of a leg to its tip, (3,), and its derivatives by the leg's coordinates, (3, n)."""
+    x = _Leg(shapes)
+    line = x.body.tip - x.body.foot
+    outputs = [("line", x.by_q.value(line)), ("J", x.by_q.jacobian(line))]
+    return x.named("leg_line", [("q", x.q), ("p", x.p_vector)], outputs)
+
+
 class _Leg:
     """The inputs of the functions of a leg, its equations, and the springs of its drives by coordinate."""
 

@@ -1,4 +1,4 @@
-"""Functions of a leg that the linear model alone asks for, made when it does, Eqs. (T20.3), (T20.9)."""
+"""Functions of a leg that the linear model alone asks for, made when it does, Eqs. (T20.3), (T20.9), (T20.26)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from flexapod.solve.kernel import Function, fingerprint
 from flexapod.solve.system import System
 from flexapod.symbolic.compiler import CompiledFunction, compiled_library, compiler
 
-__all__ = ["carried", "pushes"]
+__all__ = ["carried", "lines", "pushes"]
 
 
 def pushes(system: System, q: Array) -> tuple[Array, Array] | None:
@@ -34,6 +34,13 @@ def carried(system: System, q: Array) -> Array:
     """Masses (P, legs, 6, n) between coordinates (P, legs, n) and a base that is moved; a system that has one."""
     found = _each(_function(system.kernel.shapes, "leg_carried"), q.reshape(-1, system.n), system, [(6, system.n)])[0]
     return found.reshape(*q.shape[:-1], 6, system.n)
+
+
+def lines(system: System, q: Array) -> tuple[Array, Array]:
+    """Lines (P, legs, 3) from base joints to tips at coordinates (P, legs, n), and derivatives by these (..., 3, n)."""
+    function, n = _function(system.kernel.shapes, "leg_line"), system.n
+    line, J = _each(function, q.reshape(-1, n), system, [(3,), (3, n)])
+    return line.reshape(*q.shape[:-1], 3), J.reshape(*q.shape[:-1], 3, n)
 
 
 def _pushes(kind: type[Physics]) -> bool:

@@ -1,4 +1,4 @@
-"""What a base that turns does to a robot that is seen from it, Eqs. (T20.8)-(T20.10)."""
+"""What a base that turns does to a robot that is seen from it, Eqs. (T20.8)-(T20.10), (T20.27)."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from flexapod.solve.linear.beside import carried
 from flexapod.solve.linear.motions import flat_forces
 from flexapod.solve.linear.plant import Plant
 from flexapod.solve.robot_system import robot_system, smooth
+from flexapod.solve.statics.stiffness import tool_motion
 from flexapod.solve.system import System
 
 __all__ = ["carried_masses", "tilt_stiffness", "turning_forces"]
@@ -45,9 +46,19 @@ def carried_masses(plant: Plant, about: Array) -> tuple[Array, Array]:
     return M[..., at], M[..., base]
 
 
-def tilt_stiffness(per_acceleration: Array, gravity: Array) -> Array:
-    """Forces (P, size, 3) against unit small turns of the base, by how gravity turns in its axes, Eq. (T20.10)."""
-    return -per_acceleration @ np.cross(np.eye(3), gravity).T
+def tilt_stiffness(plant: Plant) -> Array:
+    """Forces (P, size, 3) against unit small turns of the base: weights, load turn in its axes, (T20.10), (T20.27)."""
+    found = -plant.by_gravity @ _turning(plant.robot.gravity)
+    wrench, first = plant.locked.acts.wrench, plant.system.legs * plant.system.n
+    turned = np.concatenate([_turning(wrench[:3]), _turning(wrench[3:])])
+    if turned.any():
+        found[:, first:] += tool_motion(plant.robot, plant.x.pose).swapaxes(1, 2) @ turned
+    return found
+
+
+def _turning(vector: Array) -> Array:
+    """Change (3, 3) of a vector by unit small turns about the axes: columns e x vector."""
+    return np.asarray(np.cross(np.eye(3), vector).T)
 
 
 def _on_moved_base(robot: Robot, simulation: Simulation, per_loss: float, about: Array, at_rest: bool) -> System:

@@ -8,13 +8,13 @@ from functools import cached_property
 
 import numpy as np
 
-from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.kinematics.rotations import exponential, matrix
 from flexapod.mechanics.layout import columns, leg_parameters
 from flexapod.solve.batch import matrices_at_rest
 from flexapod.solve.kernel import evaluate
+from flexapod.solve.linear.beside import lines
 from flexapod.solve.linear.channels import PlantChannel
 from flexapod.solve.linear.first_order import FirstOrder
 from flexapod.solve.linear.floor import carried_masses
@@ -53,7 +53,7 @@ class Seen:
             case "joint-force":
                 return self.closure[i, axis]
             case "force-sensor:platform":
-                return self._along(i) @ self.closure[i, :3]
+                return self._along(i, self.closure[i, :3], self.plant.x.lam[0, i, :3])
             case "force-sensor:base":
                 return self._at_base(i)
             case _:
@@ -192,26 +192,38 @@ class Seen:
             return slope[i] @ own
         return own[system.kernel.shapes.index("r") if leg.gives and leg.measured == "rotor" else self._moved(i)]
 
-    def _along(self, i: int) -> Array:
-        """Line from the base joint of a leg to its platform joint, at rest, world axes (3,)."""
-        return kinematics.leg_axes(self.plant.robot, self.plant.locked.path)[0, i]
+    def _along(self, i: int, force: Array, at_rest: Array) -> Array:
+        """A force (3, n + m) along the line of the joints of a leg, which turns what there is at rest, (T20.26)."""
+        line, by_q = (x[0, i] for x in self._lines)
+        length = float(np.linalg.norm(line))
+        e, moved = line / length, by_q @ self._leg(self.place, i)
+        return e @ force + (at_rest - e * (e @ at_rest)) @ moved / length
+
+    @cached_property
+    def _lines(self) -> tuple[Array, Array]:
+        return lines(self.plant.system, self.plant.x.q)
 
     def _at_base(self, i: int) -> Array:
         """Force of the base on a leg along it, all masses of the leg behind it, Eq. (T20.20)."""
-        robot, along, n = self.plant.robot, self._along(i), self.first.A.shape[1]
+        robot, n = self.plant.robot, self.first.A.shape[1]
         M, own = (x[0, i, :3] for x in self._carried)
         found = self.closure[i, :3] + M @ self._leg(self.second.flat[0], i) @ self.first.acceleration
         for k, c in enumerate(self.inputs):
             if c.group == "floor":
                 found[:, n + k] += own[:, c.axis]
+        mass = float(own[0, 0])
         if robot.base_mount is not None:
-            f, count = self.plant.system.kernel.shapes.index("f"), robot.count
+            f, share = self.plant.system.kernel.shapes.index("f"), self._plate_mass / robot.count
             plate = self._leg(self.second.flat[0], i)[f : f + 3] @ self.first.acceleration
             for k, c in enumerate(self.inputs):
                 if c.group == "floor":
                     plate[:, n + k] += _carried_point(robot.base_mount.at - self.second.about)[:, c.axis]
-            found = found - self._plate_mass / count * plate
-        return along @ found
+            found, mass = found - share * plate, mass - share
+        for c in self.inputs:
+            if c.group == "floor" and c.name in self.second.names and c.axis >= 3:  # weight turns in axes of the floor
+                turn = self.first.place[self.second.names.index(c.name)]
+                found += mass * np.outer(np.cross(np.eye(3)[c.axis - 3], robot.gravity), turn)
+        return self._along(i, found, self.plant.x.lam[0, i, :3] - mass * robot.gravity)
 
     @cached_property
     def _carried(self) -> tuple[Array, Array]:

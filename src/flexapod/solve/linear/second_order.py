@@ -59,7 +59,7 @@ def second_order(plant: Plant, inputs: Sequence[PlantChannel], *, about: Array, 
     about : ndarray, shape (3,)
         Point about which the floor turns, world axes.
     tilt : bool
-        Whether gravity turns in the axes of a floor that turns.
+        Whether gravity and the load turn in the axes of a floor that turns.
 
     Raises
     ------
@@ -71,7 +71,8 @@ def second_order(plant: Plant, inputs: Sequence[PlantChannel], *, about: Array, 
     system, motions = plant.system, plant.motions
     P, d = len(plant.x), motions.columns.size
     commands = [c for c in inputs if c.group == "command"]
-    turns = [c for c in inputs if c.group == "floor" and c.axis >= 3] if tilt and plant.robot.gravity.any() else []
+    stands = plant.robot.gravity.any() or plant.locked.acts.wrench.any()  # what turns in axes of the floor
+    turns = [c for c in inputs if c.group == "floor" and c.axis >= 3] if tilt and stands else []
     extra = len(commands) + len(turns)
     if not d and not extra:
         raise InputError(
@@ -85,8 +86,8 @@ def second_order(plant: Plant, inputs: Sequence[PlantChannel], *, about: Array, 
     A, R, Q = on_motions(system, plant.m, flat)
     Q[:, :, d : d + len(commands)] += (by := _springs(plant, commands))[0]
     R[:, :, d : d + len(commands)] += by[1]
-    for k, channel in enumerate(turns):
-        Q[:, :, d + len(commands) + k] += tilt_stiffness(plant.by_gravity, plant.robot.gravity)[:, :, channel.axis - 3]
+    if turns:
+        Q[:, :, d + len(commands) :] += tilt_stiffness(plant)[:, :, [c.axis - 3 for c in turns]]
     _refuse_held(plant, inputs)
     forces = input_forces(plant, inputs, about)
     own, sums, lags = _named(plant)
