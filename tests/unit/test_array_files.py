@@ -22,7 +22,8 @@ from flexapod.model import preset_text
 from flexapod.schema.array_files import json_arrays, mat_arrays, npz_arrays, texts_of
 from flexapod.schema.systems import read_system
 
-ROOM = 600_000_000  # bytes; Python with NumPy and what is imported takes 120 of them, a file of the largest size thrice its own
+#: Bytes: Python with NumPy and what is imported takes 120 MB of them, a file of the largest size thrice its own.
+ROOM = 600_000_000
 
 
 def everything(_):

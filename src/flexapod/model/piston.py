@@ -12,7 +12,7 @@ from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.model.cylinder import check_axial
 from flexapod.model.material import MATERIALS, OF_MATERIAL, POISSON, Material, Rectangle, Tube, read_material, read_tube
-from flexapod.model.sections import SHARES, WEIGHTS, PistonSection, PistonStep
+from flexapod.model.sections import SHARES, PistonSection, PistonStep, as_uniform, rotary_inertia
 from flexapod.schema.base import Key, Quantity, agree
 from flexapod.schema.columns import columns_of
 from flexapod.schema.table import Table
@@ -182,7 +182,7 @@ class Piston(Table):
         given = fields.get("sections")
         made = [PistonSection._of(section) for section in given] if isinstance(given, list | tuple) else []
         if sections := [section for section in made if section is not None]:
-            return _of_sections(sections)
+            return as_uniform(sections)
         section = cls._section(fields)
         made_of = {name: fields[name] for name in _BY_HAND if fields.get(name) is not None}
         if section is None or not made_of:
@@ -283,11 +283,7 @@ class Piston(Table):
     @property
     def rotary_inertia(self) -> Array:
         """Rotary inertia of its sections along the whole, about leg y and x, (2,) [kg m^2]; 0 of one without shear."""
-        if not self.shear:
-            return np.zeros(2)
-        weights = np.array(WEIGHTS) * [[length] for length, _ in self.parts]
-        own = np.array([[(x.rhoA * x.EI[0] / x.EA, x.rhoA * x.EI[1] / x.EA) for x in at] for _, at in self.parts])
-        return np.einsum("ps,psd->d", weights, own)
+        return rotary_inertia(self.parts) if self.shear else np.zeros(2)
 
     @property
     def width(self) -> float:
@@ -337,25 +333,6 @@ class Piston(Table):
     def depth(self) -> float | None:
         """Size in the direction of bending [m]; None where no section is given."""
         return self.diameter
-
-
-def _of_sections(sections: Sequence[PistonSection]) -> dict[str, Any]:
-    """Numbers of a whole piston that follow from its sections; see `Piston.stepped`."""
-    steps = [step for section in sections for step in section.steps]
-    length = sum(step.length for step in steps)
-    grown = [section.length * section.expansion for section in sections if section.expansion is not None]
-    moduli = {section.E for section in sections}
-    limits = [section.yield_stress for section in sections if section.yield_stress is not None]
-    return {
-        "length": length,
-        "EA": length / sum(step.length / step.EA for step in steps),
-        "EI": length / sum(step.length / step.EI[1] for step in steps),
-        "GJ": length / sum(step.length / step.GJ for step in steps),
-        "rhoA": sum(step.length * step.rhoA for step in steps) / length,
-        "expansion": sum(grown) / length if len(grown) == len(sections) else None,
-        "E": moduli.pop() if len(moduli) == 1 else None,
-        "yield_stress": min(limits) if len(limits) == len(sections) else None,
-    }
 
 
 class Strip(Table):

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple
 
+import numpy as np
 from pydantic import Field, model_validator
 
+from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.model.material import OF_MATERIAL, POISSON, Rectangle, Tube, read_material
 from flexapod.schema.base import Key, Quantity
@@ -181,3 +183,29 @@ def _mean(steps: Sequence[PistonStep], weights: Sequence[float]) -> PistonStep:
         GJ=soft(x.GJ for x in steps),
         shear=soft(x.shear for x in steps),
     )
+
+
+def rotary_inertia(parts: Sequence[tuple[float, Sequence[PistonStep]]]) -> Array:
+    """Rotary inertia of pieces, each with its length and what it is at `SHARES` of it, (2,) [kg m^2]."""
+    weights = np.array(WEIGHTS) * [[length] for length, _ in parts]
+    own = np.array([[(x.rhoA * x.EI[0] / x.EA, x.rhoA * x.EI[1] / x.EA) for x in at] for _, at in parts])
+    return np.einsum("ps,psd->d", weights, own)
+
+
+def as_uniform(sections: Sequence[PistonSection]) -> dict[str, Any]:
+    """Numbers of a whole piston that follow from its sections; see `Piston.stepped`."""
+    steps = [step for section in sections for step in section.steps]
+    length = sum(step.length for step in steps)
+    grown = [section.length * section.expansion for section in sections if section.expansion is not None]
+    moduli = {section.E for section in sections}
+    limits = [section.yield_stress for section in sections if section.yield_stress is not None]
+    return {
+        "length": length,
+        "EA": length / sum(step.length / step.EA for step in steps),
+        "EI": length / sum(step.length / step.EI[1] for step in steps),
+        "GJ": length / sum(step.length / step.GJ for step in steps),
+        "rhoA": sum(step.length * step.rhoA for step in steps) / length,
+        "expansion": sum(grown) / length if len(grown) == len(sections) else None,
+        "E": moduli.pop() if len(moduli) == 1 else None,
+        "yield_stress": min(limits) if len(limits) == len(sections) else None,
+    }
