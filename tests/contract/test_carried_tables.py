@@ -281,7 +281,7 @@ def test_a_study_is_taken_from_the_page_with_its_tables_and_sent_again(title, em
     text = EXAMPLES[title]
     for file, content in reference().files.items():
         (home / f"my {file}").write_text(content)
-        text = text.replace(f'"{file}"', f'"../home/my {file}"')
+        text = text.replace(f'"{file}"', f'"../elsewhere/my {file}"')
     (home / "study.toml").write_text(text)
     source = open_source(home / "study.toml")
     ending, content = study_download(source.document, source.study)
