@@ -257,3 +257,16 @@ def test_noise_of_a_sensor_in_a_loop_of_place_and_rate():
     wide = (np.array([1e-4, 1e5]), np.full(2, S))
     found = loop.psd({"noise:stroke:1": wide}, "stroke").rms.item() ** 2
     assert found == pytest.approx(S * power / 2, rel=2e-4)
+
+
+def test_h2_of_samples_is_a_ratio_of_rms():
+    """y_next = a y + u under white samples: rms 1 / sqrt(1 - a^2), no root of a frequency in it."""
+    a = 0.6
+    one = fc.StateSpace(
+        A=[[a]], B=[[1]], C=[[1]], D=[[0]], inputs=("u",), outputs=("y",), states=("y",), units={"u": "V", "y": "m"},
+        sample=1e-3,
+    )  # fmt: skip
+    data = one.h2()
+    assert data.h2_norm.item() == pytest.approx(1 / np.sqrt(1 - a**2), rel=1e-12)
+    assert data.h2_norm.attrs["units"] == "output_units / input_units"
+    assert mode().h2().h2_norm.attrs["units"] == "output_units / input_units * Hz**0.5"

@@ -57,7 +57,7 @@ def test_a_floor_that_turns_about_another_point():
     p = np.array([0.3, -0.4, 0.7])
     moved = BaseMotion(time=np.array([0.0, 1.0]), values=np.zeros((2, 6)), at=p)
     there = given.replace(robot=given.robot.replace(base_motion=moved))
-    outputs = ["tool", "force-sensor:base", "accelerometer:(0.2, 0.1, 0.3)", "drive-force"]
+    outputs = ["tool", "force-sensor:base", "accelerometer:(0.2, 0.1, 0.3)", "force-sensor:drive"]
     one, other = (fx.linearize(x, POSE, inputs="floor", outputs=outputs).at(HZ) for x in (given, there))
     carry = np.eye(6)
     carry[:3, 3:] = -cross(-p)  # turn x (0 - p)

@@ -113,3 +113,33 @@ def test_a_tool_is_seen_from_the_base_plate_too():
     assert np.abs(H[:6] - alone[:6]).max() > 0.1 * np.abs(alone[:6]).max()
     found = lin.descriptor()
     assert found.outputs == lin.outputs and found.C.shape == (18, len(found.coordinates))
+
+
+def test_two_geophones_of_different_numbers_at_one_point():
+    """Each is its own filter of the acceleration there; the second has its numbers in its name."""
+    names = [
+        "geophone:tool",
+        "geophone:tool[2 Hz, 0.6, 28.8]",
+        "geophone:tool[2 Hz, 0.6, 28.8]:x",
+        "accelerometer:tool",
+    ]
+    lin = fx.linearize(fx.preset("nano-hexapod"), inputs="wrench", outputs=names)
+    second = [f"geophone:tool[2 Hz, 0.6, 28.8]:{x}" for x in "xyz"]
+    assert lin.outputs == (*(f"geophone:tool:{x}" for x in "xyz"), *second, *(f"accelerometer:tool:{x}" for x in "xyz"))
+    assert [lin.units[f"geophone:tool{x}:z"] for x in ("", "[2 Hz, 0.6, 28.8]")] == ["m/s", "V"]
+    felt = lin.select(None, "accelerometer").at(HZ)
+    for outputs, hz, ratio, gain in (("geophone:tool", 4.5, 0.7, 1.0), (second, 2.0, 0.6, 28.8)):
+        w = 2 * np.pi * hz
+        exact = gain * S / (S**2 + 2 * ratio * w * S + w**2) * felt
+        assert lin.select(None, outputs).at(HZ) == pytest.approx(exact, rel=1e-9)
+
+
+def test_one_name_is_one_quantity_of_a_screw():
+    """The force at its nut has a name that results do not give to its torque; the former one is told of."""
+    given = fx.preset("machine-hexapod")
+    lin = fx.linearize(given, inputs="wrench", outputs="force-sensor:drive")
+    with pytest.warns(FutureWarning, match='ask for "force-sensor:drive"'):
+        former = fx.linearize(given, inputs="wrench", outputs="drive-force")
+    assert (former.C == lin.C).all() and (former.D == lin.D).all() and former.units["drive-force:1"] == "N"
+    # where no screw turns, it is that of results, without a word
+    assert fx.linearize(fx.preset("paper-robot"), inputs="wrench", outputs="drive-force").units["drive-force:1"] == "N"

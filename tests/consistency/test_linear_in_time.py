@@ -84,7 +84,7 @@ def assert_same(ours, theirs, close=CLOSE):
     assert (np.array(apart) < close).all()
 
 
-OUTPUTS = ["tool", "drive-force", "joint-force"]
+OUTPUTS = ["tool", "force-sensor:drive", "joint-force"]
 WRENCH = np.array([0.3, -0.2, 0.5, 0.05, 0.03, -0.04])
 
 

@@ -135,12 +135,17 @@ def frf_dataset(frequency: Array, values: Complex, outputs: Mapping[str, str], i
 
 
 def h2_dataset(system: StateSpace, values: Array, why: dict[tuple[int, int], str]) -> xr.Dataset:
-    """`h2_norm` and `reason` (output, input); attribute `warnings`: a line for each channel that is infinite."""
+    """`h2_norm` and `reason` (output, input); attribute `warnings`: a line for each channel that is infinite.
+
+    Of a sampled system it is rms by rms, of white samples; of a continuous one rms by the root of a density.
+    """
     reason = np.full(values.shape, "", dtype=object)
     for at, words in why.items():
         reason[at] = words
     lines = [f"{system.outputs[i]} by {system.inputs[j]} is infinite: {words}" for (i, j), words in why.items()]
     attrs = {"long_name": "H2 norm", "units": "output_units / input_units * Hz**0.5"}
+    if system.sample is not None:
+        attrs = {"long_name": "H2 norm: rms by the rms of white samples", "units": "output_units / input_units"}
     return composed(
         {
             "h2_norm": (("output", "input"), values, attrs),

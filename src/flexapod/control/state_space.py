@@ -194,6 +194,7 @@ class StateSpace:
     def h2(self, inputs: Names = None, outputs: Names = None) -> Dataset:
         """`h2_norm` (output, input) of each channel, Eq. (T21.25): rms under white noise of density 2, one-sided.
 
+        Of a sampled system rms under white samples of the variance 1, without the unit Hz**0.5.
         Infinite where something follows what has no end of frequencies or never decays; `reason` says what.
         """
         from flexapod.control.datasets import h2_dataset

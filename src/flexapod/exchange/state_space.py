@@ -30,7 +30,8 @@ def state_space(
     pushed = any(leg.driven and leg.drive.pushes for leg in robot.legs)
     of_platform, in_space = not robot.platform_fixed, robot.plane is None
     into = ["wrench"] * of_platform + ["drive" if pushed else "command"] + ["floor"] * in_space
-    out = ["tool"] * of_platform + ["stroke", "drive-force"]
+    screws = any(leg.screw is not None for leg in robot.legs)  # drive_force of results is a torque there
+    out = ["tool"] * of_platform + ["stroke", "force-sensor:drive" if screws else "drive-force"]
     found = linearize(
         study,
         pose,

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+import warnings
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -75,11 +76,32 @@ def asked(names: str | Sequence[str], robot: Robot, key: str) -> list[PlantChann
     known, found = (INPUTS if key == "inputs" else OUTPUTS), {}
     for name in names_of(names, key):
         for channel in _of(name, known, robot, key):
-            if found.setdefault(channel.name, channel).geophone != channel.geophone:
-                raise InputError("is another geophone at a point that has one", key=key, value=name)
+            there = found.get(channel.name, channel)
+            if there.geophone != channel.geophone:
+                channel = replace(channel, name=_numbered(channel))
+            found.setdefault(channel.name, channel)
     if not found:
         raise InputError("are none", key=key, allowed=_words(known))
+    _tell_former(found.values(), robot)
     return list(found.values())
+
+
+def _numbered(channel: PlantChannel) -> str:
+    """Name of a geophone with its numbers: of a second one at a point."""
+    point, _, axis = channel.name.rpartition(":")
+    g = channel.geophone
+    return f"{point}[{g.f0:.12g} Hz, {g.damping:.12g}, {g.sensitivity:.12g}]:{axis}" if g else channel.name
+
+
+def _tell_former(channels: Iterable[PlantChannel], robot: Robot) -> None:
+    """Remark on what is a force at a screw's nut under the name that results give to the torque on the screw."""
+    if any(c.group == "drive-force" and robot.legs[c.leg].screw is not None for c in channels):
+        warnings.warn(
+            '"drive-force" of a screw is the force at its nut, in N, where drive_force of results is the torque on it: '
+            'ask for "force-sensor:drive", the same force; with the next release "drive-force" goes for screws',
+            FutureWarning,
+            stacklevel=4,
+        )
 
 
 def _words(known: Groups) -> str:
