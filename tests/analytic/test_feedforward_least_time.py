@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 
 import flexapod as fx
 from flexapod.control import StateSpace
+from flexapod.feedforward.drive_loads import limits_of
 from flexapod.feedforward.least_time import fastest
 from flexapod.kinematics import coordinates
 
@@ -129,6 +130,26 @@ def test_forces_of_a_robot_that_gives_way_keep_their_limits_too() -> None:
     rigid = fastest(study, acceleration=limit * 6 * sine**2 / study.robot.payload.mass, residual="1 um")
     assert rigid.marched == 0 and rigid.duration == pytest.approx(found.stiff, rel=0.01)
     assert np.abs(fx.simulate(rigid.study).drive_force.values).max() > 1.1 * limit
+
+
+@pytest.mark.parametrize(
+    ("limits", "bounds"),
+    [
+        ({"torque": 10.0}, True),
+        ({"force": 5e3}, True),
+        ({"torque": 10.0, "force": 5e3}, True),
+        ({"speed": 300.0}, False),
+    ],
+)
+def test_forces_or_torques_of_screws_bound_accelerations_and_speeds_do_not(limits: dict, bounds: bool) -> None:
+    study = fx.preset("machine-hexapod")
+    legs = tuple(x.replace(drive=x.drive.replace(limits=x.drive.limits.__class__(**limits))) for x in study.robot.legs)
+    study = study.replace(robot=study.robot.replace(legs=legs))
+    if bounds:
+        limits_of(study, None, None, None)
+    else:
+        with pytest.raises(fx.InputError, match="the least time would be 0"):
+            limits_of(study, None, None, None)
 
 
 def test_the_way_as_a_file(tmp_path: Path) -> None:

@@ -78,9 +78,12 @@ def test_the_weight_on_six_springs_is_carried_along_the_path() -> None:
 def test_the_miss_before_is_that_of_the_springs() -> None:
     study = springs()
     robot, found = study.robot, compensation(study)
-    misses = []
+    misses, turns = [], []
     for t in np.linspace(0.0, 1.0, 41):
         x = coordinates(study.motion, t).position[0]
         (p, R), (q, S) = rigid(robot, x), loaded(robot, x)
         misses.append(np.linalg.norm(q - p + (S - R) @ robot.tool))
+        turns.append(np.linalg.norm(Rotation.from_matrix(S).as_euler("xyz") - x[3:]))
     assert abs(found.tool[0] - max(misses)) < PLACE + LEFT
+    _, turn = found.commanded
+    assert abs(turn[0] - max(turns)) < PLACE + LEFT < 1e-3 * max(turns)
