@@ -45,7 +45,6 @@ PARTS, TURNS = 8, 2500  # parts of a turn of the delay; most turns that are foll
 FINER = 8  # parts of these, of several loops
 LARGE, FAINT = 0.1, 1e-3  # gains of loops that are followed in any case, and at most
 AT_ONCE = 4000  # frequencies
-STEPS_TO_ONE, SIZE_ONE = 20, 1e-12  # until an eigenvalue has the size 1, and how nearly
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -312,31 +311,37 @@ def _growing(poles: Complex, sample: float | None, delay: float, around: Gains, 
     for i in range(1, len(values)):
         values[i] = values[i][linear_sum_assignment(np.abs(values[i - 1][:, None] - values[i]))[1]]
     size = np.abs(values)
-    for i, j in np.argwhere((size[1:] - 1) * (size[:-1] - 1) < 0).tolist():
-        at, angle = _of_size_one(around, hz[i : i + 2], values[i : i + 2, j])
+    places = np.argwhere((size[1:] - 1) * (size[:-1] - 1) < 0)
+    for (i, j), at, angle in zip(places.tolist(), *_of_size_one(around, hz, values, places), strict=True):
         turns = max(0, int(np.ceil((delay - (angle % (2 * np.pi)) / (2 * np.pi * at)) / (1 / at))))
         count += 2 * turns * (1 if size[i + 1, j] < size[i, j] else -1)
     return count
 
 
-def _of_size_one(around: Gains, hz: Array, values: Complex) -> tuple[float, float]:
-    """Frequency [Hz] between two others at which an eigenvalue of the loops has the size 1, and its angle [rad] there.
+def _of_size_one(
+    around: Gains, hz: Array, values: Complex, places: NDArray[np.intp]
+) -> tuple[list[float], list[float]]:
+    """Frequencies [Hz] at which eigenvalues of the loops, (f, k), have the size 1, and their angles [rad] there.
 
-    By false positions, whose kept end counts half from step to step. Many turns of a delay ask for many digits.
+    `places` (n, 2): before which frequency, and which eigenvalue. Many turns of a delay ask for many digits: intervals
+    are cut twice, all at once, and what is left of them is as good as straight.
     """
-    ends, sizes, at, value = hz.astype(float), np.log(np.abs(values)), float(hz[0]), values[0]
-    for _ in range(STEPS_TO_ONE):
-        share = float(sizes[0] / (sizes[0] - sizes[1]))
-        at = float(ends[0] + share * (ends[1] - ends[0]))
-        there = np.linalg.eigvals(around(np.array([at])))[0]
-        value = there[np.abs(there - (1 - share) * values[0] - share * values[1]).argmin()]
-        size = float(np.log(np.abs(value)))
-        if abs(size) < SIZE_ONE:
-            break
-        side = int(size * sizes[1] > 0)
-        ends[side], values = at, np.where(np.arange(2) == side, value, values)
-        sizes = np.where(np.arange(2) == side, size, sizes / 2)
-    return at, float(np.angle(value))
+    low, high, last = hz[places[:, 0]], hz[places[:, 0] + 1], values[places[:, 0], places[:, 1]]
+    rows, ends, angle = np.arange(len(places)), low, np.angle(last)
+    for _ in range(2 if len(places) else 0):
+        f = np.linspace(low, high, CUTS + 1, axis=1)
+        each = np.linalg.eigvals(around(f.ravel())).reshape(*f.shape, -1)
+        followed = np.empty(f.shape, dtype=complex)
+        for cut in range(CUTS + 1):
+            last = each[rows, cut, np.abs(each[:, cut] - last[:, None]).argmin(axis=1)]
+            followed[:, cut] = last
+        size = np.log(np.abs(followed))
+        at = (size[:, 1:] * size[:, :-1] <= 0).argmax(axis=1)
+        low, high, last = f[rows, at], f[rows, at + 1], followed[rows, at]
+        share = np.clip(size[rows, at] / (size[rows, at] - size[rows, at + 1]), 0.0, 1.0)
+        ends = low + share * (high - low)
+        angle = np.angle(last) + share * np.angle(followed[rows, at + 1] / last)
+    return ends.tolist(), angle.tolist()
 
 
 def _frequencies(poles: Complex, sample: float | None) -> Array:
