@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
 from numbers import Real
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from flexapod.errors import InputError
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
 
-__all__ = ["COMMON_UNITS", "DIMENSIONS", "Dimension", "number_and_unit", "to_si"]
+__all__ = ["COMMON_UNITS", "DIMENSIONS", "Dimension", "number_and_unit", "quantities", "quantity", "to_si"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -161,6 +161,28 @@ def to_si(value: object, dimension: str, *, key: str | None = None) -> float:
     if not math.isfinite(number):
         raise _refuse("is not finite", value, dimension, key)
     return number
+
+
+def quantity(value: object, dimension: str, *, key: str | None = None) -> float:
+    """A number in SI units from what is typed on a command line or given to a call.
+
+    A number without a unit is in SI units, typed as well: ``5e-4``, ``"5e-4"`` and ``"0.5 ms"`` are one time. Texts of
+    study files need a unit: there numbers are written as numbers. Arguments and errors as of `to_si`.
+    """
+    if isinstance(value, str) and (read := number_and_unit(value)) is not None and not read[1]:
+        value = float(read[0])
+    return to_si(value, dimension, key=key)
+
+
+def quantities(values: Any, dimension: str, *, key: str | None = None) -> Any:
+    """One or several of what `quantity` reads, in any nesting: texts as SI numbers, what has no text untouched."""
+    if isinstance(values, str):
+        return quantity(values, dimension, key=key)
+    if getattr(getattr(values, "dtype", None), "kind", "") in "UO" and getattr(values, "ndim", 0):
+        values = values.tolist()
+    if type(values) in (list, tuple):
+        return type(values)(quantities(x, dimension, key=key) for x in values)
+    return values
 
 
 def _from_text(text: str, dimension: str, key: str | None) -> float:
