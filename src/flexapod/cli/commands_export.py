@@ -49,7 +49,10 @@ Commands = Annotated[
         "--commands", metavar="KIND", help="fmu, c: inputs, commands of the drives come from outside, or motion."
     ),
 ]
-Step = Annotated[str | None, typer.Option("--step", metavar="TIME", help="fmu, c: length of the fixed steps, 0.2ms.")]
+Step = Annotated[
+    str | None,
+    typer.Option("--step", metavar="TIME", help="fmu, c: length of the fixed steps, 0.2ms; without unit in s."),
+]
 Inputs = Annotated[
     str | None, typer.Option("--inputs", metavar="NAMES", help="mat: channels with commas, wrench,command,floor.")
 ]
