@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
 from numbers import Real
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from flexapod.errors import InputError
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
 
-__all__ = ["COMMON_UNITS", "DIMENSIONS", "Dimension", "number_and_unit", "to_si"]
+__all__ = ["COMMON_UNITS", "DIMENSIONS", "Dimension", "number_and_unit", "quantities", "quantity", "to_si"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,6 +114,7 @@ COMMON_UNITS = {
 }
 
 _TEXT = re.compile(r"^\s*([-+]?(?:\d+(?:\.\d*|,\d+)?|[.,]\d+)(?:[eE][-+]?\d+)?)(?![\d.,'])\s*(.*?)\s*$")
+_NONE = ("inf", "infinity", "nan")  # what no quantity is, and Python reads
 _TWO_READINGS = re.compile(r"^\s*[-+]?[1-9]\d{0,2},\d{3}(?!\d)")  # a thousand, or one with three decimals
 _NO_COMMA = "Write the number without a comma, with a point before decimals"
 _ANGLES = ("radian", "degree", "arcminute", "arcsecond", "turn", "revolution", "gradian", "grade")
@@ -161,6 +162,36 @@ def to_si(value: object, dimension: str, *, key: str | None = None) -> float:
     if not math.isfinite(number):
         raise _refuse("is not finite", value, dimension, key)
     return number
+
+
+def quantity(value: object, dimension: str, *, key: str | None = None) -> float:
+    """A number in SI units from what is typed on a command line or given to a call.
+
+    A number without a unit is in SI units, typed as well: ``5e-4``, ``"5e-4"`` and ``"0.5 ms"`` are one time. Texts of
+    study files need a unit: there numbers are written as numbers. Arguments and errors as of `to_si`.
+    """
+    if isinstance(value, str):
+        read = number_and_unit(value)
+        if (read is not None and not read[1]) or value.strip().lstrip("+-").lower() in _NONE:
+            value = float(read[0] if read else value)
+    return to_si(value, dimension, key=key)
+
+
+def quantities(values: Any, dimension: str, *, key: str | None = None) -> Any:
+    """A quantity as `quantity` reads it, or rows of them, in any nesting: texts as SI numbers, what has none untouched.
+
+    In rows texts need a unit: one of bare numbers is read from somewhere else, and may be in any.
+    """
+    if isinstance(values, str):
+        return quantity(values, dimension, key=key)
+    if getattr(getattr(values, "dtype", None), "kind", "") in "UO" and getattr(values, "ndim", 0):
+        values = values.tolist()
+    if type(values) in (list, tuple):
+        each = (
+            to_si(x, dimension, key=key) if isinstance(x, str) else quantities(x, dimension, key=key) for x in values
+        )
+        return type(values)(each)
+    return values
 
 
 def _from_text(text: str, dimension: str, key: str | None) -> float:

@@ -1,6 +1,7 @@
 """`flexapod export`: the deck as a file, and what CalculiX makes of it."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -82,6 +83,20 @@ def test_other_formats_are_named_after_the_study_and_say_what_they_leave_out(
     assert found["files"][0] == f"study.{ending}"
 
 
+def test_many_files_are_a_line_with_their_number(flexapod, study, folder):
+    """All of them are in JSON; on the terminal it was one line a file, 1603 for a study of a second."""
+    file = study(*SHORT)
+    run = flexapod("export", file, "--format", "vtk")
+    assert run.exit_code == 0, run.stderr
+    there = sorted(path for path in folder.rglob("*") if path.is_file() and path.suffix in (".vtp", ".vtu", ".pvd"))
+    assert len(there) > 20
+    said = " ".join(run.stdout.split())
+    (count,) = re.findall(r"Written: study\.pvd, and in study: (\d+) files \(VT[PU]\)\.", said)
+    assert int(count) == len(there) - 1 and said.count("Written") == 1 and len(run.stdout.splitlines()) < 15
+    found = json.loads(flexapod("export", file, "--format", "vtk", "--force", "--json").stdout)
+    assert sorted(found["files"]) == sorted(str(path.relative_to(folder)) for path in there)
+
+
 def test_options_of_formats_reach_them(flexapod, study, folder):
     file = study(*SHORT)
     rigid = flexapod("export", file, "--format", "mjcf", "--fidelity", "rigid")
@@ -93,8 +108,8 @@ def test_options_of_formats_reach_them(flexapod, study, folder):
         assert (read["B"].shape[1], read["C"].shape[0]) == (8, 1)
     unknown = flexapod("export", file, "--format", "mat", "--inputs", "wrnch")
     assert unknown.exit_code == 2 and "--inputs" in unknown.stderr and "wrench" in unknown.stderr
-    step = flexapod("export", file, "--format", "fmu", "--step", "1")
-    assert step.exit_code == 2 and "--step = 1: has no unit" in step.stderr
+    step = flexapod("export", file, "--format", "fmu", "--step", "1 m")
+    assert step.exit_code == 2 and "--step = 1 m: is not a time" in step.stderr
     for wrong, option in ((("--format", "gltf", "--elements", 4), "--elements"), (("--step", "1ms"), "--step")):
         run = flexapod("export", file, *wrong)
         assert run.exit_code == 2 and option in run.stderr and "is not an option of" in run.stderr

@@ -148,7 +148,7 @@ def test_body_of_the_payload_is_real():
     [
         ("hom=300 mm, payload=20 kg", ["unknown key", "Did you mean 'home'?"]),
         ("home=300 mm", ["--from payload", "is missing", "For example"]),
-        ("home=300, payload=20 kg", ["--from home", "has no unit", "27 mm"]),
+        ("home=300, payload=20 kg", ["--from home", "is out of range", "0.01 to 100 m"]),
         ("home=300 mm, payload=20 mm", ["--from payload", "is not a mass"]),
         ("home=300 mm, home=2 m, payload=1 kg", ["given twice"]),
         ("home=300 mm, payload", ["--from payload", "has no value"]),
@@ -185,10 +185,10 @@ def test_lists_are_read_as_people_write_them(text):
     assert request.home == pytest.approx(0.275) and request.payload == 5 and request.stroke == pytest.approx(0.03)
 
 
-def test_a_number_without_a_unit_is_not_offered_one_in_si():
-    with pytest.raises(InputError) as error:
-        parse_request("home=900, payload=100 kg")
-    assert "has no unit" in str(error.value) and "a number in m" not in str(error.value)
+def test_a_number_without_a_unit_is_in_si_as_everywhere_on_the_command_line():
+    bare, with_units = (parse_request(x) for x in ("home=0.9, payload=100", "home=900 mm, payload=100 kg"))
+    assert replace(bare, texts={}) == replace(with_units, texts={})
+    assert fx.loads(first_robot(replace(bare, drive="ideal"))).robot.home_height == 0.9
 
 
 def test_lengths_of_legs_are_told_in_one_unit():

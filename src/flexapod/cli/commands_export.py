@@ -23,6 +23,7 @@ OPTIONS = {"modes": "--count"} | {
     name: f"--{name}"
     for name in ("format", "out", "pose", "elements", "fidelity", "magnify", "commands", "step", "inputs", "outputs")
 }
+FEW = 4  # files that are named one by one
 COMMA = re.compile(r",(?![^(\[]*[)\]])")  # none of a place, (0, 0, 0.1), or of a sensor's numbers
 NAMES = frozenset(string.ascii_letters + string.digits + "-_")
 
@@ -48,7 +49,10 @@ Commands = Annotated[
         "--commands", metavar="KIND", help="fmu, c: inputs, commands of the drives come from outside, or motion."
     ),
 ]
-Step = Annotated[str | None, typer.Option("--step", metavar="TIME", help="fmu, c: length of the fixed steps, 0.2ms.")]
+Step = Annotated[
+    str | None,
+    typer.Option("--step", metavar="TIME", help="fmu, c: length of the fixed steps, 0.2ms; without unit in s."),
+]
 Inputs = Annotated[
     str | None, typer.Option("--inputs", metavar="NAMES", help="mat: channels with commas, wrench,command,floor.")
 ]
@@ -81,7 +85,7 @@ def export(
     """Write the robot for other programs: a deck, a unit that runs, a model, its motion to look at, matrices."""
     from flexapod.cli.map_options import parse_pose
     from flexapod.exchange.formats import FORMATS, check_options, check_place, format_of, written
-    from flexapod.units import to_si
+    from flexapod.units import quantity
 
     given: dict[str, object] = {
         "pose": parse_pose(pose),
@@ -90,7 +94,7 @@ def export(
         "fidelity": fidelity,
         "magnify": magnify,
         "commands": commands,
-        "step": None if step is None else to_si(step, "time", key="--step"),
+        "step": None if step is None else quantity(step, "time", key="--step"),
     }
     channels = {"inputs": inputs, "outputs": outputs}
     given |= {name: [x.strip() for x in COMMA.split(text)] for name, text in channels.items() if text is not None}
@@ -121,7 +125,17 @@ def _words(file: Path, pose: str | None, format: str, found: Exported) -> Sequen
             "Bending of slender pistons lies parts in ten thousand lower: a solid has shear and rotary inertia.",
         ]
     left = [f"Left out: {'; '.join(found.left_out)}."] if found.left_out else []
-    return [*(f"Written: {path}" for path in found.files), *found.remarks, *left]
+    return [*_written(found), *found.remarks, *left]
+
+
+def _written(found: Exported) -> list[str]:
+    """What was written: each of a few files, of many the one that names the others and how many there are."""
+    if len(found.files) <= FEW:
+        return [f"Written: {path}" for path in found.files]
+    others = [path for path in found.files if path != found.path]
+    kinds = " and ".join(sorted({path.suffix[1:].upper() for path in others}))
+    folders = ", ".join(sorted({str(path.parent) for path in others}))
+    return [f"Written: {found.path}, and in {folders}: {len(others)} files ({kinds})."]
 
 
 def _as_dict(format: str, found: Exported, elements: int | None, count: int | None) -> dict[str, object]:

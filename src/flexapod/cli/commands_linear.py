@@ -47,7 +47,7 @@ Drives = Annotated[
 Friction = Annotated[
     str | None, typer.Option("--friction", metavar="KIND", help="sliding or stuck, in place of the study's.")
 ]
-From = Annotated[str, typer.Option("--from", metavar="FREQUENCY", help="Lowest frequency.")]
+From = Annotated[str, typer.Option("--from", metavar="FREQUENCY", help="Lowest frequency, 1Hz; without unit in Hz.")]
 To = Annotated[str, typer.Option("--to", metavar="FREQUENCY", help="Highest frequency.")]
 Points = Annotated[int, typer.Option("--points", min=2, max=100_000, help="How many, at equal ratios.")]
 Folder = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Write frf.nc and a figure; default: not.")]
@@ -112,9 +112,9 @@ def _model(
 def _frequencies(lowest: str, highest: str, points: int) -> Array:
     import numpy as np
 
-    from flexapod.units import DIMENSIONS, to_si
+    from flexapod.units import DIMENSIONS, quantity
 
-    low, high = (to_si(text, "frequency", key=key) for text, key in ((lowest, "--from"), (highest, "--to")))
+    low, high = (quantity(text, "frequency", key=key) for text, key in ((lowest, "--from"), (highest, "--to")))
     least, most = DIMENSIONS["frequency"].least, DIMENSIONS["frequency"].most
     if not 0 < low < high:
         raise InputError("are no range", key="--from, --to", value=f"{lowest}, {highest}", allowed="0 < --from < --to")

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Sequence
 
-from flexapod.errors import InputError, check_known, closest
+from flexapod.errors import InputError, check_known
 from flexapod.model import AXES
+from flexapod.results.arguments import coordinate, pose_in_words
 from flexapod.surveys.workspace.grid import Range
-from flexapod.units import to_si
+from flexapod.units import number_and_unit, quantity
 
 _AXIS = re.compile(
     r"^\s*(?P<name>[^=\s]+)\s*(?:[=\s]\s*(?P<low>.+?)\s*\.\.\s*(?P<high>[^:]+?)\s*)?(?::\s*(?P<count>\S+))?\s*$"
@@ -50,7 +51,7 @@ def _axis(option: str, text: str) -> tuple[str, Range]:
     low, high = match["low"], match["high"]
     if (unit := _UNIT.search(high)) and _is_number(low):
         low += unit[0]
-    ends = [_si(option, name, end) for end in (low, high)]
+    ends = [coordinate(name, end, f"{option} {name}") for end in (low, high)]
     if ends[0] > ends[1] or (ends[0] == ends[1] and count != 1):
         raise InputError("begins where it should end", key=option, value=text, allowed="the lower end first")
     return name, Range(low=ends[0], high=ends[1], count=count)
@@ -80,26 +81,13 @@ def parse_at(text: str | None, axes: Collection[str] = ()) -> dict[str, float]:
             raise InputError(what, key="--at", value=part.strip(), next_step='Write --at "roll=20deg,heave=10mm"')
         if name in axes:
             raise InputError("varies in this map: it cannot be fixed, too", key="--at", value=part.strip())
-        fixed[name] = _si("--at", name, value)
+        fixed[name] = coordinate(name, value, f"--at {name}")
     return fixed
 
 
 def parse_pose(text: str | None) -> dict[str, float] | None:
-    """Surge, sway, heave [m], roll, pitch, yaw [rad] from ``"roll=20deg,heave=10mm"``; None: home.
-
-    InputError: unknown axes, something that is not a number with a unit of the right kind.
-    """
-    if not text or not text.strip():
-        return None
-    pose: dict[str, float] = {}
-    for part in text.split(","):
-        name, equals, value = (piece.strip() for piece in part.partition("="))
-        if not equals or name not in AXES or name in pose:
-            what = "is given twice" if name in pose else "is not an axis with its value"
-            hint = closest(name, AXES) or 'Write --pose "roll=20deg,heave=10mm"'
-            raise InputError(what, key="--pose", value=part.strip(), allowed=", ".join(AXES), next_step=hint)
-        pose[name] = _si("--pose", name, value)
-    return pose
+    """A pose as of `pose_in_words`; None: home."""
+    return None if text is None else pose_in_words(text, "--pose")
 
 
 def parse_direction(text: str) -> str | list[float]:
@@ -118,7 +106,7 @@ def parse_acceleration(text: str | None) -> list[float] | None:
     whole = [part.strip() + (unit[0] if unit and _is_number(part) else "") for part in parts]
     if len(whole) != 3:
         raise InputError("is not a vector", key="--acceleration", value=text, allowed='three numbers such as "0,0,5"')
-    return [to_si(_number(part), "acceleration", key="--acceleration") for part in whole]
+    return [quantity(part, "acceleration", key="--acceleration") for part in whole]
 
 
 def _numbers(option: str, text: str, allowed: str) -> list[float]:
@@ -135,16 +123,7 @@ def _check_name(option: str, name: str) -> None:
     check_known(name, AXES, option, "is not a coordinate")
 
 
-def _si(option: str, name: str, text: str) -> float:
-    return to_si(_number(text), "length" if name in AXES[:3] else "angle", key=f"{option} {name}")
-
-
 def _is_number(text: str) -> bool:
-    return isinstance(_number(text), float)
-
-
-def _number(text: str) -> float | str:
-    try:
-        return float(text)
-    except ValueError:
-        return text
+    """Whether a text is a number without a unit."""
+    read = number_and_unit(text)
+    return read is not None and not read[1]

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from flexapod.arrays import Array, floats
 from flexapod.errors import InputError
-from flexapod.units import DIMENSIONS, to_si
+from flexapod.units import DIMENSIONS, quantities, quantity
 
 __all__ = ["flag", "frequencies", "matrix", "number", "numbers", "whole"]
 
@@ -27,7 +27,7 @@ def number(
         one = given if isinstance(given, str) or np.ndim(given) else np.asarray(given).item()  # type: ignore[arg-type]
     except (TypeError, ValueError):
         one = given
-    found = to_si(one, dimension, key=key)
+    found = quantity(one, dimension, key=key)
     if not (least <= found <= most and found > above):
         begin = f"above {above:g}" if np.isfinite(above) else f"{least:g} or more" if np.isfinite(least) else ""
         words = [begin, f"at most {most:g}" if np.isfinite(most) else ""]
@@ -80,6 +80,7 @@ def numbers(given: ArrayLike, key: str, allowed: str) -> Array:
 
 def frequencies(hz: ArrayLike) -> Array:
     """Frequencies [Hz], (f,)."""
+    hz = quantities([hz] if isinstance(hz, str) else hz, "frequency", key="hz")
     found, most = (
         numbers(hz, "hz", "frequencies [Hz], for example numpy.geomspace(1, 1000, 400)"),
         DIMENSIONS["frequency"].most,

@@ -13,7 +13,7 @@ from flexapod.control.channels import NOISE, RATE, chosen
 from flexapod.control.interconnect import CONTROL, closed, law_of, noise_names, units_with
 from flexapod.control.sampling import held, period_of
 from flexapod.errors import InputError
-from flexapod.units import to_si
+from flexapod.units import quantity
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -93,7 +93,7 @@ def close(
 ) -> StateSpace | DelayedLoop:
     """See `StateSpace.close`."""
     law = law_of(controller, system.outputs, system.inputs, system.units)
-    late = to_si(delay, "time", key="delay")
+    late = quantity(delay, "time", key="delay")
     if late < 0:
         raise InputError("is below 0", key="delay", value=delay, allowed="0 s or more")
     at = [chosen(name, system.inputs, "actuator")[0] for name in law.outputs]

@@ -17,7 +17,7 @@ from flexapod.control.interconnect import law_of
 from flexapod.control.laws import ControlLaw, Number
 from flexapod.control.state_space import StateSpace
 from flexapod.errors import InputError
-from flexapod.units import to_si
+from flexapod.units import quantity
 
 __all__ = ["DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together", "pairs"]
 
@@ -125,10 +125,10 @@ class IFF(Controller):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
-        law = laws.integrator(-to_si(self.gain, "number", key="gain"), self.high_pass)
+        law = laws.integrator(-quantity(self.gain, "number", key="gain"), self.high_pass)
         sensors, actuators = pairs(self.sensor, self.actuator, outputs, inputs)
         each = np.eye(len(sensors))
-        stiffness = to_si(self.parallel_stiffness, "stiffness", key="parallel_stiffness")
+        stiffness = quantity(self.parallel_stiffness, "stiffness", key="parallel_stiffness")
         if not stiffness:
             return assembled([law] * len(sensors), each, each, sensors, actuators, units)
         strokes, _ = pairs(self.stroke, self.actuator, outputs, inputs)

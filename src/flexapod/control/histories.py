@@ -11,7 +11,7 @@ from flexapod.arrays import Array
 from flexapod.control.poles import damping_of
 from flexapod.control.sampling import held
 from flexapod.errors import InputError
-from flexapod.units import to_si
+from flexapod.units import quantity
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
@@ -34,14 +34,14 @@ def instants(system: StateSpace, duration: float | None, step: float | None) -> 
     if duration is None:
         decay = np.maximum(np.abs(s.real[moving]), 1e-300)
         duration = float(np.minimum(MOST / frequency[moving], DECAYS / decay).max(initial=0.0)) or 1.0
-    duration = to_si(duration, "time", key="duration")
+    duration = quantity(duration, "time", key="duration")
     if not duration > 0:
         raise InputError("is not a time", key="duration", value=duration, allowed="above 0 s")
     if step is None:
         swings = moving & (s.imag > 0)
         fine = duration / COUNT
         step = max(fine, 1 / (PERIOD * frequency[swings].max())) if swings.any() else fine
-    step = to_si(step, "time", key="step")
+    step = quantity(step, "time", key="step")
     if not 0 < step <= duration:
         raise InputError("is not a time", key="step", value=step, allowed=f"above 0 s, at most {duration:g} s")
     if duration > LONGEST * step:

@@ -16,7 +16,7 @@ from flexapod.control.sampling import law_beside
 from flexapod.control.state_space import a_system
 from flexapod.control.zeros import zeros_of
 from flexapod.errors import InputError
-from flexapod.units import to_si
+from flexapod.units import quantity
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -85,7 +85,7 @@ def best_gain(
     from flexapod.control.datasets import best_dataset
 
     law = law_beside(a_system(system), controller)
-    edge = np.inf if below is None else to_si(below, "frequency", key="below")
+    edge = np.inf if below is None else quantity(below, "frequency", key="below")
     least, most = number(least, "least"), number(most, "most")
     if not 0 < least < most:
         raise InputError("are no factors", key="least, most", value=f"{least}, {most}", allowed="0 < least < most")

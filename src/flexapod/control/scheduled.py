@@ -17,6 +17,8 @@ from flexapod.control.interconnect import law_of
 from flexapod.control.sampling import LATEST, period_of
 from flexapod.errors import InputError
 from flexapod.model import AXES
+from flexapod.schema.csv_tables import POSE
+from flexapod.units import quantities
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
@@ -45,6 +47,7 @@ class Scheduled:
         if not isinstance(self.axes, Mapping) or not self.axes:
             raise InputError("are none", key="axes", value=self.axes, allowed='as {"heave": [-0.1, 0, 0.1]} [m, rad]')
         for name, given in self.axes.items():
+            given = quantities(given, _measures(name), key=f"axes.{name}")
             values = numbers(given, f"axes.{name}", "two values or more, rising")
             if len(values) < 2 or (np.diff(values) <= 0).any():
                 raise InputError("does not rise", key=f"axes.{name}", value=given, allowed="two values or more")
@@ -112,6 +115,11 @@ def _check_alike(each: Sequence[StateSpace]) -> None:
         raise InputError("are of several kinds", key="controllers", allowed="the same channels and states everywhere")
 
 
+def _measures(name: str) -> str:
+    """What a coordinate of a grid measures; one that is no coordinate of a pose is a number."""
+    return POSE.get(name, "number")
+
+
 def _weights(axes: Mapping[str, Sequence[float]], pose: Mapping[str, float]) -> list[tuple[int, float]]:
     """Points about a pose and their weights, which add up to 1."""
     if not isinstance(pose, Mapping) or set(pose) - {*axes, *AXES}:
@@ -119,7 +127,9 @@ def _weights(axes: Mapping[str, Sequence[float]], pose: Mapping[str, float]) -> 
         raise InputError("is no pose of this grid", key="pose", value=pose, allowed=words)
     sides = []
     for name, values in axes.items():
-        grid, x = np.asarray(values, dtype=float), number(pose.get(name, 0.0), name)
+        kind = _measures(name)
+        grid = np.asarray(quantities(values, kind, key=f"axes.{name}"), dtype=float)
+        x = number(pose.get(name, 0.0), name, kind)
         if not grid[0] <= x <= grid[-1]:
             raise InputError("is outside of the grid", key=name, value=x, allowed=f"{grid[0]:g} to {grid[-1]:g}")
         k = min(int(np.searchsorted(grid, x, side="right")) - 1, len(grid) - 2)

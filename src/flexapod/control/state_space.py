@@ -19,7 +19,7 @@ from flexapod.control.norms import h2_norms, hinf_norm, relative_gains
 from flexapod.control.poles import damping_of, poles_of
 from flexapod.control.zeros import zeros_of
 from flexapod.errors import InputError, names_of
-from flexapod.units import to_si
+from flexapod.units import quantity
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -123,7 +123,7 @@ class StateSpace:
 
         if self.sample is not None:
             raise InputError("is sampled already", key="sample", value=self.sample, allowed="a continuous system")
-        return held(self, period_of(period), to_si(delay, "time", key="delay"))
+        return held(self, period_of(period), quantity(delay, "time", key="delay"))
 
     @overload
     def close(self, controller: Controller | StateSpace) -> StateSpace: ...

@@ -1,4 +1,4 @@
-"""What a first robot is asked for, a few quantities with units, as typed, and its sizes."""
+"""What a first robot is asked for, a few quantities as typed, and its sizes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from flexapod.arrays import Array
 from flexapod.errors import InputError, closest
 from flexapod.model import AXES, MATERIALS, base_circle, platform_circle
-from flexapod.units import DIMENSIONS, number_and_unit, to_si
+from flexapod.units import quantity
 from flexapod.words import text
 
 OPTION = "--from"
@@ -63,7 +63,7 @@ def parse_request(text: str) -> Request:
     Raises
     ------
     InputError
-        An unknown key, one that is given twice or missing, a value without a unit or out of range.
+        An unknown key, one that is given twice or missing, a value that is no such quantity or out of range.
     """
     given: dict[str, str] = {}
     for part in filter(None, (" ".join(piece.split()) for piece in _BETWEEN.split(text))):
@@ -86,10 +86,7 @@ def parse_request(text: str) -> Request:
 
 def _number(key: str, value: str) -> float:
     dimension, least, most = _NUMBERS[key]
-    if (read := number_and_unit(value)) is not None and not read[1]:
-        words = f'a {dimension} with its unit, such as "{DIMENSIONS[dimension].example}"'
-        raise InputError("has no unit", key=f"{OPTION} {key}", value=value, allowed=words)
-    number = to_si(value, dimension, key=f"{OPTION} {key}")
+    number = quantity(value, dimension, key=f"{OPTION} {key}")
     if not least <= number <= most:
         unit = {"length": "m", "mass": "kg", "time": "s"}[dimension]
         words = f"{least:g} to {most:g} {unit}"

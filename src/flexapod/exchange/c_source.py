@@ -24,11 +24,12 @@ HERE = Path(__file__).parent / "c"
 #: What the numbers rest on, and what makes a run as fast as those of flexapod.
 FLAGS = ("-std=gnu11", "-O2", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off")
 LOOPS = ("system.h", "lu.c", "legs.c", "arrow.c", "state.c", "loop.c", "march.c")
+TABLES, BODIES = "/* A function as a table", "/* A lane function for `count` bodies"  # begins of parts of the prelude
 WIDER = 2  # memory with vectors of another width against that with those of this machine, at most
 _COUNTS = ("n", "rows", "leg_p", "joint", "command", "common", "plate", "posed", "floor", "bristles", "loop")
 
 
-def c(study: model.Study, commands: str = "inputs", step: float | None = None) -> Content:
+def c(study: model.Study, commands: str = "inputs", step: float | str | None = None) -> Content:
     """A folder with the C of a robot in fixed steps.
 
     Parameters
@@ -66,14 +67,21 @@ def texts(found: Marched) -> dict[str, str]:
     before = "enum { ROBOT_ALIGNMENT"
     header = (HERE / "robot.h").read_text().replace(before, f"{_public(found)}\n{before}")
     loops = [(native.NATIVE / name).read_text() for name in LOOPS]
+    equations = text_of_one_unit(found.march.system.kernel.shapes)
     parts = [
-        '#include "robot.h"', "#define EXPORTED static", PRELUDE.read_text(),
+        '#include "robot.h"', "#define EXPORTED static __attribute__((unused))", _prelude(equations),
         "#if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC push_options\n#endif", STRAIGHT,
-        text_of_one_unit(found.march.system.kernel.shapes),
+        equations,
         "#if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC pop_options\n#endif",
         *loops, _numbers(found), (HERE / "robot.c").read_text(),
     ]  # fmt: skip
     return {"robot.h": header, "robot.c": "\n".join(parts)}
+
+
+def _prelude(equations: str) -> str:
+    """C text that equations need before them; what tables are read with only where one of them is a table."""
+    ours = PRELUDE.read_text().partition(BODIES)[0]
+    return ours if "RowInput" in equations else ours.partition(TABLES)[0]
 
 
 def _public(found: Marched) -> str:
@@ -83,6 +91,7 @@ def _public(found: Marched) -> str:
     call = native.settings(room, GeneralizedAlpha(1.0), 1.0, 1)
     size = WIDER * native.loops(room.kernel).march_memory(native.byref(call)) + 65536 + 16 * len(found.row)
     size += 8 * (inputs + 8 * found.march.start.q.size + 2 * found.law(np.zeros(1))[0].size)
+    size *= 2  # as it is, and as the last call left it
     lines = [
         f"enum {{ ROBOT_INPUTS = {inputs}, ROBOT_OUTPUTS = {outputs} }};",
         f"#define ROBOT_STEP {found.march.step!r}      /* s */",
@@ -140,7 +149,8 @@ def _numbers(found: Marched) -> str:
     read = dict(zip(("HELD", "HUB_HELD", "LEG_P", "JOINT_P", "PAYLOAD_P"), system.as_read_by_c, strict=True))
     arrays = read | {
         "BASE_TABLE": table, "BASE_LOAD": load, "EDGES": found.edges, "SERIES": found.series,
-        "PER_TURN": found.turns, "ZERO_OF_DRIVE": found.zero, "OFFSETS": found.offset,
+        "PER_TURN": found.turns, "ZERO_OF_DRIVE": found.zero, "STRETCH": found.stretch, "SHIFT": found.shift,
+        "OFFSETS": found.offset,
         "TOOL_ARM": robot.tool - robot.com, "START_INPUTS": np.concatenate([x.start for x in found.inputs]),
     }  # fmt: skip
     bristles = start.bristles if start.bristles.size else np.zeros((system.legs, 2 * system.kernel.shapes.bristles))

@@ -9,6 +9,7 @@ import numpy as np
 from flexapod import kinematics, model
 from flexapod.arrays import Array
 from flexapod.errors import InputError
+from flexapod.kinematics.limbs import COORDINATES, DRIVEN
 from flexapod.results.leg_results import drive_forms, leg_results
 from flexapod.results.legs import per_turn
 from flexapod.results.names import VARIABLES
@@ -21,12 +22,14 @@ from flexapod.solve.time.march import first_record
 from flexapod.solve.time.recording import record_places, unpack
 from flexapod.solve.time.robot_march import RobotMarch, prepare
 from flexapod.solve.time.tables import Law
+from flexapod.units import quantity
 
 __all__ = ["Channel", "Marched", "marched"]
 
 OF_LEGS = ("drive_position", "drive_force", "joint_force")
 ENERGIES = ("energy_kinetic", "energy_potential", "energy_strain", "energy_dissipated", "work_drive", "work_external")
 OF_PAYLOAD = {"com_position": 3, "tool_position": 3, "platform_quaternion": 4, "platform_angular_velocity": 3}
+CHI, L = COORDINATES.index("chi"), COORDINATES.index("l")
 FINEST = 1e-3  # s: of a piece of the built-in commands
 ROUNDING = 1e-9  # of an output that is linear in the state
 
@@ -54,6 +57,7 @@ class Marched:
 
     ``row``: record of the start; ``drive_port``, ``force_port`` (legs,): ports that commands and forces of the drives
     go to, -1 for none; ``keeps``: legs whose drive keeps its command; ``turns``, ``zero``: of the drives' units;
+    ``stretch``, ``shift``: what the robot as built makes of a command q, shift + stretch q, Eq. (T16.5);
     ``edges``, ``series``: of the built-in commands, if there are; ``matrix`` (outputs, row), ``offset`` (outputs,): of
     the outputs that are linear in a row.
     """
@@ -70,6 +74,8 @@ class Marched:
     keeps: Array
     turns: Array
     zero: Array
+    stretch: Array
+    shift: Array
     edges: Array
     series: Array
     matrix: Array
@@ -82,27 +88,27 @@ class Marched:
         return self.march.start
 
 
-def marched(study: model.Study, commands: str, step: float | None) -> Marched:
+def marched(study: model.Study, commands: str, step: float | str | None) -> Marched:
     """The march of a study with fixed steps, prepared for C.
 
     Raises
     ------
     InputError
-        Unknown commands; no fixed step; a robot as built whose commands would come from outside.
+        Unknown commands; no fixed step; commands from outside to a robot that something else moves over time.
     """
     if not isinstance(commands, str) or commands not in ("inputs", "motion"):
         raise InputError("is not known", key="commands", value=commands, allowed='"inputs" or "motion"')
-    h = step if step is not None else study.simulation.step
+    h = study.simulation.step if step is None else quantity(step, "time", key="step")
     if h is None:
-        raise InputError("is missing: what is written goes by fixed steps", key="step", next_step="Give step = 5e-4")
-    robot, commanded = study.robot, commands == "inputs"
-    if commanded and (kinematics.built_parts(robot) or robot.base_motion is not None):
         raise InputError(
-            "come from outside, and this robot has errors of building, heat or a base that moves",
-            key="commands",
-            value=commands,
-            allowed='"motion", which has them built in',
+            "is missing: what is written goes by fixed steps, and the study has none",
+            key="step",
+            allowed='a time: a number in s, or text such as "0.5 ms"',
+            next_step="Take 0.5 ms to begin with, and half of it to see what that changes",
         )
+    commanded = commands == "inputs"
+    if commanded:
+        _refuse_moving(study)
     study = model.override(study, step=h, output_step=h)
     if not study.simulation.outputs(study.duration):
         allowed = f"at most its duration of {study.duration:g} s"
@@ -126,6 +132,26 @@ def marched(study: model.Study, commands: str, step: float | None) -> Marched:
     )  # fmt: skip
 
 
+def _refuse_moving(study: model.Study) -> None:
+    """Raise InputError if something beside the drives moves the robot over time: inputs come for any time."""
+    robot = study.robot
+    warms = robot.heat is not None and robot.heat.time is not None
+    moving = [
+        ("robot.base_motion", "a base that moves", "base_motion of [robot]", robot.base_motion is not None),
+        ("heat.file", "temperatures over time", "file of [heat]", warms),
+    ]
+    for key, what, table, there in moving:
+        if there:
+            raise InputError(
+                f"are to come from outside, for any time, and this robot has {what} of its own ({key})",
+                file=study.path,
+                key="commands",
+                value="inputs",
+                allowed='"motion": all is built in',
+                next_step=f'Take {table} out, or choose commands "motion"',
+            )
+
+
 def _drives(march: RobotMarch, study: model.Study) -> dict[str, Array]:
     system, robot = march.system, study.robot
     driven, pushed = push_ports(system, robot), force_ports(system, robot)
@@ -134,16 +160,23 @@ def _drives(march: RobotMarch, study: model.Study) -> dict[str, Array]:
     keeps = np.array([k >= 0 and bool(system.enforced[i, driven[i]]) for i, k in enumerate(drive)])
     force = np.array([-1 if keeps[i] or k < 0 else at[int(pushed[i])] for i, k in enumerate(drive)])
     zero = kinematics.robot_limbs(robot).carriage_zero * (driven != system.kernel.shapes.l_index)
+    stretch, shift = np.ones(len(drive)), np.zeros(len(drive))
+    carried = kinematics.robot_limbs(robot).state[:, CHI] == DRIVEN
+    for part in kinematics.built_parts(robot):
+        size, at_drive = part.size(np.zeros(1)).position[0], (np.arange(len(drive)), np.where(carried, CHI, L))
+        stretch, shift = stretch + size * part.share[at_drive], shift + size * part.fixed[at_drive]
     return {
         "drive_port": drive, "force_port": force, "keeps": keeps, "turns": per_turn(robot),
-        "zero": np.broadcast_to(zero, drive.shape).astype(float),
+        "zero": np.broadcast_to(zero, drive.shape).astype(float), "stretch": stretch, "shift": shift,
     }  # fmt: skip
 
 
 def _inputs(study: model.Study, march: RobotMarch, parts: dict[str, Array], commanded: bool) -> tuple[Channel, ...]:
     table = march.problem.tables(np.zeros(1))[0][0]
     legs = np.arange(march.system.legs)
-    given = table[legs, np.maximum(parts["drive_port"], 0)] / parts["turns"][:, None]
+    given = table[legs, np.maximum(parts["drive_port"], 0), :3]
+    given[:, 0] -= parts["shift"]
+    given = given / (parts["stretch"] * parts["turns"])[:, None]
     units = drive_forms(study.robot).get("drive_command", VARIABLES["drive_command"]).units
     found: list[tuple[str, str, str, Array]] = []
     if commanded:

@@ -40,7 +40,7 @@ UNITS: Mapping[str, Mapping[str, int]] = {
 }
 
 
-def fmu(study: model.Study, commands: str = "inputs", step: float | None = None) -> Content:
+def fmu(study: model.Study, commands: str = "inputs", step: float | str | None = None) -> Content:
     """A robot in fixed steps as an FMU, with a binary for this kind of machine and its sources.
 
     Parameters

@@ -102,7 +102,7 @@ def export(
     data: Dataset | None = None,
     magnify: float | None = None,
     commands: str | None = None,
-    step: float | None = None,
+    step: float | str | None = None,
     inputs: Sequence[str] | None = None,
     outputs: Sequence[str] | None = None,
 ) -> Exported:

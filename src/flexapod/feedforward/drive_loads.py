@@ -13,7 +13,7 @@ from flexapod.kinematics import COORDINATES, DRIVEN
 from flexapod.model import Robot, Study
 from flexapod.results.path import RigidPath
 from flexapod.review.screws import motor_torque
-from flexapod.units import to_si
+from flexapod.units import quantity
 
 __all__ = ["DriveLimits", "limits_of"]
 
@@ -73,7 +73,7 @@ def limits_of(study: Study, speed: Given, acceleration: Given, force: Given) -> 
     kinds = {"speed": "velocity", "acceleration": "acceleration", "force": "force"}
     found: dict[str, float | None] = {}
     for (name, dimension), value in zip(kinds.items(), (speed, acceleration, force), strict=True):
-        found[name] = None if value is None else to_si(value, dimension, key=name)
+        found[name] = None if value is None else quantity(value, dimension, key=name)
         if found[name] is not None and not found[name] > 0:  # type: ignore[operator]
             raise InputError("is not a limit", key=name, value=value, allowed="above 0")
     limits = DriveLimits(**found)

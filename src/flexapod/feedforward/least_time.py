@@ -24,7 +24,7 @@ from flexapod.results.arguments import FileLike, PoseLike, RobotLike, as_pose, a
 from flexapod.results.poses import coordinates_of
 from flexapod.review.checks import check_path
 from flexapod.runtime.threads import one_thread
-from flexapod.units import to_si
+from flexapod.units import quantity
 from flexapod.words import text
 
 __all__ = ["Fastest", "fastest", "time_optimal"]
@@ -162,7 +162,7 @@ def fastest(
     study = as_study(subject)
     if out is not None:
         check_out(study, out)
-    limits, bound = limits_of(study, speed, acceleration, force), to_si(residual, "length", key="residual")
+    limits, bound = limits_of(study, speed, acceleration, force), quantity(residual, "length", key="residual")
     if bound <= 0:
         raise InputError("is not a bound", key="residual", value=residual, allowed="above 0 m")
     way = StraightWay(study, limits, *_ends(study, start, end))

@@ -22,7 +22,7 @@ from flexapod.review.checks import check_path
 from flexapod.runtime.threads import one_thread
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.modal.modes import modes_of
-from flexapod.units import to_si
+from flexapod.units import quantity
 from flexapod.words import number, text
 
 __all__ = ["Shaped", "shape", "shaping"]
@@ -206,10 +206,10 @@ def _of_motion(modes: Modes, pose: object, out: object) -> list[tuple[float, flo
 def _frequency(mode: object) -> tuple[float, float] | None:
     """Frequency [Hz] and damping ratio, where that is what a mode is given by; None of a number of a mode."""
     if isinstance(mode, tuple) and len(mode) == 2:
-        return to_si(mode[0], "frequency", key="modes"), to_si(mode[1], "number", key="modes")
+        return quantity(mode[0], "frequency", key="modes"), quantity(mode[1], "number", key="modes")
     if isinstance(mode, str):
-        return to_si(mode, "frequency", key="modes"), 0.0
-    return None if isinstance(mode, int | np.integer) else (to_si(mode, "frequency", key="modes"), 0.0)
+        return quantity(mode, "frequency", key="modes"), 0.0
+    return None if isinstance(mode, int | np.integer) else (quantity(mode, "frequency", key="modes"), 0.0)
 
 
 def _named(modes: Modes) -> list[object]:

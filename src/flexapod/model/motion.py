@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args
 
 import numpy as np
 from pydantic import AfterValidator, Field, model_validator
@@ -15,7 +15,7 @@ from flexapod.schema.base import FileKey, Key, Quantity, Series, Series6, Vec3
 from flexapod.schema.csv_tables import POSE, beside, wrong_instant
 from flexapod.schema.named_files import Content, columns_of_table
 from flexapod.schema.table import Place, Table
-from flexapod.units import DIMENSIONS
+from flexapod.units import DIMENSIONS, quantities
 from flexapod.words import number, text
 
 if TYPE_CHECKING:
@@ -26,6 +26,11 @@ Profile = Literal["quintic", "cycloidal", "s-curve", "trapezoid", "smooth", "lin
 AXES: tuple[Axis, ...] = get_args(Axis)
 PROFILES: tuple[Profile, ...] = get_args(Profile)
 _ORIGIN = (0.0, 0.0, 0.0)
+
+
+def _poses_in_si(given: Mapping[Any, Any], key: str) -> dict[Any, Any]:
+    """Coordinates by axis with texts as SI numbers."""
+    return {axis: quantities(x, POSE[axis], key=key) if axis in POSE else x for axis, x in given.items()}
 
 
 def _distinct(axes: tuple[str, ...]) -> tuple[str, ...]:
@@ -69,6 +74,12 @@ class AxisMotion(Table):
     def measuring(cls, section: Section, among: tuple[str, ...]) -> tuple[str, ...]:
         """Lengths along an axis, angles about one."""
         return (POSE[str(section.text("type"))],)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _in_si(cls, given: dict[str, Any]) -> dict[str, Any]:
+        read = _poses_in_si({given.get("type"): given.get("amplitude")}, "amplitude")
+        return {**given, "amplitude": next(iter(read.values()))} if "amplitude" in given else given
 
     @classmethod
     def resolved(cls, section: Section) -> Mapping[str, object]:
@@ -124,6 +135,12 @@ class CombinedMotion(Table):
 
     def _shown(self) -> dict[str, str]:
         return _in_words(self.target, self.duration, self.hold, self.profile)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _in_si(cls, given: dict[str, Any]) -> dict[str, Any]:
+        named = given.get("amplitudes")
+        return {**given, "amplitudes": _poses_in_si(named, "amplitudes")} if isinstance(named, Mapping) else given
 
     @model_validator(mode="after")
     def _angles(self) -> CombinedMotion:

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from flexapod.plot.style import LINE_STYLES, NOTE, PAGE, figure, flat_on_the_scale_of_others, ink, needs, styled
 from flexapod.plot.swings import is_quick, swings, vibration_line
 from flexapod.scene.colours import FLEXIBLE, LEG_COLORS, RIGID
+from flexapod.units import quantity
 from flexapod.words import cleared_lines, number, scale
 
 _SHOWN = 12  # half swings of a band that are shown beside it
@@ -105,6 +106,7 @@ def actuator_path(data: xr.Dataset, hub_radius: float = 0.0, magnify: float = 1.
     """
     length, angle, across = (data[name].values for name in ("length", "angle", "tip_deflection"))
     along = np.array([np.cos(angle), np.sin(angle)])
+    hub_radius = quantity(hub_radius, "length", key="hub_radius")
     rigid = (hub_radius + length) * along
     flexible = rigid + magnify * across * np.array([-along[1], along[0]])
     drawn = "" if magnify == 1 else f"; deflection {number(magnify)} times larger"

@@ -117,7 +117,7 @@ def root_locus(data: xr.Dataset, below: float | None = None) -> Figure:
     return fig
 
 
-def _edge(poles: list[Array], below: float | None) -> float:
+def _edge(poles: list[Array], below: float | str | None) -> float:
     """Frequency [Hz] up to which poles are shown."""
     if below is not None:
         return number(below, "below", "frequency", above=0.0)

@@ -17,6 +17,7 @@ from flexapod.plot.style import NOTE, PAGE, SMALL, figure, ink, needs, styled
 from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.robot import mode_scene, motion_end, scene
 from flexapod.scene.skeleton import Scene, around
+from flexapod.units import quantities
 
 CYLINDER = "#8A8F98"
 BASE = "#4A4F57"
@@ -198,6 +199,7 @@ def robot_3d(data: xr.Dataset, time: float | None = None) -> Figure:
     """
     if time is None:
         time = motion_end(data)
+    time = quantities(time, "time", key="time")
     time = float(data.time[-1] if time is None else data.time.sel(time=time, method="nearest"))
     now, start = scene(data, time), scene(data, float(data.time[0]))
     fig = figure(PAGE, 4.5)

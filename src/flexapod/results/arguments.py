@@ -4,20 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import kinematics, model
 from flexapod.arrays import floats
-from flexapod.errors import InputError
+from flexapod.errors import InputError, closest
+from flexapod.units import quantities, quantity
 
 POSE_KEYS = model.AXES
 FileLike = str | Path
 RobotLike = model.Study | model.Robot | FileLike
 StartLike = model.Initial | str | None
-PoseLike = kinematics.Poses | Mapping[str, float] | ArrayLike | None
+PoseLike = kinematics.Poses | Mapping[str, float | str] | str | ArrayLike | None
 LoadLike = model.Load | model.Wrench | ArrayLike | None
 
 T = TypeVar("T")
@@ -68,6 +69,9 @@ def _load(load: LoadLike) -> model.Load:
     kinds = (model.ConstantWrench, model.SineWrench, model.StepWrench, model.CsvWrench)
     if isinstance(load, kinds):
         return model.Load(wrench=load)
+    if isinstance(load, list | tuple):
+        kind = ("force", "torque")
+        load = [quantities(value, kind[k // 3 % 2], key="load") for k, value in enumerate(load)]
     try:
         return model.Load(wrench=model.ConstantWrench(value=load))  # type: ignore[arg-type]
     except InputError as error:
@@ -90,7 +94,8 @@ def as_pose(robot: model.Robot, pose: PoseLike, *, check: bool = True) -> kinema
     ----------
     robot : model.Robot
     pose : Poses, mapping, array_like or None
-        Poses with one sample; surge, sway, heave [m], roll, pitch, yaw [rad] from home by name or as (6,); None: home.
+        Poses with one sample; surge, sway, heave [m], roll, pitch, yaw [rad] from home by name, as (6,) or in words,
+        ``"roll=10deg, heave=5mm"``; None: home.
     check : bool
         Whether the legs must reach it.
 
@@ -99,6 +104,8 @@ def as_pose(robot: model.Robot, pose: PoseLike, *, check: bool = True) -> kinema
     InputError
         Unknown names, another shape, or a pose that the legs cannot reach.
     """
+    if isinstance(pose, str):
+        pose = pose_in_words(pose)
     if isinstance(pose, kinematics.Poses):
         if len(pose) != 1:
             raise InputError("has several samples", key="pose", value=len(pose), allowed="one sample")
@@ -112,13 +119,55 @@ def as_pose(robot: model.Robot, pose: PoseLike, *, check: bool = True) -> kinema
     return found
 
 
-def _coordinates(pose: Mapping[str, float] | ArrayLike | None) -> np.ndarray:
+def pose_in_words(text: str, key: str = "pose") -> dict[str, float] | None:
+    """Surge, sway, heave [m], roll, pitch, yaw [rad] from ``"roll=20deg,heave=10mm"``; None, which is home, of nothing.
+
+    Raises
+    ------
+    InputError
+        Unknown axes, one that is given twice, something that is not a number with a unit of the right kind.
+    """
+    if not text.strip():
+        return None
+    pose: dict[str, float] = {}
+    for part in text.split(","):
+        name, equals, value = (piece.strip() for piece in part.partition("="))
+        if not equals or name not in POSE_KEYS or name in pose:
+            what = "is given twice" if name in pose else "is not an axis with its value"
+            hint = closest(name, POSE_KEYS) or f'Write {key} "roll=20deg,heave=10mm"'
+            raise InputError(what, key=key, value=part.strip(), allowed=", ".join(POSE_KEYS), next_step=hint)
+        pose[name] = coordinate(name, value, f"{key} {name}")
+    return pose
+
+
+def coordinate(name: str, value: object, key: str) -> float:
+    """A coordinate of a pose [m, rad]: a number, or text with a unit."""
+    return quantity(value, "length" if name in POSE_KEYS[:3] else "angle", key=key)
+
+
+def with_numbers(pose: Any) -> Any:
+    """A pose, or several, by name or in a row, with numbers in place of texts."""
+    if isinstance(pose, Mapping):
+        return {name: _of_axis(name, value) for name, value in pose.items()}
+    if isinstance(pose, list | tuple) and len(pose) == len(POSE_KEYS):
+        return [_of_axis(name, value) for name, value in zip(POSE_KEYS, pose, strict=True)]
+    return pose
+
+
+def _of_axis(name: str, value: object) -> object:
+    """One or several values of a coordinate, with numbers in place of texts."""
+    return quantities(value, "length" if name in POSE_KEYS[:3] else "angle", key=f"pose.{name}")
+
+
+def _coordinates(pose: Mapping[str, float | str] | ArrayLike | None) -> np.ndarray:
     if pose is None:
         return np.zeros(6)
     if isinstance(pose, Mapping):
         unknown = [name for name in pose if name not in POSE_KEYS]
         if unknown:
             raise InputError("is not an axis", key=f"pose.{unknown[0]}", allowed=", ".join(POSE_KEYS))
+    pose = with_numbers(pose)
+    if isinstance(pose, Mapping):
         pose = [pose.get(name, 0.0) for name in POSE_KEYS]
     try:
         values = floats(pose)

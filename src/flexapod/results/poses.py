@@ -9,7 +9,7 @@ import numpy as np
 from flexapod import kinematics, model
 from flexapod.arrays import Array, floats
 from flexapod.errors import InputError
-from flexapod.results.arguments import POSE_KEYS, PoseLike
+from flexapod.results.arguments import POSE_KEYS, PoseLike, with_numbers
 from flexapod.words import number
 
 ORIGIN = np.zeros(3)  # of the platform frame
@@ -18,7 +18,7 @@ BATCH = 200  # poses computed together: their matrices stay in the processor's c
 
 def is_many(pose: PoseLike) -> bool:
     """Whether poses are given as several: (P, 6), `Poses` of several samples, or names with arrays."""
-    if pose is None:
+    if pose is None or isinstance(pose, str):
         return False
     if isinstance(pose, kinematics.Poses):
         return len(pose) != 1
@@ -44,13 +44,14 @@ def as_many(robot: model.Robot, pose: PoseLike) -> kinematics.Poses:
         unknown = [name for name in pose if name not in POSE_KEYS]
         if unknown:
             raise InputError("is not an axis", key=f"pose.{unknown[0]}", allowed=", ".join(POSE_KEYS))
+        named = with_numbers(pose)
         try:
-            columns = np.broadcast_arrays(*[floats(pose.get(name, 0.0)) for name in POSE_KEYS])
+            columns = np.broadcast_arrays(*[floats(named.get(name, 0.0)) for name in POSE_KEYS])
         except ValueError:
             raise InputError("has arrays that do not fit each other", key="pose", allowed="lengths alike") from None
         values = np.stack(columns, axis=-1)
     else:
-        values = _numbers(pose)
+        values = _numbers([with_numbers(row) for row in pose] if isinstance(pose, list | tuple) else pose)
     if values.ndim != 2 or values.shape[1] != 6 or not np.isfinite(values).all():
         raise InputError(
             "are not poses",

@@ -24,7 +24,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from flexapod.arrays import Array, floats
 from flexapod.errors import InputError, check_known, closest
-from flexapod.units import DIMENSIONS
+from flexapod.units import DIMENSIONS, number_and_unit, quantities
 from flexapod.words import number
 
 #: A loss factor; metals have 1e-4 to 0.01, joints 0.01 to 0.1, layers made for damping up to about 1.
@@ -104,7 +104,18 @@ class Quantity(Key):
         self.largest: float = max(DIMENSIONS[name].most for name in dimensions)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return self._limited(handler(source))
+        schema = self._limited(handler(source))
+        one = len(self.dimensions) == 1
+        return core_schema.no_info_before_validator_function(self._in_si, schema) if one else schema
+
+    def _in_si(self, value: Any) -> Any:
+        """Texts as SI numbers, where one dimension alone is meant; what is no number at all is left to the field."""
+        if isinstance(value, str) and number_and_unit(value) is None:
+            return value
+        try:
+            return quantities(value, self.dimensions[0])
+        except InputError as error:
+            raise PydanticCustomError("unit", "{what}", {"what": error.what, "allowed": error.allowed}) from None
 
     def _limited(self, schema: Any) -> CoreSchema:
         if schema["type"] == "nullable":
@@ -322,7 +333,7 @@ def _comparable(value: object) -> object:
 
 def _largest(value: Any) -> Any:
     """Of a table or a vector the number of the largest size, else the value."""
-    if not isinstance(value, list | tuple | np.ndarray):
+    if not isinstance(value, list | tuple | np.ndarray) or any(isinstance(x, str) for x in value):
         return value
     flat = np.asarray(value, dtype=float).ravel()
     return float(flat[np.abs(flat).argmax()])
@@ -348,7 +359,7 @@ def _input_error(error: ValidationError, model: type[Frozen]) -> InputError:
         hint = closest(value, names) if isinstance(value, str) else None
         allowed = ", ".join(names) or str(context["expected"])
         return InputError("is not known", key=key, value=value, allowed=allowed, next_step=hint)
-    if kind == "size":
+    if kind in ("size", "unit"):
         return InputError(first["msg"], key=key, value=_largest(value), allowed=context["allowed"])
     message = first["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
     return InputError(message, key=key, value=value)

@@ -13,7 +13,7 @@ from flexapod.control.arguments import whole
 from flexapod.errors import InputError, closest
 from flexapod.results.asked import Made
 from flexapod.results.record import Record
-from flexapod.units import to_si
+from flexapod.units import quantity
 
 if TYPE_CHECKING:
     from flexapod.control import AdaptiveDamping, Controller, Function, StateSpace
@@ -244,7 +244,7 @@ def _sigmas(noise: object, period: float) -> PerChannel:
 
     def sigma(given: object) -> object:
         if isinstance(given, Mapping) and set(given) == {"psd"}:
-            return float(np.sqrt(to_si(given["psd"], "number", key="noise.psd") / (2 * period)))
+            return float(np.sqrt(quantity(given["psd"], "number", key="noise.psd") / (2 * period)))
         return given
 
     if isinstance(noise, Mapping) and set(noise) != {"psd"}:
@@ -267,7 +267,7 @@ def _by_channel(given: PerChannel, names: Sequence[str], key: str, without: floa
             )
         if value is not None:
             unlimited = isinstance(value, float) and value == without
-            found[which] = value if unlimited else to_si(value, "number", key=key)
+            found[which] = value if unlimited else quantity(value, "number", key=key)
     if not (found >= 0).all():
         raise InputError("is below 0", key=key, value=given)
     return found

@@ -21,6 +21,7 @@ from flexapod.results.path import RigidPath, open_force_words
 from flexapod.results.robot import rigid_force_results
 from flexapod.review.checks import check_geometry
 from flexapod.runtime.threads import one_thread
+from flexapod.units import quantities
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -205,10 +206,13 @@ def forward_kinematics(
     986.1 mm
     """
     study = at_pose(robot)
+    kind = "angle" if kinematics.rigid_limbs(study.robot).carriage == "crank" else "length"
+    lengths = quantities(lengths, kind, key="lengths")
     given = _numbers(lengths, "lengths", "lengths [m] or places of carriages [m, rad], one for each drive")
     single = given.ndim == 1
     found = kinematics.forward_kinematics(study.robot, given, as_pose(study.robot, guess, check=False))
     given = np.atleast_2d(given)
+    time = quantities(time, "time", key="time")
     t = np.arange(len(found), dtype=float) if time is None else _numbers(time, "time", "instants [s], (T,)")
     if single and time is not None:
         raise InputError("has no meaning for a single pose", key="time", next_step="Leave it out")

@@ -27,7 +27,7 @@ from flexapod.solve.linear.states import Descriptor, States, descriptor_of, stat
 from flexapod.solve.statics.branch import fallen
 from flexapod.solve.statics.locked import the_equilibrium
 from flexapod.study.many_modes import poses_of
-from flexapod.units import DIMENSIONS, to_si
+from flexapod.units import DIMENSIONS, quantity
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -200,7 +200,7 @@ def _of_actuator(
         )  # fmt: skip
     actuator = study.actuator
     if "free_length" in given:
-        actuator = actuator.replace(free_length=to_si(given["free_length"], "length", key="pose.free_length"))
+        actuator = actuator.replace(free_length=quantity(given["free_length"], "length", key="pose.free_length"))
     names = ("rotation", "extension", "elevation")
     free = [name for name in names if drives == "force" or getattr(study.motion, name) is None]
     most = DIMENSIONS["angular rate"].most

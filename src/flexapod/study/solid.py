@@ -19,6 +19,7 @@ from flexapod.results.names import ACTUATOR_FORMS, Variable, dataset
 from flexapod.results.path import path_instants
 from flexapod.results.record import Interrupted, Progress
 from flexapod.review.checks import check_actuator_path
+from flexapod.units import quantities
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -93,6 +94,8 @@ def simulate_solid(
     (('time',), 'Hz')
     """
     study = _only_prescribed(read(study))
+    size, spacing = (quantities(x, "length", key=key) for x, key in ((size, "size"), (spacing, "spacing")))
+    step = quantities(step, "time", key="step")
     _check_numbers(size=size, poisson=poisson, step=step, spacing=size if spacing is None else spacing)
     _check_section(section)
     study = model.override(study, duration=duration, output_step=output_step)

@@ -1,7 +1,7 @@
 """Generated functions as C: every operation once, for several bodies at a time."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import casadi
 
@@ -14,6 +14,7 @@ __all__ = ["c_source", "of_one_unit"]
 #: Statements beyond which a C function is written in parts, and those of a part: the time and memory of a compiler grow
 #: faster than the text, while a residual in parts takes some per cent longer.
 WHOLE, LONGEST = 6000, 2500
+PART = "static __attribute__((noinline)) void"
 #: Operations beyond which a function is a table: as statements each costs a compiler 0.2 ms.
 TABLED = 30_000
 _VALUE = re.compile(r"\b[tsc]\d+\b")
@@ -49,7 +50,7 @@ def c_source(function: NamedFunction) -> str:
     inputs, outputs = (", ".join(map(str, x)) for x in sizes)
     return "\n".join(
         [
-            *_kinds(function, built),
+            *_kinds(function, built, ("double", "lanes") if function.alone else ("lanes",)),
             f"void {name}(long count, const double *const *in, const long *rows, double *const *out) {{",
             f"  static const long in_size[] = {{{inputs}}}, out_size[] = {{{outputs}}};",
             f"  lanes work[{sum(map(sum, sizes))}];",
@@ -61,12 +62,13 @@ def c_source(function: NamedFunction) -> str:
 
 
 def of_one_unit(function: NamedFunction) -> str:
-    """The same without the function for any number of bodies, for C that calls the others in the same unit alone."""
-    return "\n".join(f"static {x}" if x.startswith("void ") else x for x in _kinds(function, function.build())) + "\n"
+    """C text for callers in the same unit: ``NAME_double`` where it is called for one body, else ``NAME_lanes``."""
+    lines = _kinds(function, function.build(), ("double",) if function.alone else ("lanes",))
+    lines = [f"{x}\n  (void)in; (void)out; (void)w;" if x.startswith(PART) else x for x in lines]
+    return "\n".join(f"static {x}" if x.startswith("void ") else x for x in lines) + "\n"
 
 
-def _kinds(function: NamedFunction, built: casadi.Function) -> list[str]:
-    kinds = ("double", "lanes") if function.alone else ("lanes",)
+def _kinds(function: NamedFunction, built: casadi.Function, kinds: Sequence[str]) -> list[str]:
     lines = [line for kind in kinds for line in _lines(f"{function.name}_{kind}", kind, built)]
     return [*definitions(built), *lines]
 
@@ -89,7 +91,7 @@ def _definition(name: str, kind: str, statements: list[str]) -> Iterator[str]:
     for k, part in enumerate(parts):
         later = set().union(*found[k + 1 :])
         here = {value: f"w[{place}]" for value, place in places.items() if value in found[k]}
-        yield f"static __attribute__((noinline)) void {name}_{k}({taken}, {kind} *restrict w) {{"
+        yield f"{PART} {name}_{k}({taken}, {kind} *restrict w) {{"
         for line in part:
             yield _VALUE.sub(lambda match, here=here: here.get(match[0], match[0]), line)
             for value in line.split("=")[0].split(";")[0].replace(",", " ").split()[1:]:  # what it declares

@@ -30,7 +30,8 @@ typedef void (*Log)(void *environment, Status status, const char *category, cons
 typedef struct { int input, first, size; } Variable;    /* by value reference, from 1; 0 is the time */
 static const Variable VARIABLE[] = VARIABLES;
 
-typedef struct { double start, inputs[ROBOT_INPUTS + 1]; } Given;       /* of a state beside the robot's memory */
+typedef struct { char token[sizeof TOKEN]; double start, inputs[ROBOT_INPUTS + 1]; } Given;    /* of a state beside the robot's memory */
+static const double NEAR = 1e-3*ROBOT_STEP, MOST_STEPS = 2147483647;   /* of one call */
 typedef struct { void *environment; Log log; Given given; unsigned char *memory, *room; } Instance;
 
 static size_t state_size(void) { return sizeof(Given) + robot_size(); }
@@ -71,6 +72,7 @@ FMI_OF(void *) NAMED(fmi3InstantiateCoSimulation)(const char *name, const char *
   m->room = malloc(robot_size() + ROBOT_ALIGNMENT);
   if (!m->room) { free(m); return 0; }
   m->memory = m->room + (ROBOT_ALIGNMENT - (uintptr_t)m->room % ROBOT_ALIGNMENT) % ROBOT_ALIGNMENT;
+  memcpy(m->given.token, TOKEN, sizeof TOKEN);
   robot_start_inputs(m->given.inputs);
   robot_init(m->memory);
   return m;
@@ -83,6 +85,7 @@ FMI NAMED(fmi3EnterInitializationMode)(void *instance, bool tolerated, double to
   Instance *m = instance;
   (void)tolerated; (void)tolerance; (void)ends; (void)stop;
   if (BUILT_IN && start != 0) return failed(m, ERROR, "the motion that is built in begins at time 0");
+  if (!(fabs(start) < NEAR*0x1p52)) return failed(m, ERROR, "the start time is no number, or so far from 0 that steps are lost beside it");
   m->given.start = start;
   return OK;
 }
@@ -105,12 +108,16 @@ static const Variable *variable(Reference reference) {
 FMI NAMED(fmi3GetFloat64)(void *instance, const Reference *references, size_t count, double *values, size_t size) {
   Instance *m = instance;
   double outputs[ROBOT_OUTPUTS];
-  size_t at = 0;
+  size_t at = 0, needed = 0;
+  for (size_t k = 0; k < count; k++) {
+    const Variable *v = variable(references[k]);
+    needed += v ? (size_t)v->size : 1;
+    if ((!v && references[k]) || needed > size) return failed(m, ERROR, "no such variable, or no room for its values");
+  }
   robot_outputs(m->memory, outputs);
   for (size_t k = 0; k < count; k++) {
     const Variable *v = variable(references[k]);
     size_t length = v ? (size_t)v->size : 1;
-    if ((!v && references[k]) || at + length > size) return failed(m, ERROR, "no such variable, or no room for its values");
     if (!v) values[at] = m->given.start + robot_time(m->memory);
     else memcpy(values + at, (v->input ? m->given.inputs : outputs) + v->first, sizeof(double)*length);
     at += length;
@@ -119,14 +126,17 @@ FMI NAMED(fmi3GetFloat64)(void *instance, const Reference *references, size_t co
 }
 FMI NAMED(fmi3SetFloat64)(void *instance, const Reference *references, size_t count, const double *values, size_t size) {
   Instance *m = instance;
+  double inputs[ROBOT_INPUTS + 1];              /* all of them are set, or none */
   size_t at = 0;
+  memcpy(inputs, m->given.inputs, sizeof inputs);
   for (size_t k = 0; k < count; k++) {
     const Variable *v = variable(references[k]);
     if (!v || !v->input || at + (size_t)v->size > size) return failed(m, ERROR, "this variable cannot be set, or has more values");
     for (int i = 0; i < v->size; i++) if (!isfinite(values[at + (size_t)i])) return failed(m, ERROR, "an input is no finite number");
-    memcpy(m->given.inputs + v->first, values + at, sizeof(double)*(size_t)v->size);
+    memcpy(inputs + v->first, values + at, sizeof(double)*(size_t)v->size);
     at += (size_t)v->size;
   }
+  memcpy(m->given.inputs, inputs, sizeof inputs);
   return OK;
 }
 
@@ -137,8 +147,9 @@ FMI NAMED(fmi3DoStep)(void *instance, double now, double length, bool kept, bool
   (void)kept;
   *events = *terminate = *early = false;
   *reached = own;
-  if (fabs(now - own) > 1e-3*ROBOT_STEP) return failed(m, ERROR, "the communication point is not the time reached");
-  if (!(steps >= 1) || fabs(now + length - (own + steps*ROBOT_STEP)) > 1e-3*ROBOT_STEP)
+  if (!(fabs(now - own) <= NEAR)) return failed(m, ERROR, "the communication point is not the time reached");
+  if (steps > MOST_STEPS) return failed(m, ERROR, "the communication step has more steps inside than a call can make");
+  if (!(steps >= 1) || !(fabs(now + length - (own + steps*ROBOT_STEP)) <= NEAR))
     return failed(m, ERROR, "the communication step is no multiple of the step inside, see fixedInternalStepSize");
   int fault = robot_step(m->memory, m->given.inputs, (long)steps);
   *reached = m->given.start + robot_time(m->memory);
@@ -146,7 +157,7 @@ FMI NAMED(fmi3DoStep)(void *instance, double now, double length, bool kept, bool
     return failed(m, ERROR, "drive_command of a drive that keeps it (prescribed) has changed while its rate and acceleration are 0, or "
                             "begins elsewhere than the robot: give drive_command_rate and drive_command_acceleration with it, or use "
                             "a servo or a force drive, which take any command");
-  if (fault == ROBOT_NOT_FINITE) return failed(m, ERROR, "numbers became infinite: a shorter step may help");
+  if (fault == ROBOT_NOT_FINITE) return failed(m, ERROR, "numbers became infinite: a shorter step or smaller inputs may help");
   if (fault) return failed(m, ERROR, "the equations of a step were not solved: a shorter step may help");
   return OK;
 }
@@ -162,6 +173,7 @@ FMI NAMED(fmi3GetFMUState)(void *instance, void **state) {
 }
 FMI NAMED(fmi3SetFMUState)(void *instance, void *state) {
   Instance *m = instance;
+  if (!state || memcmp(state, TOKEN, sizeof TOKEN)) return failed(m, ERROR, "no state, or one of another unit");
   memcpy(&m->given, state, sizeof m->given);
   memcpy(m->memory, (unsigned char *)state + sizeof m->given, robot_size());
   return OK;
@@ -169,12 +181,12 @@ FMI NAMED(fmi3SetFMUState)(void *instance, void *state) {
 FMI NAMED(fmi3FreeFMUState)(void *m, void **state) { (void)m; free(*state); *state = 0; return OK; }
 FMI NAMED(fmi3SerializedFMUStateSize)(void *m, void *state, size_t *size) { (void)m; (void)state; *size = state_size(); return OK; }
 FMI NAMED(fmi3SerializeFMUState)(void *instance, void *state, unsigned char *to, size_t size) {
-  if (size < state_size()) return failed(instance, ERROR, "no room for a state");
+  if (!state || size < state_size()) return failed(instance, ERROR, "no state, or no room for it");
   memcpy(to, state, state_size());
   return OK;
 }
 FMI NAMED(fmi3DeserializeFMUState)(void *instance, const unsigned char *from, size_t size, void **state) {
-  if (size != state_size()) return failed(instance, ERROR, "a state of another unit");
+  if (size != state_size() || memcmp(from, TOKEN, sizeof TOKEN)) return failed(instance, ERROR, "a state of another unit");
   if (!*state) *state = malloc(size);
   if (!*state) return failed(instance, ERROR, "no memory for a state");
   memcpy(*state, from, size);

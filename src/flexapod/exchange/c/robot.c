@@ -9,7 +9,7 @@ static const double JUMPED = 1e-9;      /* m, rad: a command that moves by less 
 typedef struct {
   double *head, *inputs, *q, *v, *v_dot, *a, *lam, *drive, *pose, *bristles, *sums, *powers, *record, *rows, *loads;
   char *march;
-  long size;
+  long size;                            /* of all that: the second half of a memory is the first as the last call left it */
 } Instance;
 
 enum { STEPS_DONE, STARTED, MOST, HEAD };       /* numbers at its head */
@@ -63,8 +63,9 @@ static void with_inputs(const double *inputs, double since, double *table, doubl
     if (DRIVE_PORT[leg] < 0) continue;
     if (COMMANDED) {                                /* (T26.8) */
       double *row = table + (leg*PORT_COUNT + DRIVE_PORT[leg])*COLUMNS;
-      double value = (inputs[leg] - ZERO_OF_DRIVE[leg])*PER_TURN[leg], rate = inputs[leg + LEG_COUNT]*PER_TURN[leg];
-      double change = inputs[leg + 2*LEG_COUNT]*PER_TURN[leg];
+      double turn = PER_TURN[leg], times = STRETCH[leg];                          /* as built and warm: (T16.5) */
+      double value = SHIFT[leg] + (inputs[leg] - ZERO_OF_DRIVE[leg])*turn*times;
+      double rate = inputs[leg + LEG_COUNT]*turn*times, change = inputs[leg + 2*LEG_COUNT]*turn*times;
       row[0] = value + since*(rate + 0.5*since*change); row[1] = rate + since*change; row[2] = change;
     }
     if (FORCE_PORT[leg] >= 0) table[(leg*PORT_COUNT + FORCE_PORT[leg])*COLUMNS + 3] += inputs[FIRST_FORCE + leg]/PER_TURN[leg];
@@ -84,7 +85,24 @@ static int jumps(const double *before, const double *inputs, int starts) {
   return 0;
 }
 
-size_t robot_size(void) { return (size_t)instance(0).size; }
+/* A call ends: done, or as if it had never been. What was factored lies between the matrices of the first leg and what they
+   are solved for: where nothing was factored anew it is there already. */
+static int ended(const Instance *x, void *memory, int fault, int factored) {
+  char *now = memory, *left = now + x->size;
+  const Work *w = (const Work *)x->march;
+  long size = x->size, from = factored ? size : (char *)w->arrow.leg[0].A - now, to = factored ? size : (char *)w->dq[0] - now;
+  if (fault) { memcpy(now, left, (size_t)size); return fault; }
+  memcpy(left, now, (size_t)from); memcpy(left + to, now + to, (size_t)(size - to));
+  return ROBOT_OK;
+}
+
+static int all_finite(const double *x, long count) {
+  double sum = 0;
+  for (long k = 0; k < count; k++) sum += 0*x[k];
+  return isfinite(sum);
+}
+
+size_t robot_size(void) { return 2*(size_t)instance(0).size; }
 void robot_start_inputs(double *inputs) { memcpy(inputs, START_INPUTS, sizeof(double)*ROBOT_INPUTS); }
 double robot_time(const void *memory) { return instance(memory).head[STEPS_DONE]*ROBOT_STEP; }
 long robot_most_iterations(const void *memory) { return (long)instance(memory).head[MOST]; }
@@ -101,14 +119,17 @@ int robot_init(void *memory) {
   memcpy(x.sums, START_SUMS, sizeof START_SUMS);
   built_in(0, x.rows, x.loads);
   record_state(&s, &state, x.rows, x.loads, x.march);
-  return ROBOT_OK;
+  return ended(&x, memory, ROBOT_OK, 1);
 }
 
 int robot_step(void *memory, const double *inputs, long steps) {
   Instance x = instance(memory);
   Settings s = settings();
+  if (steps <= 0) return steps ? ROBOT_BACKWARDS : ROBOT_OK;
+  if (!all_finite(inputs, ROBOT_INPUTS)) return ROBOT_NOT_FINITE;
   if (jumps(x.inputs, inputs, !(x.head[STEPS_DONE] > 0))) return ROBOT_JUMPS;
   memcpy(x.inputs, inputs, sizeof(double)*ROBOT_INPUTS);
+  int factored = !(x.head[STARTED] > 0);
   for (long k = 1; k <= steps; k++) {
     State state = state_of(&x);
     double *row = x.rows + TABLE, *load = x.loads + LOADS;
@@ -116,12 +137,14 @@ int robot_step(void *memory, const double *inputs, long steps) {
     with_inputs(inputs, (double)k*ROBOT_STEP, row, load);
     s.output_every = k == steps ? 1 : 2;
     int fault = march(&s, &state, x.rows, x.loads, 1, x.head[STARTED] > 0, x.march, 0);
-    if (fault) return fault;
+    if (!fault && k == steps && !all_finite(x.record, RECORD)) fault = ROBOT_NOT_FINITE;
+    if (fault) return ended(&x, memory, fault, 1);
     x.head[STARTED] = 1;
     x.head[STEPS_DONE] += 1;
     x.head[MOST] = fmax(x.head[MOST], (double)state.iterations);
+    factored |= state.factorisations > 0;
   }
-  return ROBOT_OK;
+  return ended(&x, memory, ROBOT_OK, factored);
 }
 
 void robot_outputs(const void *memory, double *outputs) {

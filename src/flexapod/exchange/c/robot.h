@@ -7,15 +7,16 @@
 
 enum { ROBOT_ALIGNMENT = 64 };          /* the memory begins at a multiple of it */
 
-/* What a call returns: 0, or why it failed; what it had to do is then not done */
-enum { ROBOT_OK = 0, ROBOT_NOT_CONVERGED = 1, ROBOT_NOT_FINITE = 2, ROBOT_SINGULAR = 3, ROBOT_JUMPS = 6 };
+/* What a call returns: 0, or why it failed; what it had to do is then not done, and each byte of the memory is what it was */
+enum { ROBOT_OK = 0, ROBOT_NOT_CONVERGED = 1, ROBOT_NOT_FINITE = 2, ROBOT_SINGULAR = 3, ROBOT_JUMPS = 6, ROBOT_BACKWARDS = 7 };
 
 size_t robot_size(void);                /* bytes of the memory */
 int robot_init(void *memory);           /* the start: at time 0 */
 
 /* Go on by `steps` steps of ROBOT_STEP. Inputs are those of the present time and hold for all of them: forces as they are, commands
    of the drives as value, rate and acceleration, extrapolated. ROBOT_JUMPS: the command of a drive that keeps it whatever the force
-   has another value than before, and no rate that leads there. */
+   has another value than before, and no rate that leads there. ROBOT_NOT_FINITE: an input or a number of the robot is not finite.
+   ROBOT_BACKWARDS: `steps` is below 0. */
 int robot_step(void *memory, const double *inputs, long steps);
 
 double robot_time(const void *memory);

@@ -13,7 +13,7 @@ from flexapod.arrays import Array
 from flexapod.errors import InputError, closest, names_of
 from flexapod.model import Robot
 from flexapod.solve.linear.motions import COMPONENTS
-from flexapod.units import to_si
+from flexapod.units import quantity
 
 __all__ = ["INPUTS", "OUTPUTS", "Geophone", "PlantChannel", "asked"]
 
@@ -177,7 +177,7 @@ def _point(text: str, robot: Robot, name: str, key: str) -> Array:
     numbers = [part.strip() for part in text.strip("()").split(",")]
     try:
         if len(numbers) == 3:
-            return np.array([to_si(float(x) if _NUMBER.fullmatch(x) else x, "length") for x in numbers]) - robot.com
+            return np.array([quantity(x, "length") for x in numbers]) - robot.com
     except (InputError, ValueError):
         pass
     raise InputError(

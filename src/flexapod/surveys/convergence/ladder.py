@@ -17,6 +17,7 @@ from flexapod.surveys.convergence.plan import checked_trials, not_uniform
 from flexapod.surveys.convergence.search import ConvergenceStopped
 from flexapod.surveys.convergence.table import SettingRow, reference_words, rows_dataset
 from flexapod.surveys.convergence.trials import QUANTITIES, Setting, Trial, Trials, setting_of
+from flexapod.units import quantities
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -100,6 +101,7 @@ def rungs(study: Study | ActuatorStudy, step: float | None = None) -> tuple[list
             "`flexapod converge` varies steps and shapes of this study",
         )
     own = setting_of(study)
+    step = quantities(step, "time", key="step")
     base = replace(own, tolerance=None, step=step or own.step or own.output_step / PER_OUTPUT)
 
     def setting(fidelity: str, basis: str, modes: int) -> Setting:

@@ -12,8 +12,10 @@ from flexapod import kinematics, model
 from flexapod.arrays import Array, floats
 from flexapod.errors import InputError, check_known
 from flexapod.model import AXES
+from flexapod.results.arguments import coordinate, pose_in_words
 from flexapod.results.poses import from_home
 from flexapod.review.reach import REACHED, rigid_codes
+from flexapod.units import quantities
 
 COUNT = {1: 201, 2: 41, 3: 21}  # points of an axis by number of axes, where none are given
 SLICES = 5  # of the third axis
@@ -61,7 +63,7 @@ class Grid:
         return table
 
 
-def grid(robot: model.Robot, axes: Axes | None, at: Mapping[str, float] | None) -> Grid:
+def grid(robot: model.Robot, axes: Axes | None, at: Mapping[str, float | str] | str | None) -> Grid:
     """A grid from what a user gives.
 
     Parameters
@@ -71,7 +73,7 @@ def grid(robot: model.Robot, axes: Axes | None, at: Mapping[str, float] | None) 
         Names of one to three of surge, sway, heave, roll, pitch, yaw with ascending values [m, rad], a `Range`, or None
         for as far as the robot reaches; default: `usual_axes`.
     at : mapping, optional
-        Fixed coordinates by name; the others are those of home.
+        Fixed coordinates by name, or in words as poses are; the others are those of home.
 
     Raises
     ------
@@ -87,7 +89,7 @@ def grid(robot: model.Robot, axes: Axes | None, at: Mapping[str, float] | None) 
             next_step="Use `flexapod modes`, or `flexapod check`",
         )
     axes = dict.fromkeys(usual_axes(robot)) if axes is None else axes
-    at = {} if at is None else at
+    at = {} if at is None else (pose_in_words(at, "at") or {}) if isinstance(at, str) else at
     _check_names(axes, "axes", 'axes = {"surge": [-0.1, 0.0, 0.1], "heave": None}')
     _check_names(at, "at", 'at = {"roll": 0.1}')
     fixed = _fixed(at, axes)
@@ -109,13 +111,13 @@ def usual_axes(robot: model.Robot) -> list[str]:
     return [name for name in USUAL if free[AXES.index(name)]][:2]
 
 
-def _fixed(at: Mapping[str, float], axes: Axes) -> Array:
+def _fixed(at: Mapping[str, float | str], axes: Axes) -> Array:
     fixed = np.zeros(6)
     for name, value in at.items():
         if name in axes:
             raise InputError("varies in this map: it cannot be fixed, too", key=f"at.{name}", value=value)
         try:
-            number = float(value)
+            number = float(coordinate(name, value, f"at.{name}") if isinstance(value, str) else value)
         except (TypeError, ValueError, OverflowError):
             number = np.nan
         if not np.isfinite(number):
@@ -142,7 +144,7 @@ def _values(
     count = (SLICES if slices else COUNT[axes]) if wanted.count is None else wanted.count
     if count < 1:
         raise InputError("is not a number of points", key=f"axes.{name}", value=count, allowed="1 or more")
-    low, high = wanted.low, wanted.high
+    low, high = (None if end is None else coordinate(name, end, f"axes.{name}") for end in (wanted.low, wanted.high))
     if low is None or high is None:
         return _as_far_as_reached(reach_from_home(robot, name, fixed), count, slices=slices)
     if high < low or (high == low and count > 1):
@@ -156,6 +158,7 @@ def _values(
 
 
 def _given_values(name: str, given: ArrayLike) -> Array:
+    given = quantities(given, "length" if UNITS[name] == "m" else "angle", key=f"axes.{name}")
     try:
         values = np.atleast_1d(floats(given))
     except ValueError:

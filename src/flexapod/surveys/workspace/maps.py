@@ -26,6 +26,7 @@ from flexapod.solve.modal.frequencies import count_real
 from flexapod.surveys.workspace.findings import forms
 from flexapod.surveys.workspace.grid import UNITS, Axes, Grid, grid
 from flexapod.surveys.workspace.quantities import Wanted, batch_values
+from flexapod.units import quantities
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -41,7 +42,7 @@ def workspace_map(
     robot: RobotLike,
     axes: Axes | None = None,
     *,
-    at: Mapping[str, float] | None = None,
+    at: Mapping[str, float | str] | str | None = None,
     direction: str | ArrayLike = "z",
     acceleration: ArrayLike | None = None,
     frequencies: int = FREQUENCIES,
@@ -62,7 +63,7 @@ def workspace_map(
         One to three of surge, sway, heave [m], roll, pitch, yaw [rad] from home, each with its values, or None for as
         far as the robot reaches; default: surge and heave, or the first two that the robot can do.
     at : mapping, optional
-        Fixed coordinates by name.
+        Fixed coordinates by name, or in words, ``"roll=5deg"``.
     direction : str or array_like (3,)
         Of `stiffness`: x, y, z, or a vector in world axes.
     acceleration : array_like (3,), optional
@@ -95,7 +96,8 @@ def workspace_map(
     """
     study = model.override(at_pose(robot, load), fidelity=fidelity, modes=modes, axial_modes=axial_modes, basis=basis)
     poses = grid(study.robot, axes, at)
-    a = None if acceleration is None else _vector("acceleration", acceleration)
+    a = quantities(acceleration, "acceleration", key="acceleration")
+    a = None if a is None else _vector("acceleration", a)
     wanted = Wanted(direction=_unit(direction), acceleration=a, frequencies=_count(frequencies), budget=budget)
     check_map(poses.size, wanted.frequencies)
     began = time.perf_counter()

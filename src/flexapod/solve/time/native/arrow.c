@@ -287,7 +287,7 @@ INLINE void arrow_solve_of(long rows, long common, const Arrow *w, const Setting
     lanes_gemv_t(ROWS, ROWS, -1, b->J1inv, left, dlam[group]);             /* rows of the pivots give dlam */
     for (long k = 0; k < s->ports; k++) {
       long at = PLACE[s->port[k]];
-      if (at < ROWS) { df[group][k] = f[at]; continue; }
+      if (ROWS && at < ROWS) { df[group][k] = f[at]; continue; }
       lanes own = r[group][s->port[k]];
       for (long j = 0; j < N; j++) own += b->A[at + j*N] * change[j];
       for (int i = 0; i < ROWS; i++) own += b->J[i + ROWS*at] * dlam[group][i];

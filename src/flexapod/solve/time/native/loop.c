@@ -174,12 +174,6 @@ static void affine(long rows, long n, const double *A, const double *x, long m, 
 /* Whether a sample is due at an instant */
 static int is_due(const Loop *c, double now) { return now >= c->period*(split(c).next[0] - 1e-6); }
 
-/* Where a step ends that would end at a stop: at the next sample after the one that is due, unless they are one instant */
-static double end_of_step(const Loop *c, double stop, int due) {
-  double next = c->period*(split(c).next[0] + due);
-  return next < stop - 1e-6*c->period ? next : stop;
-}
-
 static void rates_of_legs(const Settings *s, const Work *w, lanes **v) { for (int i = 0; i < groups(s); i++) v[i] = w->leg[i].v; }
 
 /* Whether outputs follow from what was read before: they are held first then, and what is read is read under them */

@@ -737,6 +737,12 @@ static int take_sample_within(const Settings *s, const Loop *c, double h, double
 
 enum { OUT_OF_REACH = 4, OLDEST = 16 }; /* steps for which the matrices at rest are kept */
 
+/* Where a step ends that would end at a stop: at the next sample after the one that is due, unless they are one instant */
+static double end_of_step(const Loop *c, double stop, int due) {
+  double next = c->period*(split(c).next[0] + due);
+  return next < stop - 1e-6*c->period ? next : stop;
+}
+
 /* Advance to the last stop with steps of their own, recording the instants asked for. The memory is the caller's; zero but for the
    present time and the step to try, it begins anew. `loop`: a controller, at whose samples steps end, or 0. */
 int radau(const Settings *s, State *x, const Control *c, char *memory, Loop *loop) {

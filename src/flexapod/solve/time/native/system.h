@@ -54,7 +54,7 @@ typedef struct {                        /* flat coordinates: legs * n, then the 
    than a better start and steps counted; LOOPING: whether loops make matrices that are not symmetric. */
 #define SIZES(s) SIZES_OF(s, (s)->of->rows, (s)->of->common)
 #define SIZES_OF(s, rows_of_it, common_of_it) \
-  const long N = (s)->of->n, ROWS = rows_of_it, COMMON = common_of_it, M = N - ROWS - COMMON, HUB = 6 + COMMON, \
+  __attribute__((unused)) const long N = (s)->of->n, ROWS = rows_of_it, COMMON = common_of_it, M = N - ROWS - COMMON, HUB = 6 + COMMON, \
              BODY = 6 + (s)->of->plate, BRISTLES = (s)->of->bristles, SPRINGS = (s)->of->command/2, \
              POSED = (s)->of->posed, LARGE = N > 30, LOOPING = (s)->of->loop < N, *ORDER = (s)->of->order, *PLACE = (s)->of->place
 
