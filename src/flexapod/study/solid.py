@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -94,13 +94,19 @@ def simulate_solid(
     (('time',), 'Hz')
     """
     study = _only_prescribed(read(study))
-    size, spacing = (quantities(x, "length", key=key) for x, key in ((size, "size"), (spacing, "spacing")))
-    step = quantities(step, "time", key="step")
-    _check_numbers(size=size, poisson=poisson, step=step, spacing=size if spacing is None else spacing)
+    size, spacing, step = _in_si(size, spacing, step, poisson)
     _check_section(section)
     study = model.override(study, duration=duration, output_step=output_step)
     mesh = _Mesh(section or study.actuator.section or PAPER_SECTION, size, kind, poisson, spacing)
     return _simulated(study, mesh, step, progress)
+
+
+def _in_si(size: Any, spacing: Any, step: Any, poisson: float) -> tuple[Any, Any, Any]:
+    """Lengths and time step with texts as SI numbers; what is no number is refused."""
+    size, spacing = (quantities(x, "length", key=key) for x, key in ((size, "size"), (spacing, "spacing")))
+    step = quantities(step, "time", key="step")
+    _check_numbers(size=size, poisson=poisson, step=step, spacing=size if spacing is None else spacing)
+    return size, spacing, step
 
 
 def _check_numbers(**values: float) -> None:
