@@ -96,8 +96,8 @@ def _omissions(lines: Dataset) -> Said:
 def _costs(lines: Dataset) -> tuple[dict[str, str], dict[str, str]]:
     """By printed line in words: how far the tip is off with it, and how far the tip goes as derived."""
     names = [str(line) for line in lines.line.values]
-    errors, sizes = (map(float, lines[name].values) for name in ("tip_error", "largest"))
-    return tuple(dict(zip(names, (text(x, "m") for x in values), strict=True)) for values in (errors, sizes))
+    errors, sizes = ([text(float(x), "m") for x in lines[name].values] for name in ("tip_error", "largest"))
+    return dict(zip(names, errors, strict=True)), dict(zip(names, sizes, strict=True))
 
 
 @row("Table 2", "15.24 x 0.95 cm^2, 4.02 kg/m, EI = 756.65 N m^2", f"actuator-{ACTUATOR_MODES[0]}", expected=HOLDS)

@@ -75,19 +75,18 @@ def commands_ahead(report: Share) -> Dataset:
         Over `command`, as in `COMMANDS`: `miss` (command, time, axis) [m], of the centre of mass beside the path that
         the rigid robot would take by the study's own motion; `miss_peak` (command, axis).
     """
-    study, rows, time = _roll(), {}, np.zeros(0)
+    study, rows = _roll(), {}
+    own = simulate(study)
     for name, order in COMMANDS.items():
-        data = simulate(study if order is None else compensate(study, order))  # type: ignore[arg-type]
-        if order is None:
-            wanted, time = data.com_position_rigid.values, data.time.values
-        rows[name] = data.com_position.values - wanted
+        data = own if order is None else simulate(compensate(study, order))  # type: ignore[arg-type]
+        rows[name] = data.com_position.values - own.com_position_rigid.values
         report(len(rows) / len(COMMANDS))
     peaks = {name: np.abs(miss).max(axis=0) for name, miss in rows.items()}
     values = {
         "miss": _stacked(rows, "command", "time", "axis"),
         "miss_peak": _stacked(peaks, "command", "axis"),
     }
-    coords = {"command": list(rows), "time": ("time", time, _SECOND), "axis": list("xyz")}
+    coords = {"command": list(rows), "time": ("time", own.time.values, _SECOND), "axis": list("xyz")}
     return Dataset(values, coords, attributes(study))
 
 
@@ -153,11 +152,11 @@ def force_feedback(report: Share) -> Dataset:
     plant = linearize(study, inputs=["drive", "wrench"], outputs=["tool", "force-sensor:drive"])
     loops = {"open": plant, "force feedback": plant.close(law)}
     report(0.3)
-    rows, sizes, lowest = {}, [], []
+    rows, sizes, lowest, time = {}, [], [], np.zeros(0)
     for name, loop in loops.items():
         closed = {} if name == "open" else {"controller": law, "sample": SAMPLE}
         data = simulate(_struck(study), duration=RING, step=SAMPLE, **closed)  # type: ignore[arg-type]
-        rows[name] = (data.com_position - data.com_position[0]).values
+        rows[name], time = (data.com_position - data.com_position[0]).values, data.time.values
         sizes.append(np.abs(loop.select("wrench:fz", "tool:z").at(HZ)).ravel())
         found = loop.damp()
         found = found.isel(mode=np.flatnonzero(found.damping_ratio.values < 1)[:MODES])
@@ -171,7 +170,7 @@ def force_feedback(report: Share) -> Dataset:
         "damping_ratio": (("loop", "mode"), damping, {"units": "1"}),
     }
     coords = {
-        "loop": list(rows), "time": ("time", data.time.values, _SECOND), "axis": list("xyz"),
+        "loop": list(rows), "time": ("time", time, _SECOND), "axis": list("xyz"),
         "frequency": ("frequency", HZ, {"units": "Hz"}), "mode": np.arange(1, MODES + 1),
     }  # fmt: skip
     return Dataset(values, coords, attributes(study))
@@ -199,15 +198,14 @@ def joint_friction(report: Share) -> Dataset:
     study = _roll()
     rubbing, ahead = with_friction(study), compensate(study, 2)
     cases = {"ideal": study, "friction": rubbing, "friction, commands ahead": rubbing.replace(motion=ahead.motion)}
-    rows, lost, wanted = {}, [], np.zeros(0)
+    rows, lost, own = {}, [], simulate(study)
     for name, case in cases.items():
-        data = simulate(case)
-        wanted = wanted if rows else data.com_position_rigid.values
-        rows[name] = data.com_position.values - wanted
+        data = simulate(case) if rows else own
+        rows[name] = data.com_position.values - own.com_position_rigid.values
         lost.append(float(data.energy_dissipated[-1]))
         report(len(rows) / len(cases))
     values = {"miss": _stacked(rows, "joints", "time", "axis"), "lost": ("joints", lost, {"units": "J"})}
-    coords = {"joints": list(rows), "time": ("time", data.time.values, _SECOND), "axis": list("xyz")}
+    coords = {"joints": list(rows), "time": ("time", own.time.values, _SECOND), "axis": list("xyz")}
     return Dataset(values, coords, attributes(rubbing))
 
 

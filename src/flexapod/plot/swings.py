@@ -22,7 +22,7 @@ def swings(values: np.ndarray) -> np.ndarray:
 
 def is_quick(values: np.ndarray, most: float = MOST) -> bool:
     """Whether a curve swings more often than a panel can show; swings that nobody sees do not count."""
-    return np.count_nonzero(np.abs(np.diff(values[swings(values)])) > SEEN * np.ptp(values)) > most
+    return bool(np.count_nonzero(np.abs(np.diff(values[swings(values)])) > SEEN * np.ptp(values)) > most)
 
 
 def vibration_line(axes: Axes, time: np.ndarray, values: np.ndarray, most: float = MOST, **style: Any) -> bool:
@@ -50,8 +50,10 @@ def vibration_line(axes: Axes, time: np.ndarray, values: np.ndarray, most: float
     middle = np.interp(time, 0.5 * (time[at[:-1]] + time[at[1:]]), middle)
     low, high = (sign * _edge(time, sign * values, at[sign * (values[at] - middle[at]) >= 0]) for sign in (-1.0, 1.0))
     axes.fill_between(time, low, high, color=style["color"], alpha=0.25, linewidth=0)
-    axes.plot(time, low, **style | {"linewidth": 0.8})
-    axes.plot(time, high, **style | {"linewidth": 0.8, "label": None})
+    edge: dict[str, Any] = style | {"linewidth": 0.8}
+    axes.plot(time, low, **edge)
+    edge["label"] = None
+    axes.plot(time, high, **edge)
     return True
 
 
