@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from flexapod.schema.base import Frozen, same
+from flexapod.schema.base import FileKey, Frozen, same
 from flexapod.schema.written import Written, together
 
 if TYPE_CHECKING:
@@ -127,9 +127,8 @@ class Table(Frozen):
         changed = [name for name in self.derived if name in changes and not same(changes[name], getattr(self, name))]
         if not changed:
             return changes
-        from flexapod.schema.columns import columns_of
-
-        return {column.name: None for column in columns_of(type(self)).values() if column.file} | changes
+        fields = type(self).model_fields.items()
+        return {name: None for name, info in fields if any(isinstance(x, FileKey) for x in info.metadata)} | changes
 
     def _kept_in(self, changed: Self) -> Self:
         """A changed object with what still holds of the table of this one."""
