@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from flexapod.schema.base import Frozen, same
+from flexapod.schema.base import FileKey, Frozen, same
 from flexapod.schema.written import Written, together
 
 if TYPE_CHECKING:
@@ -126,9 +126,9 @@ class Table(Frozen):
         changed = [name for name in self.derived if name in changes and not same(changes[name], getattr(self, name))]
         if not changed:
             return changes
-        from flexapod.schema.columns import columns_of
-
-        return {column.name: None for column in columns_of(type(self)).values() if column.file} | changes
+        infos = type(self).model_fields
+        files = (name for name in infos if any(isinstance(part, FileKey) for part in infos[name].metadata))
+        return dict.fromkeys(files) | changes
 
     def _kept_in(self, changed: Self) -> Self:
         """A changed object with what still holds of the table of this one."""
