@@ -22,6 +22,7 @@ from flexapod.page import network
 from flexapod.page.logs import CONNECTIONS
 from flexapod.page.network import address, free_port, is_local
 from flexapod.page.opening import open_source
+from flexapod.results.attributes import TABLES
 from flexapod.study import save
 
 
@@ -193,6 +194,11 @@ def test_results_open_without_the_tables_of_their_study(folder):
     path = save(data, folder / "results.nc")
     (folder / "path.csv").unlink()
     study = open_source(path).study
+    assert study.motion.time.tolist() == [0.0, 0.1, 0.2]  # the table itself, which the results hold
+    assert not study.warnings
+    former = data.copy()  # of a release whose results held none
+    del former.attrs[TABLES]
+    study = open_source(save(former, folder / "former.nc")).study
     assert study.robot == fx.preset("paper-robot").robot
     assert study.motion.pose[-1, 2] == pytest.approx(0.003, abs=1e-12)
     assert "tables" in study.warnings[-1]

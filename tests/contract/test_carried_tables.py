@@ -275,13 +275,13 @@ def test_the_page_opens_results_with_their_tables(empty):
 @pytest.mark.parametrize("title", EXAMPLES)
 def test_a_study_is_taken_from_the_page_with_its_tables_and_sent_again(title, empty):
     """What one page gives another one takes: the same study, whatever its tables were called and wherever they lay."""
-    home, sent = empty / "machine", empty / "sent"
+    home, sent = empty / "there", empty / "sent"
     home.mkdir()
     sent.mkdir()
     text = EXAMPLES[title]
     for file, content in reference().files.items():
         (home / f"my {file}").write_text(content)
-        text = text.replace(f'"{file}"', f'"../machine/my {file}"')
+        text = text.replace(f'"{file}"', f'"../there/my {file}"')
     (home / "study.toml").write_text(text)
     source = open_source(home / "study.toml")
     ending, content = study_download(source.document, source.study)

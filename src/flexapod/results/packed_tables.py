@@ -17,12 +17,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from flexapod.arrays import Array
+from flexapod.arrays import Array, Mask
 from flexapod.errors import InputError
 from flexapod.schema.named_files import Stored
 
 __all__ = ["as_text", "pack", "unpack"]
+
+Whole = NDArray[np.signedinteger[Any]]
+Bytes = NDArray[np.uint8]
 
 MAGIC = b"flexapod tables 1\n"
 MOST_NUMBERS = 50_000_000
@@ -36,10 +40,10 @@ LOOKED_AT = 200  # numbers of a column that tell how it was written
 WORTH = 0.7  # share of them from which on it is tried
 KEPT = 4  # packed tables that are remembered: many results of one study follow each other
 
-_packed: OrderedDict[str, Array] = OrderedDict()
+_packed: OrderedDict[str, Bytes] = OrderedDict()
 
 
-def pack(tables: Mapping[str, Stored]) -> Array:
+def pack(tables: Mapping[str, Stored]) -> Bytes:
     """Tables as bytes, (n,) of ``uint8``, read-only; the same tables give the same bytes."""
     arrays: dict[bytes, tuple[int, Array]] = {}
     entries = []
@@ -63,7 +67,7 @@ def _part(value: Any, arrays: dict[bytes, tuple[int, Array]]) -> object:
     return {"array": number, "shape": list(value.shape)}
 
 
-def _joined(entries: list[Any], arrays: list[Array]) -> Array:
+def _joined(entries: list[Any], arrays: list[Array]) -> Bytes:
     columns = [_Column.of(array) for array in arrays]
     told = {"tables": entries, "arrays": [column.told() for column in columns]}
     header = zlib.compress(json.dumps(told).encode())
@@ -111,7 +115,7 @@ def unpack(packed: object) -> dict[str, Stored]:
         ) from None
 
 
-def as_text(packed: Array) -> str:
+def as_text(packed: Bytes) -> str:
     """Packed tables where there is place for a text only."""
     return b85encode(packed.tobytes()).decode()
 
@@ -180,7 +184,7 @@ class _Column:
         return found
 
 
-def _made(whole: Array, odd: Array, places: Array) -> tuple[int, tuple[bytes, ...]]:
+def _made(whole: Whole, odd: Array, places: Whole) -> tuple[int, tuple[bytes, ...]]:
     """Order of the differences that are smallest, and the bytes of them and of what is written out beside."""
     ways, x = [whole], whole
     for _ in range(2):
@@ -203,7 +207,7 @@ def _decimal(x: Array) -> tuple[int, float] | None:
     return (int(few), FACTORS[unit]) if shares[unit, few] > WORTH else None
 
 
-def _whole(x: Array, digits: int | Array, factor: float) -> tuple[Array, Array]:
+def _whole(x: Array, digits: int | Whole, factor: float) -> tuple[Whole, Mask]:
     """Whole numbers, and which of them give the numbers back to the bit."""
     with np.errstate(over="ignore"):
         scaled = np.rint(x / factor * 10.0**digits)
@@ -212,6 +216,6 @@ def _whole(x: Array, digits: int | Array, factor: float) -> tuple[Array, Array]:
     return whole, within & (_back(whole, digits, factor).view(np.int64) == x.view(np.int64))
 
 
-def _back(whole: Array, digits: int | Array, factor: float) -> Array:
+def _back(whole: Whole, digits: int | Whole, factor: float) -> Array:
     """The numbers as a table of them is read: the nearest to the decimal ones, times the unit."""
     return whole / 10.0**digits * factor

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -30,6 +30,8 @@ from flexapod.units import DIMENSIONS
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+    from flexapod.results.packed_tables import Bytes
 
 __all__ = ["ACTUATOR_SCALARS", "Kept", "kept"]
 
@@ -217,7 +219,7 @@ def _header(points: Points, resolved: Resolved) -> dict[str, Any]:
         "study": study["study"],
         "study_file": study["study_file"],
         "study_hash": study["study_hash"],
-        **({TABLES: as_text(study[TABLES])} if TABLES in study else {}),
+        **({TABLES: as_text(cast("Bytes", study[TABLES]))} if TABLES in study else {}),
         "sweep": points.plan.text,
         "sweep_file": points.plan.file or "",
         "sweep_hash": points.plan.hash,
