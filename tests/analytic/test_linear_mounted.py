@@ -138,3 +138,20 @@ def test_a_floor_that_turns_shakes_an_uneven_payload_of_a_turned_robot():
     # rounding, over the distance from the resonances
     assert H[:6] == pytest.approx(tool, abs=1e-7 * np.abs(tool).max())
     assert H[6:] == pytest.approx(x[:3], abs=1e-7 * np.abs(x).max())
+
+
+def test_a_plate_that_cannot_move_is_not_felt_above_it():
+    """Mass and weight of a plate of hard springs are below the sensors; the legs' are above, on a floor that tilts."""
+    robot, load = machine(), fx.model.Load(wrench=fx.model.ConstantWrench(value=[2e3, -1e3, 0.0, 0.0, 300.0, 200.0]))
+    hard = BASE.replace(stiffness=np.diag([1e14] * 3 + [1e14] * 3))
+    outputs = ["force-sensor:base", "force-sensor:platform", "tool"]
+    plain, mounted = (
+        fx.linearize(study(x, fidelity="lumped").replace(load=load), POSE, inputs=["wrench", "floor"], outputs=outputs)
+        for x in (robot, robot.replace(base_mount=hard))
+    )
+    slow = [0.01, 3.0]
+    exact = plain.at(slow)
+    for rows in (slice(0, 6), slice(6, 12), slice(12, 15), slice(15, 18)):
+        # springs of the legs, 4e8 N/m, over those of the plate: 4e-6; of the largest of an input at a frequency
+        apart = np.abs(mounted.at(slow)[rows] - exact[rows]).max(axis=0)
+        assert (apart < 1e-4 * np.abs(exact[rows]).max(axis=0)).all()
