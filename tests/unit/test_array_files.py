@@ -22,7 +22,7 @@ from flexapod.model import preset_text
 from flexapod.schema.array_files import json_arrays, mat_arrays, npz_arrays, texts_of
 from flexapod.schema.systems import read_system
 
-ROOM = 600_000_000  # bytes; Python with NumPy and what is imported takes 120 of them, a file of the largest size thrice its own
+ROOM = 600_000_000  # bytes: Python with what is imported takes 120 MB, a file of the largest size thrice its own
 
 
 def everything(_):

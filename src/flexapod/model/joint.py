@@ -101,7 +101,7 @@ class Joint(Table):
     rolling: RollingLaw | None = None
 
     def __init__(self, **fields: Any) -> None:
-        if (law := fields.get("rolling")) is not None:
+        if isinstance(law := fields.get("rolling"), RollingLaw):
             across = law.radial or law.k
             fields |= {"stiffness": np.diag([across, across, law.k, 0.0, 0.0, 0.0]), "leg_axes": True}
             fields |= {"stiffness_damping": law.damping, "stiffness_loss": law.loss}

@@ -94,7 +94,7 @@ class Simulation(Table):
                 allowed="tip-load, clamped-free, tip-mass",
                 next_step=hint,
             )
-        if "basis" in fields and fields.get("fidelity") in OWN_BASIS:
+        if "basis" in fields and isinstance(fields.get("fidelity"), str) and fields["fidelity"] in OWN_BASIS:
             raise InputError(
                 f"has no effect with fidelity {fields['fidelity']!r}, which has a basis of its own",
                 key="basis",
@@ -106,7 +106,7 @@ class Simulation(Table):
     def replace(self, **changes: object) -> Self:
         """A copy with some fields changed; a basis that its fidelity does not use is kept for one that does."""
         fields = {name: getattr(self, name) for name in type(self).model_fields} | changes
-        if "basis" in changes or fields["fidelity"] not in OWN_BASIS:
+        if "basis" in changes or not isinstance(fields["fidelity"], str) or fields["fidelity"] not in OWN_BASIS:
             return super().replace(**changes)
         del fields["basis"]
         return self._kept_in(type(self)(**fields).with_unused_basis(self.basis))
@@ -203,7 +203,7 @@ class Simulation(Table):
 
 def own_fidelity(basis: object) -> str | None:
     """Advice on a `basis` that is chosen as a fidelity; None for others."""
-    found = [fidelity for fidelity, own in OWN_BASIS.items() if own == basis]
+    found = [fidelity for fidelity, own in OWN_BASIS.items() if isinstance(basis, str) and own == basis]
     return f'Choose fidelity = "{found[0]}" instead' if found else None
 
 
