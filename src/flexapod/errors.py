@@ -12,6 +12,7 @@ __all__ = [
     "FlexapodError",
     "InputError",
     "Malformed",
+    "check_kind",
     "check_known",
     "closest",
     "names_of",
@@ -171,11 +172,18 @@ def nearest(word: str, allowed: Iterable[str]) -> str | None:
     return found[0] if found else None
 
 
+def check_kind(value: object, kinds: type | tuple[type, ...], key: str, allowed: str) -> None:
+    """Raise InputError of a value that is of none of some kinds; `allowed` says in words what they are."""
+    if not isinstance(value, kinds):
+        raise InputError(f"is no such thing but a {type(value).__name__}", key=key, allowed=allowed)
+
+
 def check_known(value: object, among: Iterable[str], key: str, what: str = "is not known") -> None:
     """Raise InputError of a value that is none of some words, with the nearest of them."""
     words = list(among)
     if not isinstance(value, str) or value not in words:
-        raise InputError(what, key=key, value=value, allowed=", ".join(words), next_step=closest(str(value), words))
+        hint = closest(value, words) if isinstance(value, str) else None
+        raise InputError(what, key=key, value=value, allowed=", ".join(words), next_step=hint)
 
 
 def names_of(given: object, key: str) -> list[str]:
@@ -184,7 +192,7 @@ def names_of(given: object, key: str) -> list[str]:
         return [given]
     if not isinstance(given, Iterable):
         raise InputError("is no name", key=key, value=given, allowed="a name, or a list of names")
-    return [str(name) for name in given]
+    return [name if isinstance(name, str) else _short(name) for name in given]
 
 
 def _rebuild_computation(kind: type[ComputationError], what: str, next_step: str | None) -> ComputationError:

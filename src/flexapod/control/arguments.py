@@ -71,7 +71,7 @@ def numbers(given: ArrayLike, key: str, allowed: str) -> Array:
     try:
         found = np.asarray(given)
         found = np.atleast_1d(floats(given)) if found.dtype.kind in "iufO" else np.full(1, np.nan)
-    except ValueError:
+    except (TypeError, ValueError):
         found = np.full(1, np.nan)
     if found.ndim != 1 or not np.isfinite(found).all():
         raise InputError("are no finite numbers in a row", key=key, value=given, allowed=allowed)

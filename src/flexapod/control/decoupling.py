@@ -122,6 +122,8 @@ def by_modes(
         Modes that sensors or actuators do not tell apart.
     """
     part = a_system(system).select(actuator, sensor)
+    if not part.D.size:
+        raise InputError("has no such channels", key="sensor, actuator", allowed="at least one of each")
     k = min(part.D.shape) if count is None else whole(count, "count", 1, min(part.D.shape))
     values, right = np.linalg.eig(part.A)
     try:

@@ -49,7 +49,11 @@ class ControlLaw:
 
     def __post_init__(self) -> None:
         """Finite arrays whose shapes fit."""
-        n = int(np.shape(self.A)[0]) if np.ndim(self.A) == 2 else 0
+        try:
+            A = floats(self.A)
+        except ValueError:
+            A = np.zeros(0)  # refused below
+        n = len(A) if A.ndim == 2 else 0
         for name, shape in (("A", (n, n)), ("B", (n, 2)), ("C", (n,)), ("D", (2,))):
             try:
                 value = floats(getattr(self, name))

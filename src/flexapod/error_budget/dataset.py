@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexapod.control.arguments import flag
 from flexapod.error_budget.motion import along_motion
 from flexapod.error_budget.rows import rows
 from flexapod.error_budget.rules import Budget
@@ -73,6 +74,7 @@ def budget(
     >>> print((100 * data.share.sel(part=["base_joints tolerance", "heat_piston", "base_joint"])).round(1).values)  # %
     [33.9  4.9  1.3]
     """
+    flag(motion, "motion")
     if motion and pose is not None:
         raise InputError("is given together with a motion", key="pose", next_step="Choose either of the two")
     study = as_study(robot, load=load) if motion else at_pose(robot, load)

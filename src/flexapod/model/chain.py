@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Literal
 
-from flexapod.errors import InputError
+from flexapod.errors import InputError, check_kind
 
 MOST_LEGS = 16
 _CHAIN = re.compile(r"(?P<carriage>[PR]?)(?P<base>[RUSF])(?P<stroke>[PC]?)(?P<platform>[RUSF]?)")
@@ -48,7 +48,6 @@ class Chain:
         return self.driven == "carriage" and self.carriage == "crank"
 
 
-@cache
 def chain_of(letters: str) -> Chain:
     """The chain of a leg's letters.
 
@@ -57,9 +56,15 @@ def chain_of(letters: str) -> Chain:
     InputError
         They make no leg; without a key.
     """
-    match = _CHAIN.fullmatch(letters) if isinstance(letters, str) else None
+    check_kind(letters, str, "letters", _LETTERS)
+    return _chain(letters)
+
+
+@cache
+def _chain(letters: str) -> Chain:
+    match = _CHAIN.fullmatch(letters)
     if match is None or not (match["stroke"] or match["platform"]):
-        match = re.fullmatch(r"(?P<carriage>)(?P<base>R)(?P<stroke>)(?P<platform>[RUSF])", str(letters))
+        match = re.fullmatch(r"(?P<carriage>)(?P<base>R)(?P<stroke>)(?P<platform>[RUSF])", letters)
     if match is None:
         raise InputError("letters that make no leg", value=letters, allowed=_LETTERS)
     if match["carriage"] == "R" and match["stroke"]:
@@ -72,7 +77,6 @@ def chain_of(letters: str) -> Chain:
     return Chain(_KINDS[match["carriage"]], match["base"], match["stroke"], match["platform"])
 
 
-@cache
 def chains_of(kind: str) -> tuple[str, ...]:
     """Letters of every leg of a robot, ``("UPS", "UPS", "UPS", "UP")`` of "3-UPS+UP".
 
@@ -81,6 +85,12 @@ def chains_of(kind: str) -> tuple[str, ...]:
     InputError
         The text is not of this form, the letters make no leg, or there are too many; without a key.
     """
+    check_kind(kind, str, "kind", _TYPES)
+    return _chains(kind)
+
+
+@cache
+def _chains(kind: str) -> tuple[str, ...]:
     found: list[str] = []
     for group in kind.split("+"):
         match = _GROUP.fullmatch(group.strip())

@@ -13,6 +13,7 @@ from flexapod.errors import InputError
 from flexapod.schema.axes import plane_order, within_a_turn
 from flexapod.schema.base import Quantity, Series
 from flexapod.schema.table import Table
+from flexapod.units import to_si
 
 if TYPE_CHECKING:
     from flexapod.schema.section import Section
@@ -92,6 +93,7 @@ def platform_circle(radius: float, half_angle: float) -> Array:
 
 
 def _circle(radius: float, half_angle: float, places: tuple[tuple[int, int], ...]) -> Array:
+    radius, half_angle = to_si(radius, "length", key="radius"), to_si(half_angle, "angle", key="half_angle")
     angles = np.array([np.deg2rad(centre) + side * half_angle for centre, side in places])
     return radius * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(6)])
 

@@ -9,7 +9,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Literal, TypeVar, overload
 
-from flexapod.errors import InputError, closest
+from flexapod.errors import InputError, check_kind, closest
 from flexapod.model.actuator import Actuator, ActuatorInitial, read_drives
 from flexapod.model.control import DampedControl, FileControl, ForceControl, StrokeControl, ToolControl
 from flexapod.model.disturbance import read_disturbance
@@ -19,7 +19,7 @@ from flexapod.model.plausible import size_remarks
 from flexapod.model.robot import Robot, platform_fixed, read_robot
 from flexapod.model.simulation import STRAIGHT, Initial, Simulation, read_simulation, unused_settings
 from flexapod.model.study import ActuatorStudy, Study
-from flexapod.runtime.files import LARGEST_TEXT, check_name, read_text
+from flexapod.runtime.files import LARGEST_TEXT, check_name, path_of, read_text
 from flexapod.schema.named_files import NamedFiles
 from flexapod.schema.section import Section
 from flexapod.schema.table import Table
@@ -80,7 +80,7 @@ def load(path: str | Path) -> Study | ActuatorStudy:
     >>> study.robot.payload.mass
     100.0
     """
-    path = Path(path)
+    path = path_of(path, "path")
     check_name(path)
     try:
         text = read_text(path, LARGEST_TEXT)
@@ -141,7 +141,8 @@ def loads_robot(text: str, *, path: str | Path | None = None, files: NamedFiles 
 
 
 def _tables(text: str, path: str | Path | None, files: NamedFiles | None = None) -> Section:
-    file = None if path is None else str(path)
+    check_kind(text, str, "text", "the TOML text of a study")
+    file = None if path is None else str(path_of(path, "path"))
     check_name(file or "")
     beside = Path(path).parent if path else Path()
     top = Section(parsed(text, file or "study text"), "", file, beside if files is None else files)
@@ -186,13 +187,13 @@ def preset(name: str) -> Study | ActuatorStudy:
 
 def preset_text(name: str) -> str:
     """The commented TOML text of a preset."""
-    if name not in PRESETS:
+    if not isinstance(name, str) or name not in PRESETS:
         raise InputError(
             "is not known",
             key="preset",
             value=name if isinstance(name, str) else type(name).__name__,
             allowed=", ".join(PRESETS),
-            next_step=closest(str(name), PRESETS),
+            next_step=closest(name, PRESETS) if isinstance(name, str) else None,
         )
     return files("flexapod.model").joinpath("presets", f"{name}.toml").read_text(encoding="utf-8")
 

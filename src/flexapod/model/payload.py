@@ -67,9 +67,11 @@ class Payload(Table):
     @field_validator("inertia", mode="before")
     @classmethod
     def _from_principal(cls, value: object) -> object:
-        if np.shape(value) == (3,):  # type: ignore[arg-type]
-            return np.diag(floats(value))
-        return value
+        try:
+            moments = floats(value)
+        except ValueError:
+            return value  # refused as a matrix
+        return np.diag(moments) if moments.shape == (3,) else value
 
     def _shown(self) -> dict[str, str]:
         tool = {} if np.array_equal(self.com, self.tool) else {"tool": f"at {millimetres(self.tool)}"}

@@ -93,7 +93,7 @@ class Simulation(Table):
                 allowed="tip-load, clamped-free, tip-mass",
                 next_step=hint,
             )
-        if "basis" in fields and fields.get("fidelity") in OWN_BASIS:
+        if "basis" in fields and isinstance(fields.get("fidelity"), str) and fields["fidelity"] in OWN_BASIS:
             raise InputError(
                 f"has no effect with fidelity {fields['fidelity']!r}, which has a basis of its own",
                 key="basis",
@@ -112,7 +112,8 @@ class Simulation(Table):
         """A copy with some fields changed; a basis that its fidelity does not use is kept for one that does."""
         if "step" in changes and "tolerance" not in self._given:
             changes = {"tolerance": None, **changes}
-        if "basis" in changes or changes.get("fidelity", self.fidelity) not in OWN_BASIS:
+        fidelity = changes.get("fidelity", self.fidelity)
+        if "basis" in changes or not isinstance(fidelity, str) or fidelity not in OWN_BASIS:
             return super().replace(**changes)
         fields = {name: value for name, value in {**self._given, **changes}.items() if name != "basis"}
         return self._kept_in(type(self)(**fields).with_unused_basis(self.basis))
@@ -210,7 +211,7 @@ class Simulation(Table):
 
 def own_fidelity(basis: object) -> str | None:
     """Advice on a `basis` that is chosen as a fidelity; None for others."""
-    found = [fidelity for fidelity, own in OWN_BASIS.items() if own == basis]
+    found = [fidelity for fidelity, own in OWN_BASIS.items() if isinstance(basis, str) and own == basis]
     return f'Choose fidelity = "{found[0]}" instead' if found else None
 
 

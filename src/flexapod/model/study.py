@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Self, TypeVar
 
 from pydantic import field_validator, model_validator
 
-from flexapod.errors import InputError
+from flexapod.errors import InputError, check_kind
 from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
 from flexapod.model.control import Control, ToolControl
 from flexapod.model.disturbance import Disturbance
@@ -338,7 +338,7 @@ def override(
     changes = {name: value for name, value in given.items() if value is not None}
     if not changes and axial_modes is None:
         return study  # the same, of which much is known already
-    _refuse_unused(fidelity or study.simulation.fidelity, changes, axial_modes)
+    _refuse_unused(fidelity if isinstance(fidelity, str) else study.simulation.fidelity, changes, axial_modes)
     if "step" in changes and "tolerance" not in changes:
         changes["tolerance"] = None
     if "tolerance" in changes and "step" not in changes:
@@ -379,13 +379,13 @@ def to_toml(study: Table) -> str:
     Parameters
     ----------
     study : Study or ActuatorStudy
-        The study.
 
     Returns
     -------
     str
         The text, its tables one after the other.
     """
+    check_kind(study, Table, "study", "a study")
     return "# Written by flexapod\n" + toml_text(_tables(study))
 
 

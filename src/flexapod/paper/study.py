@@ -10,6 +10,7 @@ from typing import Any
 from xarray import Dataset
 
 from flexapod import model
+from flexapod.control.arguments import flag
 from flexapod.errors import ComputationError
 from flexapod.paper.claim import axis_motion
 from flexapod.paper.cost import inverse_dynamics_cost
@@ -223,7 +224,7 @@ def replicate(
     Interrupted
         By Ctrl-C; `keep` has seen what was done before.
     """
-    if engines:
+    if flag(engines, "engines"):
         check_engine()
     steps = (*STEPS, *ENGINE_STEPS) if engines else STEPS
     whole, done = sum(step.weight for step in steps), 0.0

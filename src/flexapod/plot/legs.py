@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
+from flexapod.errors import check_known
 from flexapod.plot.style import (
     LINE_STYLES,
     PAGE,
@@ -199,6 +200,7 @@ def _leg_legend(fig: Figure, axes: Axes) -> None:
 
 
 @styled
+@needs()
 def by_leg(data: xr.Dataset, name: str) -> Figure:
     """A result of an element over time, a line for each leg that has it.
 
@@ -209,6 +211,8 @@ def by_leg(data: xr.Dataset, name: str) -> Figure:
     name : str
         Of a variable (time, leg).
     """
+    known = [str(variable) for variable, array in data.data_vars.items() if {"time", "leg"} == {*array.dims}]
+    check_known(name, known, "name", "is no variable of time and legs")
     values = data[name]
     unit, fig = scale(values, values.attrs["units"]), figure(PAGE, 3.0)
     axes = fig.subplots()

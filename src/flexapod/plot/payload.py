@@ -9,6 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from flexapod.errors import check_known, names_of
 from flexapod.plot.style import (
     COLUMN,
     LINE_STYLES,
@@ -81,6 +82,14 @@ def com_path(data: xr.Dataset, axes: Sequence[str] = ("y", "z"), point: str = "c
     point : str
         ``com`` (centre of mass) or ``tool``.
     """
+    shown = [*axes] if isinstance(axes, str) else names_of(axes, "axes")
+    for axis in shown or [""]:
+        check_known(axis, AXIS_COLORS, "axes", "is no axis")
+    check_known(point, POINT_WORDS, "point", "is not a point of the payload")
+    return _com_path(data, shown, point)
+
+
+def _com_path(data: xr.Dataset, axes: Sequence[str], point: str) -> Figure:
     fig = figure(COLUMN * min(len(axes), 2), 4.6, gap=0.06)
     grid = fig.subplots(2, len(axes), sharex=True, squeeze=False, height_ratios=(1.15, 1.0))
     deviation = data[f"{point}_deviation"].sel(axis=list(axes))

@@ -13,11 +13,11 @@ from matplotlib.gridspec import SubplotSpec
 from matplotlib.patheffects import withStroke
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
+from flexapod.control.arguments import number
 from flexapod.plot.style import NOTE, PAGE, SMALL, figure, ink, needs, styled
 from flexapod.scene.colours import colors_of_legs
 from flexapod.scene.robot import mode_scene, motion_end, scene
 from flexapod.scene.skeleton import Scene, around
-from flexapod.units import quantities
 
 CYLINDER = "#8A8F98"
 BASE = "#4A4F57"
@@ -187,6 +187,7 @@ _VIEWS: dict[str | None, tuple[dict[str, float], dict[str, float], str]] = {
 
 
 @styled
+@needs("com_position", "platform_quaternion")
 def robot_3d(data: xr.Dataset, time: float | None = None) -> Figure:
     """The robot at an instant, with its pose at the start in pale lines: in space and seen along X, true to scale.
 
@@ -197,9 +198,7 @@ def robot_3d(data: xr.Dataset, time: float | None = None) -> Figure:
     time : float, optional
         Instant [s]; left out: the end of the motion.
     """
-    if time is None:
-        time = motion_end(data)
-    time = quantities(time, "time", key="time")
+    time = motion_end(data) if time is None else number(time, "time", "time")
     time = float(data.time[-1] if time is None else data.time.sel(time=time, method="nearest"))
     now, start = scene(data, time), scene(data, float(data.time[0]))
     fig = figure(PAGE, 4.5)

@@ -10,6 +10,7 @@ import logging
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from functools import wraps
+from numbers import Real
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
@@ -21,7 +22,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from flexapod.arrays import Array
-from flexapod.errors import InputError
+from flexapod.errors import InputError, check_kind
 from flexapod.plot.letters import Canvas
 from flexapod.plot.narrow import narrowed
 from flexapod.plot.panel import Panels, keeping
@@ -31,7 +32,7 @@ from flexapod.plot.settings import SMALL as SMALL
 from flexapod.plot.settings import TEXT as TEXT
 from flexapod.plot.settings import settings
 from flexapod.plot.twice import Unsuited, draw_both
-from flexapod.runtime.files import replacing
+from flexapod.runtime.files import path_of, replacing
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -42,6 +43,7 @@ COLUMN, PAGE = 3.35, 6.7  # widths of a column and of a page [in]: 85 and 170 mm
 
 CONTRAST = 4.6  # of words; a little above what is asked for, as colours are rounded
 INCH = 0.0254  # [m]
+FINEST, WIDEST = 2400, 2.0  # dots an inch, and [m]: a picture of more has no room in the memory
 # What files say of themselves: no dates, so that the same figure is the same file.
 _METADATA: dict[str, dict[str, str | None]] = {
     "png": {"Software": "flexapod"},
@@ -58,7 +60,10 @@ def figure(width: float = PAGE, height: float = 4.0, gap: float = 0.02) -> Figur
 
 
 def needs(*names: str) -> Callable[[Callable[P, Figure]], Callable[P, Figure]]:
-    """Refuse a first argument that is no Dataset, or mapping of Datasets, with these variables, or has no instant."""
+    """Refuse a first argument that is no Dataset, or mapping of Datasets, with these variables, or has no instant.
+
+    Without names any Dataset will do.
+    """
 
     def decorate(draw: Callable[P, Figure]) -> Callable[P, Figure]:
         @wraps(draw)
@@ -67,6 +72,9 @@ def needs(*names: str) -> Callable[[Callable[P, Figure]], Callable[P, Figure]]:
             several = isinstance(given, Mapping) and not hasattr(given, "data_vars")
             for data in (given.values() or (None,)) if several else (given,):
                 missing = [name for name in names if name not in getattr(data, "data_vars", ())]
+                if not (missing or hasattr(data, "data_vars")):
+                    what = f"cannot be drawn: it is a {type(data).__name__}"
+                    raise InputError(what, key=draw.__name__.lstrip("_"), allowed="a result, a Dataset")
                 if missing:
                     raise InputError(
                         f"cannot be drawn: the result has no {missing[0]!r}",
@@ -173,10 +181,17 @@ def save(
     InputError
         The folder cannot be made or written to, a format is unknown, or the width is not positive.
     """
-    stem = Path(stem)
+    check_kind(fig, Figure, "fig", "a figure of matplotlib, as calls of flexapod.plot give it")
+    stem = path_of(stem, "stem")
+    if not stem.name:
+        raise InputError("names no file", key="stem", value=str(stem), allowed='a name without ending, as "figure"')
     check_formats(formats)
-    if width is not None and not width > 0:
-        raise InputError("is not a width", key="width", value=width, allowed="above 0 m, as 0.085 or 0.17")
+    if isinstance(dpi, bool) or not isinstance(dpi, Real) or not 1 <= dpi <= FINEST:
+        raise InputError("is not a number of dots", key="dpi", value=dpi, allowed=f"1 to {FINEST} an inch")
+    if width is not None and (isinstance(width, bool) or not isinstance(width, Real) or not 0 < width <= WIDEST):
+        raise InputError(
+            "is not a width", key="width", value=width, allowed=f"above 0 m, as 0.085 or 0.17, up to {WIDEST:g} m"
+        )
     logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)
     written = [stem.with_name(f"{stem.name}.{name}") for name in formats]
     with matplotlib.rc_context(settings()):
@@ -222,7 +237,8 @@ def check_formats(formats: Sequence[str]) -> None:
     ------
     InputError
     """
-    unknown = [name for name in formats if name not in _METADATA]
+    check_kind(formats, (list, tuple), "formats", f"a list of {', '.join(_METADATA)}")
+    unknown = [name for name in formats if not isinstance(name, str) or name not in _METADATA]
     if unknown or not formats:
         value = unknown[0] if unknown else "none"
         raise InputError("is not a format of figures", key="formats", value=value, allowed=", ".join(_METADATA))

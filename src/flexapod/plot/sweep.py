@@ -15,7 +15,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from flexapod.errors import InputError
-from flexapod.plot.style import COLORS, COLUMN, NOTE, PAGE, TEXT, edges_of, figure, styled
+from flexapod.plot.style import COLORS, COLUMN, NOTE, PAGE, TEXT, edges_of, figure, needs, styled
 from flexapod.scene.colours import FLEXIBLE, RIGID
 from flexapod.words import scale
 
@@ -37,6 +37,7 @@ class _Shown(NamedTuple):
 
 
 @styled
+@needs()
 def sweep(data: xr.Dataset, quantity: str | None = None) -> Figure:
     """A quantity of a sweep against what varies; points that failed are marked in red.
 
@@ -55,6 +56,8 @@ def sweep(data: xr.Dataset, quantity: str | None = None) -> Figure:
     InputError
         There is no such quantity, or not one computed point.
     """
+    if "axes" not in data.attrs:
+        raise InputError("cannot be drawn: it is no result of a sweep", key="sweep", allowed="that of flexapod.sweep")
     found = _quantity(data, quantity)
     axes: list[dict[str, Any]] = [axis for axis in json.loads(data.attrs["axes"]) if axis["count"] > 1]
     single = [
@@ -74,8 +77,9 @@ def sweep(data: xr.Dataset, quantity: str | None = None) -> Figure:
 
 def _quantity(data: xr.Dataset, name: str | None) -> _Shown:
     known = [str(n) for n, array in data.data_vars.items() if array.dims == ("point",) and array.dtype.kind == "f"]
-    name = name or next((n for n in known if np.isfinite(data[n].values).any()), next(iter(known), ""))
-    if name not in known:
+    if name is None:
+        name = next((n for n in known if np.isfinite(data[n].values).any()), next(iter(known), ""))
+    if not isinstance(name, str) or name not in known:
         raise InputError(
             "is not a quantity of this sweep", key="quantity", value=name, allowed=", ".join(known) or "none"
         )

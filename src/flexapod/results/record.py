@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod.arrays import Array
-from flexapod.errors import ComputationError
+from flexapod.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -72,6 +72,12 @@ class Record:
 
 
 _KEPT = ("time", "q", "lam", "drive", "pose", "reaction", "energy", "sums", "closure", "friction", "control")
+
+
+def check_progress(progress: object) -> None:
+    """Refuse what cannot be told how far a run is, before it begins."""
+    if progress is not None and not callable(progress):
+        raise InputError("cannot be called", key="progress", value=progress, allowed="a function (time, duration)")
 
 
 def collect(chunks: Iterable[Chunk], rates: Sequence[int], duration: float, progress: Progress | None) -> Record:

@@ -143,7 +143,9 @@ def summary(data: Dataset, point: str = "com") -> RobotSummary | ActuatorSummary
     InputError
         Another point.
     """
-    if point not in POINTS:
+    if {"com_deviation", "length"}.isdisjoint(getattr(data, "variables", ())):
+        raise InputError("is no result of a simulation", key="data", allowed="that of flexapod.simulate or run")
+    if not isinstance(point, str) or point not in POINTS:
         raise InputError("is not a point of the payload", key="point", value=point, allowed=", ".join(POINTS))
     partial = bool(data.attrs.get("partial", 0))
     if "com_deviation" not in data:

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.arrays import Array
-from flexapod.errors import InputError
+from flexapod.errors import InputError, check_kind
 from flexapod.kinematics.inverse import BETA_LIMIT
 from flexapod.kinematics.workspace import BEFORE, BEYOND, LONGEST, PULLED_OUT, SHORTEST
 from flexapod.model import ActuatorStudy, HydraulicDrive, Robot, Study
@@ -53,6 +53,9 @@ def check_path(study: Study, path: RigidPath | None = None) -> list[str]:
         drive is to start from equilibrium, the study's times do not fit each other, or rigid legs are held so often
         that they cannot move.
     """
+    check_kind(study, Study, "study", "a study of a robot, as flexapod.load gives it")
+    if path is not None:
+        check_kind(path, RigidPath, "path", "that of the study, or None")
     try:
         if study.initial.start == "equilibrium":
             refuse_pure_force(study.robot, "the equilibrium start")

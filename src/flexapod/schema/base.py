@@ -24,7 +24,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from flexapod.arrays import Array, floats
 from flexapod.errors import InputError, check_known, closest
-from flexapod.units import DIMENSIONS, number_and_unit, quantities
+from flexapod.units import DIMENSIONS, number_and_unit, quantities, to_si
 from flexapod.words import number
 
 #: A loss factor; metals have 1e-4 to 0.01, joints 0.01 to 0.1, layers made for damping up to about 1.
@@ -95,11 +95,13 @@ class Quantity(Key):
         short: str = "",
     ) -> None:
         super().__init__(why, usual=usual, short=short)
-        for name in dimensions:
+        for name in dimensions or (None,):
             check_known(name, DIMENSIONS, "Quantity", "is nothing that a Quantity can measure")
         self.dimensions = dimensions
         limits = {"gt": above, "ge": least, "le": most, "lt": below}
-        self.limits: dict[str, float] = {name: float(limit) for name, limit in limits.items() if limit is not None}
+        self.limits: dict[str, float] = {
+            name: to_si(limit, "number", key="limits") for name, limit in limits.items() if limit is not None
+        }
         self.smallest: float = min(DIMENSIONS[name].least for name in dimensions) if above == 0 else 0.0
         self.largest: float = max(DIMENSIONS[name].most for name in dimensions)
 

@@ -13,7 +13,7 @@ from flexapod.errors import InputError
 from flexapod.results.arguments import FileLike, read
 from flexapod.results.attributes import attributes, march_attributes
 from flexapod.results.names import ACTUATOR_FORMS, DIRECTIONS, SPACE_FORMS, dataset
-from flexapod.results.record import Progress, Record, collect, finished
+from flexapod.results.record import Progress, Record, check_progress, collect, finished
 from flexapod.results.robot import energy_results
 from flexapod.review.checks import check_actuator_path
 from flexapod.review.plausibility import actuator_warnings
@@ -95,6 +95,7 @@ def simulate_actuator(
 
 
 def _simulated(study: model.ActuatorStudy, progress: Progress | None) -> Dataset:
+    check_progress(progress)
     remarks = check_actuator_path(study)
     march = prepare_actuator(study)
     angles = range(march.system.kernel.shapes.l_index, -1, -1)  # l, and backwards the angles of the hub before it

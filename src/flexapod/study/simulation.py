@@ -17,7 +17,7 @@ from flexapod.results.leg_results import damped_angles, drive_forms
 from flexapod.results.names import dataset
 from flexapod.results.of_elements import element_forms
 from flexapod.results.path import RigidPath
-from flexapod.results.record import Progress, Record, collect, finished
+from flexapod.results.record import Progress, Record, check_progress, collect, finished
 from flexapod.results.robot import payload_results, rigid_force_results, robot_coords, robot_results
 from flexapod.review.checks import check_path
 from flexapod.review.fixed_steps import step_warnings
@@ -104,6 +104,7 @@ def simulated(study: model.Study, progress: Progress | None = None, sampled: Sam
     InputError, ComputationError
         As `simulate`.
     """
+    check_progress(progress)
     path, sampled = RigidPath(study), sampled or sampled_controller(study)
     remarks = [*check_path(study, path), *loop_remarks(study), *control_remarks(sampled)]
     march = prepare(study, sampled=sampled)

@@ -15,7 +15,7 @@ import numpy as np
 from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.review.room import available_memory
-from flexapod.runtime.files import check_regular, replacing
+from flexapod.runtime.files import check_regular, path_of, replacing
 
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset, Variable
@@ -41,13 +41,16 @@ def save(data: Dataset, path: str | Path) -> Path:
     """
     from flexapod.results.netcdf import write
 
+    path = path_of(path, "path")
+    if not hasattr(data, "data_vars"):
+        raise InputError(f"is no Dataset but a {type(data).__name__}", key="data", allowed="a result")
     with replacing(path) as temporary:
         try:
             write(data, temporary, **{SUM: _sum(data)})
         except RuntimeError as error:
             _fill(temporary, data.nbytes)
             raise OSError(f"the NetCDF library says {error}") from None
-    return Path(path)
+    return path
 
 
 def _fill(path: Path, size: int) -> None:
@@ -83,9 +86,10 @@ def _read(path: str | Path, read: Callable[[Dataset], T]) -> T:
     """What is read of a file of ours while it is open."""
     import xarray as xr
 
+    path = path_of(path, "path")
     try:
         check_regular(path)
-        _refuse_size(Path(path))
+        _refuse_size(path)
         with xr.open_dataset(path, engine="netcdf4", decode_times=False) as data:
             _check_ours(data, path)
             _check_attributes(data, path)

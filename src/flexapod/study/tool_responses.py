@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from flexapod.arrays import Array
 from flexapod.control.arguments import flag, frequencies
 from flexapod.control.state_space import StateSpace
-from flexapod.errors import InputError
+from flexapod.errors import InputError, check_kind
 from flexapod.kinematics.rotations import matrix
 from flexapod.results.arguments import LoadLike, PoseLike, RobotLike
 from flexapod.runtime.threads import one_thread
@@ -112,6 +112,7 @@ def transmissibility(
     [1.   1.02 0.02]
     """
     flag(tilt, "tilt")
+    check_kind(at, str, "at", "the name of a point: tool, com, joint:1, or (x, y, z) as text")
     hz, found = frequencies(hz), study_about_rest(study, load, drives, friction)
     if found.robot.plane is not None:
         raise InputError(
