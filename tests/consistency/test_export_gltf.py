@@ -243,3 +243,14 @@ def test_rods_are_as_thick_as_their_pistons(tmp_path):
     assert np.linalg.norm(ring[..., :2], axis=-1)[sure] == pytest.approx(expected, rel=1e-6)
     tube = file.local("cylinder_1", 0).reshape(-1, SIDES, 3)
     assert np.linalg.norm(tube[..., :2], axis=-1) == pytest.approx(np.full(tube.shape[:2], 0.03), rel=1e-6)
+
+
+def test_shapes_that_change_with_the_stroke_are_told(tmp_path):
+    """Of a uniform rod they depend on the place over its free length alone, of a stepped one on where its step is."""
+    study = override(fx.preset("paper-robot"), output_step=0.1, duration=0.2)
+    stepped = Piston.stepped([section(0.5, 0.04), section(0.25, 0.02)])
+    legs = tuple(leg.replace(piston=stepped) for leg in study.robot.legs)
+    other = study.replace(robot=study.robot.replace(legs=legs))
+    for each, told in ((study, False), (other, True)):
+        found = fx.export(each, "gltf", tmp_path / f"{told}.glb", data=fx.simulate(each))
+        assert any("change with the stroke" in words for words in found.left_out) == told
