@@ -110,3 +110,12 @@ def test_ramps_of_whole_periods_leave_nothing() -> None:
 def timed(periods: float) -> tuple[fx.Study, float, float]:
     study, w = heaving("trapezoid", periods)
     return study, study.motion.duration, study.motion.duration + 10 / w
+
+
+@pytest.mark.parametrize(("kind", "most"), [("zv", 12), ("zvd", 7), ("2hei", 6)])
+def test_more_impulses_than_anybody_can_add_up_are_refused(kind, most):
+    """Twenty modes were a million impulses, and took all memory."""
+    assert shaper(kind, np.linspace(10, 20, most)).times.size <= 4096
+    with pytest.raises(fx.InputError, match=rf"at most {most} at once") as refused:
+        shaper(kind, np.linspace(10, 20, most + 1))
+    assert refused.value.key == "modes"

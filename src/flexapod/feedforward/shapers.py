@@ -70,6 +70,7 @@ def _two_humps(K: float) -> tuple[list[float], list[float]]:
     return [0.0, 0.5, 1.0, 1.5], [a, (0.5 - a) * K, (0.5 - a) * K**2, a * K**3]
 
 
+MOST = 4096  # impulses at once
 KINDS = {"zv": _zv, "mzv": _mzv, "zvd": _zvd, "ei": _ei, "2hei": _two_humps}
 
 
@@ -79,7 +80,7 @@ def shaper(kind: str, frequency: ArrayLike, ratio: ArrayLike = 0.0) -> Shaper:
     Raises
     ------
     InputError
-        An unknown kind, no frequency, or a mode that does not oscillate.
+        An unknown kind, no frequency, a mode that does not oscillate, or more than `MOST` impulses.
     """
     check_known(kind, KINDS, "kind")
     modes = np.broadcast_arrays(np.atleast_1d(np.asarray(frequency, dtype=float)), np.asarray(ratio, dtype=float))
@@ -91,6 +92,14 @@ def shaper(kind: str, frequency: ArrayLike, ratio: ArrayLike = 0.0) -> Shaper:
             )  # fmt: skip
     if not modes[0].size:
         raise InputError("names no mode", key="modes", allowed="one at least")
+    each = len(KINDS[kind](1.0)[0])
+    most = int(np.log(MOST) / np.log(each) + 1e-9)
+    if modes[0].size > most:
+        raise InputError(
+            f"are {modes[0].size}, each of which multiplies the impulses of {kind!r} by {each}", key="modes",
+            allowed=f"at most {most} at once, {MOST} impulses",
+            next_step="Shape the lowest ones: what is left of the others is said with the result",
+        )  # fmt: skip
     return reduce(Shaper.__mul__, (_of(kind, f, z) for f, z in zip(*modes, strict=True)))
 
 

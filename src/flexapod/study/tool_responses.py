@@ -116,12 +116,10 @@ def transmissibility(
     hz, found = frequencies(hz), study_about_rest(study, load, drives, friction)
     if found.robot.plane is not None:
         raise InputError(
-            "is of a robot whose floor cannot turn",
-            key="robot.plane",
-            value=found.robot.plane,
+            "is of a robot whose floor cannot turn", key="robot.plane", value=found.robot.plane,
             allowed="robots in space",
             next_step='fx.linearize(..., inputs="floor", outputs="tool") has the floor\'s translations',
-        )
+        )  # fmt: skip
     inputs, outputs = asked("floor", found.robot, "inputs"), asked("tool", found.robot, "outputs")
     (point, *_) = asked(f"accelerometer:{at}", found.robot, "at")
     plant = plant_of(found, pose, drives)
