@@ -79,7 +79,8 @@ def load(path: str | Path) -> Study | ActuatorStudy:
     >>> study.robot.payload.mass
     100.0
     """
-    path = path_of(path, "path")
+    check_kind(path, (str, Path), "path", "the path of a study file, a text or a Path")
+    path = Path(path)
     check_name(path)
     try:
         text = read_text(path, LARGEST_TEXT)
