@@ -24,8 +24,8 @@ def floats(value: object) -> Array:
     """
     try:
         found = np.asarray(value)
-        if found.dtype.kind == "c" and not found.imag.any():
-            found = found.real
+        if found.dtype.kind == "c" and not np.imag(found).any():
+            found = np.real(found)
         if found.dtype.kind not in "biufOUS":
             raise ValueError
         return np.array(found, dtype=np.float64)

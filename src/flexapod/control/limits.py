@@ -199,6 +199,12 @@ def _close(L: Complex) -> list[int]:
     ]
 
 
+def _through_poles(L: Complex) -> list[int]:
+    """Where a loop changes to the opposite between neighbours, largest first: a pole without damping may lie there."""
+    at = np.flatnonzero((L.imag[1:] * L.imag[:-1] < 0) & (L.real[1:] * L.real[:-1] < 0))
+    return at[np.argsort(-np.abs(L[at]), kind="stable")[:CLOSE]].tolist()
+
+
 def _between(values: Array, zero: Array, at: NDArray[np.intp]) -> Array:
     """Values between neighbours where `zero` changes its sign."""
     share = zero[at] / (zero[at] - zero[at + 1])
@@ -209,7 +215,7 @@ def _decisive(brackets: list[Bracket], cut: Complex, beside: list[tuple[float, f
     """Of many brackets of a delayed loop those that may be its margins, by what is read between neighbours."""
     chosen = [b for b in brackets if b.kind == "nearest"]
     for k, L in enumerate(cut):
-        own = _close(L)
+        own = [*_close(L), *_through_poles(L)]
         chosen += [Bracket(loop=k, kind="real", low=float(hz[i]), high=float(hz[i + 1])) for i in own]
         for low, high in dict.fromkeys((*beside, *(_about(hz, i) for i in own))):
             chosen.append(Bracket(loop=k, kind="nearest", low=low, high=high))
@@ -307,7 +313,7 @@ def _growing(poles: Complex, sample: float | None, delay: float, around: Gains, 
     count = int((s.real > drifts).sum())
     if not delay:
         return count
-    values = np.linalg.eigvals(whole)
+    values: Complex = np.linalg.eigvals(whole).astype(np.complex128)
     for i in range(1, len(values)):
         values[i] = values[i][linear_sum_assignment(np.abs(values[i - 1][:, None] - values[i]))[1]]
     size = np.abs(values)

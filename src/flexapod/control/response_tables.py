@@ -16,14 +16,14 @@ from flexapod.units import COMMON_UNITS, to_si
 __all__ = ["Response", "table_responses"]
 
 #: Words of a column, by what it holds; letters of both cases.
-WORDS = {
+WORDS: dict[str, tuple[str, ...]] = {
     "frequency": ("frequency", "frequencies", "freq", "f", "hz"),
     "real": ("real", "re", "real part"),
     "imag": ("imag", "im", "imaginary", "imag part", "imaginary part"),
     "magnitude": ("magnitude", "mag", "amplitude", "modulus", "abs"),
     "phase": ("phase", "angle", "arg"),
 }
-KINDS = {word: kind for kind, words in WORDS.items() for word in words}
+KINDS: dict[str, str] = {word: kind for kind, words in WORDS.items() for word in words}
 PAIRS = {"real": "imag", "magnitude": "phase"}
 COLUMN = re.compile(
     rf"(?:(?P<name>.*?\S)[\s_]+)?(?P<word>{'|'.join(KINDS)})"
@@ -158,12 +158,12 @@ def _pair(frequency: Array, one: Column, other: Column, numbers: Array, count: i
         if one.unit != other.unit:
             raise InputError(words, allowed="one unit for both columns")
         factor, units = _factor(one.unit or "", one.head)
-        values = np.ascontiguousarray(factor * numbers).view(complex)[:, 0]
+        values: NDArray[np.complex128] = np.ascontiguousarray(factor * numbers).view(np.complex128)[:, 0]
     else:
         size, units = _sizes(numbers[:, 0], one)
         turn = to_si(f"1 {other.unit or 'deg'}", "angle", key=f"column {other.head!r}")
         with np.errstate(invalid="ignore"):  # infinite times 0; what is infinite is refused with all that is
-            values = size * np.exp(1j * (numbers[:, 1] * turn))
+            values = (size * np.exp(1j * (numbers[:, 1] * turn))).astype(np.complex128)
     output, input = _split(one.name or other.name) or (f"response {count}", "")
     return Response(frequency=frequency, values=values, output=output, input=input or "input", units=units)
 

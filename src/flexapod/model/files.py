@@ -6,6 +6,7 @@ import re
 import tomllib
 from dataclasses import dataclass
 from importlib.resources import files
+from os import PathLike
 from pathlib import Path
 from typing import Literal, TypeVar, overload
 
@@ -80,7 +81,8 @@ def load(path: str | Path) -> Study | ActuatorStudy:
     >>> study.robot.payload.mass
     100.0
     """
-    path = path_of(path, "path")
+    check_kind(path, (str, PathLike), "path", "the path of a study file, a text or a Path")
+    path = Path(path)
     check_name(path)
     try:
         text = read_text(path, LARGEST_TEXT)

@@ -112,7 +112,7 @@ def transmissibility(
     [1.   1.02 0.02]
     """
     flag(tilt, "tilt")
-    check_kind(at, str, "at", "the name of a point: tool, com, joint:1, or (x, y, z) as text")
+    check_kind(at, str, "at", "the name of a point")
     hz, found = frequencies(hz), study_about_rest(study, load, drives, friction)
     if found.robot.plane is not None:
         raise InputError(
@@ -130,8 +130,7 @@ def transmissibility(
     away = arm - R @ (plant.robot.tool - plant.robot.com)
     carry = np.eye(6)
     carry[:3, 3:] = np.cross(np.eye(3), away).T  # a turn about the tool displaces the point
-    s = 2j * np.pi * hz
-    values = np.eye(6)[:, :, None] + s**2 * np.einsum("ij,jkf->ikf", carry, whole.at(hz))
+    values = np.eye(6)[:, :, None] + (2j * np.pi * hz) ** 2 * np.einsum("ij,jkf->ikf", carry, whole.at(hz))
     return _matrix("transmissibility", whole, values, hz, f"motion of the platform by that of the floor, at {at}")
 
 
