@@ -177,8 +177,8 @@ def quantity(value: object, dimension: str, *, key: str | None = None) -> float:
     return to_si(value, dimension, key=key)
 
 
-def quantities(values: Any, dimension: str, *, key: str | None = None) -> Any:
-    """A quantity as `quantity` reads it, or rows of them, in any nesting: texts as SI numbers, what has none untouched.
+def quantities(values: Any, dimension: str, *, key: str | None = None, deep: int = 4) -> Any:
+    """A quantity as `quantity` reads it, or rows of them, `deep` in each other: texts as SI numbers, else untouched.
 
     In rows texts need a unit: one of bare numbers is read from somewhere else, and may be in any.
     """
@@ -186,9 +186,10 @@ def quantities(values: Any, dimension: str, *, key: str | None = None) -> Any:
         return quantity(values, dimension, key=key)
     if getattr(getattr(values, "dtype", None), "kind", "") in "UO" and getattr(values, "ndim", 0):
         values = values.tolist()
-    if type(values) in (list, tuple):
+    if type(values) in (list, tuple) and deep:
         each = (
-            to_si(x, dimension, key=key) if isinstance(x, str) else quantities(x, dimension, key=key) for x in values
+            to_si(x, dimension, key=key) if isinstance(x, str) else quantities(x, dimension, key=key, deep=deep - 1)
+            for x in values
         )
         return type(values)(each)
     return values

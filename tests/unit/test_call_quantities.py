@@ -165,7 +165,7 @@ CASES = {
 #: What is no quantity: subjects, choices, counts, names, ratios; matrices and gains, whose units follow from channels.
 OTHERS = set(
     """
-    A B C D accuracy actuator as_built at axes axial_modes basis budget commands control controller controllers
+    A B C D D_rate accuracy actuator as_built at axes axial_modes basis budget commands control controller controllers
     corrections count damping data delay_samples denominator depth derivative direction draws drives elements
     engines fidelity force format frequencies friction function gain gains high initial input inputs integral
     into jacobian keep kind law least limit low magnify modes most motion name names noise numerator order out

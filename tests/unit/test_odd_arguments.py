@@ -16,11 +16,19 @@ def test_loads_that_are_none(load):
     assert error.value.key == "load"
 
 
-@pytest.mark.parametrize("pose", ["roll", {"roll": "20 deg"}, 5.0, [0] * 5])
-def test_poses_that_are_none(pose):
-    with pytest.raises(fx.InputError, match="is not a pose") as error:
+@pytest.mark.parametrize(
+    ("pose", "words", "key"),
+    [
+        ("roll", "is not an axis with its value", "pose"),
+        ({"roll": "20 mm"}, "mm does not measure one", "pose.roll"),
+        (5.0, "is not a pose", "pose"),
+        ([0] * 5, "is not a pose", "pose"),
+    ],
+)
+def test_poses_that_are_none(pose, words, key):
+    with pytest.raises(fx.InputError, match=words) as error:
         fx.modes(paper_robot(), pose)
-    assert error.value.key == "pose"
+    assert error.value.key == key
 
 
 @pytest.mark.parametrize("basis", ["segments", "hermite"])

@@ -119,7 +119,7 @@ def test_instants_that_do_not_fit_the_lengths_are_refused():
     lengths = np.full(6, 0.95)
     with pytest.raises(InputError, match="single pose"):
         fx.forward_kinematics(robot, lengths, time=[0.0])
-    for time, words in ((["now", "then"], "not numbers"), ([0.0], "does not fit")):
+    for time, words in ((["now", "then"], "not a number"), ([0.0], "does not fit")):
         with pytest.raises(InputError, match=words):
             fx.forward_kinematics(robot, np.tile(lengths, (2, 1)), time=time)
 

@@ -137,7 +137,8 @@ def test_numbers_from_python_are_refused_as_those_of_a_file():
     with pytest.raises(InputError, match=r"^height = -1.*above 0"):
         Foot(height=-1.0)
     with pytest.raises(InputError, match="height"):
-        Foot(height="27 mm")  # text is of files
+        Foot(height="27 ms")  # a unit is read, and has to be one of the quantity
+    assert Foot(height="27 mm").height == 0.027
     with pytest.raises(InputError, match=r"^pad\.area|^area"):
         Foot(height=1.0, pad={"area": 20.0})
 

@@ -49,8 +49,10 @@ class Actuator(Table):
     _source: ClassVar[str] = "section and material"
 
     length: Annotated[float, Quantity("length", above=0, why="whole beam")]
-    rhoA: Annotated[float, Quantity("line density", above=0, why="mass per length")]
-    EI: Annotated[float, Quantity("bending stiffness", above=0, why="bending stiffness")]
+    rhoA: Annotated[float, Quantity("line density", above=0, why="mass per length", usual="of section and material")]
+    EI: Annotated[
+        float, Quantity("bending stiffness", above=0, why="bending stiffness", usual="of section and material")
+    ]
     free_length: Annotated[float, Quantity("length", above=0, why="outside the hub at t = 0, at most the length")]
     tip_mass: Annotated[float, Quantity("mass", least=0, why="point mass at the tip")] = 0.0
     tip_inertia: Annotated[float, Quantity("inertia", least=0, why="moment of inertia of the tip's body")] = 0.0

@@ -78,8 +78,10 @@ class AxisMotion(Table):
     @model_validator(mode="before")
     @classmethod
     def _in_si(cls, given: dict[str, Any]) -> dict[str, Any]:
-        read = _poses_in_si({given.get("type"): given.get("amplitude")}, "amplitude")
-        return {**given, "amplitude": next(iter(read.values()))} if "amplitude" in given else given
+        axis = given.get("type")
+        if "amplitude" not in given or not isinstance(axis, str):
+            return given
+        return {**given, "amplitude": _poses_in_si({axis: given["amplitude"]}, "amplitude")[axis]}
 
     @classmethod
     def resolved(cls, section: Section) -> Mapping[str, object]:

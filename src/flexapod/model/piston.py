@@ -112,7 +112,7 @@ class Piston(Table):
     ] = False
 
     def __init__(self, **fields: Any) -> None:
-        for name in ("diameter", "density") if fields.get("sections") else ():
+        for name in ("diameter", "density") if _stepped(fields) else ():
             if fields.get(name) is not None:
                 raise InputError(
                     "is given together with sections", key=name, value=fields[name],
@@ -210,7 +210,7 @@ class Piston(Table):
         """
         fields = {**self._given, **changes}
         follow, bare = self._following(fields), self._section(fields) is None
-        for name, others in () if fields.get("sections") else _BY_HAND.items():
+        for name, others in () if _stepped(fields) else _BY_HAND.items():
             given = {other: changes[other] for other in others if changes.get(other) is not None}
             by_hand = any(not agree(value, follow.get(other)) for other, value in given.items())
             if changes.get(name) is None and (bare or by_hand):
@@ -333,6 +333,12 @@ class Piston(Table):
     def depth(self) -> float | None:
         """Size in the direction of bending [m]; None where no section is given."""
         return self.diameter
+
+
+def _stepped(fields: Mapping[str, Any]) -> bool:
+    """Whether these fields have sections."""
+    sections = fields.get("sections")
+    return isinstance(sections, list | tuple) and bool(sections)
 
 
 class Strip(Table):

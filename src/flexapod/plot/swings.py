@@ -13,6 +13,7 @@ __all__ = ["MOST", "is_quick", "swings", "vibration_line"]
 MOST = 240  # half swings across a page: more of them are solid ink
 SEEN = 0.02  # of the range of a curve: a smaller swing is the width of its line
 NEIGHBOURS = 5  # maxima of which the largest is the edge: where several vibrations add up, not each reaches it
+EDGE = 600  # instants of a band at most; each stands for those up to the next
 
 
 def swings(values: np.ndarray) -> np.ndarray:
@@ -49,6 +50,8 @@ def vibration_line(axes: Axes, time: np.ndarray, values: np.ndarray, most: float
     middle = 0.5 * (values[at[:-1]] + values[at[1:]])
     middle = np.interp(time, 0.5 * (time[at[:-1]] + time[at[1:]]), middle)
     low, high = (sign * _edge(time, sign * values, at[sign * (values[at] - middle[at]) >= 0]) for sign in (-1.0, 1.0))
+    first = np.unique(np.linspace(0, len(time) - 1, EDGE).astype(int))
+    time, low, high = time[first], np.minimum.reduceat(low, first), np.maximum.reduceat(high, first)
     axes.fill_between(time, low, high, color=style["color"], alpha=0.25, linewidth=0)
     edge: dict[str, Any] = style | {"linewidth": 0.8}
     axes.plot(time, low, **edge)
