@@ -7,6 +7,7 @@ the paper gives no numbers for is ours, here as constants.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Literal
 
 import numpy as np
 from xarray import Dataset
@@ -25,7 +26,7 @@ from flexapod.study.linear import linearize
 from flexapod.study.simulation import simulate
 
 #: Words for commands that make up for more and more, and the orders of `compensate` that do.
-COMMANDS = {
+COMMANDS: dict[str, Literal[0, 2, "stable-inversion"] | None] = {
     "as it is": None,
     "weight": 0,
     "weight and inertia": 2,
