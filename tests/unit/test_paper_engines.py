@@ -12,7 +12,7 @@ from flexapod.errors import ComputationError, InputError
 from flexapod.paper import engines
 from flexapod.paper import study as paper
 from flexapod.paper.engines import agreements, exudyn_flexible, exudyn_rigid, rigid_same_step, undamped
-from flexapod.scene.robot import robot_study
+from flexapod.results.attributes import robot_study
 from flexapod.verify.engines.engine import EXUDYN
 from flexapod.verify.engines.exudyn_robot import RobotResult
 from flexapod.words import text as words

@@ -29,8 +29,9 @@ from flexapod.plot.style import ink
 from flexapod.report.figures import draw
 from flexapod.report.interactive import interactive
 from flexapod.report.page import write_report
+from flexapod.results.attributes import motion_end, robot_study
 from flexapod.scene.colours import ENERGIES
-from flexapod.scene.robot import mode_scene, motion_end, robot_study, scene
+from flexapod.scene.robot import mode_scene, scene
 from flexapod.study import modes, simulate, simulate_actuator
 from flexapod.surveys.workspace import workspace_map
 

@@ -5,7 +5,8 @@ import pytest
 
 import flexapod as fx
 from flexapod.model import preset, preset_text
-from flexapod.scene.robot import mode_scene, motion_coordinates, scene
+from flexapod.results.attributes import motion_coordinates
+from flexapod.scene.robot import mode_scene, scene
 
 
 def test_a_result_whose_motion_table_is_gone_is_still_drawn(tmp_path):

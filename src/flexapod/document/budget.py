@@ -12,7 +12,7 @@ from flexapod import kinematics, model
 from flexapod.document.parts import Item, Remarks, Text, TextTable, warnings_of
 from flexapod.error_budget.sentences import table
 from flexapod.errors import FlexapodError
-from flexapod.scene.robot import carried_study
+from flexapod.results.attributes import carried_study
 from flexapod.ties import first_largest
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from xarray import Dataset
 
 from flexapod import model
 from flexapod.errors import InputError
-from flexapod.scene.robot import motion_end, robot_study
+from flexapod.results.attributes import motion_end, robot_study
 from flexapod.words import number, text
 
 HOLDS, IN_PART, NOT = "holds", "holds in part", "does not hold"  # of numbers, by `judged`

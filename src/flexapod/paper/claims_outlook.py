@@ -21,7 +21,7 @@ from flexapod.paper.outlook import (
     TOLERANCES,
 )
 from flexapod.paper.rows import Said, outlook
-from flexapod.scene.robot import robot_study
+from flexapod.results.attributes import robot_study
 from flexapod.words import along_axes, number, text
 
 MUCH, SOME = 0.2, 0.8  # of what was there before: what is left where a remedy helps, and where it helps a little

@@ -16,7 +16,7 @@ from flexapod.paper.claim import (
 )
 from flexapod.paper.readings import CUBE, MODULI, about_platform, cube_edge
 from flexapod.paper.rows import Said, variant
-from flexapod.scene.robot import robot_study
+from flexapod.results.attributes import robot_study
 from flexapod.words import number, text
 
 SAYS = "5 mm in Y and 10 mm in Z"

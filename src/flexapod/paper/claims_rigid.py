@@ -25,7 +25,7 @@ from flexapod.paper.claim import (
 from flexapod.paper.cost import FORMULATIONS
 from flexapod.paper.readings import TRAVELS
 from flexapod.paper.rows import Said, row
-from flexapod.scene.robot import robot_study
+from flexapod.results.attributes import robot_study
 from flexapod.words import number, text
 
 TRAVEL, TRAVEL_ROUNDED = 0.26, 0.005  # of a piston, Fig. 7; printed to 10 mm [m]

@@ -27,8 +27,8 @@ from flexapod.paper.claim import (
 from flexapod.paper.rows import Said, row
 from flexapod.paper.study import PaperStudy
 from flexapod.paper.trials import load_share
+from flexapod.results.attributes import robot_study
 from flexapod.results.summary import AxisSummary, RobotSummary, summary
-from flexapod.scene.robot import robot_study
 from flexapod.words import text
 
 PER_CENT = 6.0  # Abstract

@@ -22,7 +22,7 @@ from flexapod.paper.claim import (
 )
 from flexapod.paper.claims_readings import SAYS
 from flexapod.paper.rows import Said, variant
-from flexapod.scene.robot import robot_study
+from flexapod.results.attributes import robot_study
 from flexapod.words import number, text
 
 FAR = 25.0  # half-angles up to here are one row [deg]

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from flexapod.errors import InputError
 from flexapod.plot.legs import force_panels
 from flexapod.plot.style import COLUMN, NOTE, figure, mark_end, needs, styled
+from flexapod.results.attributes import motion_end
 from flexapod.scene.colours import FLEXIBLE, LEG_COLORS, RIGID
-from flexapod.scene.robot import motion_end
 from flexapod.words import Scale, scale, text
 
 # From broad and pale to fine and dark: all show where they coincide.

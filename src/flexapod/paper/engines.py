@@ -15,10 +15,9 @@ from xarray import Dataset
 from flexapod import kinematics, model
 from flexapod.arrays import Array
 from flexapod.errors import InputError
-from flexapod.results.attributes import attributes
+from flexapod.results.attributes import attributes, motion_end
 from flexapod.results.names import dataset
 from flexapod.results.record import Share
-from flexapod.scene.robot import motion_end
 from flexapod.study.simulation import simulate
 from flexapod.verify.engines.engine import EXUDYN
 from flexapod.verify.engines.exudyn_integration import Integration, extrapolated

@@ -18,9 +18,8 @@ from flexapod.feedforward import compensate, shape
 from flexapod.paper.claim import after_motion, axis_motion
 from flexapod.paper.readings import robot_preset, with_legs
 from flexapod.pose_errors.pose import accuracy
-from flexapod.results.attributes import attributes
+from flexapod.results.attributes import attributes, motion_end
 from flexapod.results.record import Share
-from flexapod.scene.robot import motion_end
 from flexapod.study.linear import linearize
 from flexapod.study.simulation import simulate
 

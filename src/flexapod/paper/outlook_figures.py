@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 
 from flexapod.paper.claim import axis_motion
 from flexapod.plot.style import COLUMN, PAGE, figure, mark_end, styled
+from flexapod.results.attributes import robot_study
 from flexapod.scene.colours import LEG_COLORS
-from flexapod.scene.robot import robot_study
 from flexapod.words import scale
 
 SPAN = 0.05  # s: a period of the first mode, and a few of the others

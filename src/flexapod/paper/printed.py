@@ -14,8 +14,9 @@ from flexapod.paper.claim import force_gaps
 from flexapod.plot.legs import actuator_forces
 from flexapod.plot.robot3d import CYLINDER
 from flexapod.plot.style import COLUMN, LINE_STYLES, NOTE, PAGE, SMALL, TEXT, figure, ink, mark_end, needs, styled
+from flexapod.results.attributes import motion_end, robot_study
 from flexapod.scene.colours import AXIS_COLORS, FLEXIBLE, LEG_COLORS, RIGID
-from flexapod.scene.robot import mode_scene, motion_end, robot_study
+from flexapod.scene.robot import mode_scene
 from flexapod.words import number, rounded_up, scale, text
 
 BENT = 0.18  # of the length of a leg: how far its mode is drawn off the line of its joints

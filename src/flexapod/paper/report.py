@@ -45,8 +45,8 @@ from flexapod.report.page import (
     warnings_section,
 )
 from flexapod.report.replay import replay
+from flexapod.results.attributes import robot_study
 from flexapod.results.summary import summary
-from flexapod.scene.robot import robot_study
 from flexapod.verify.engines.engine import EXUDYN
 from flexapod.words import number, scale, text
 

@@ -12,11 +12,10 @@ from xarray import Dataset
 from flexapod import kinematics, model
 from flexapod.errors import ComputationError, InputError
 from flexapod.paper.claim import largest
-from flexapod.results.attributes import attributes
+from flexapod.results.attributes import attributes, robot_study
 from flexapod.results.path import path_instants
 from flexapod.results.record import Share
 from flexapod.review.estimates import buckling_load
-from flexapod.scene.robot import robot_study
 from flexapod.solve.modal.loss_factor import per_loss
 from flexapod.solve.rigid_motion import rigid_rest, rigid_state
 from flexapod.solve.robot_system import robot_system

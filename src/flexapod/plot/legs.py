@@ -23,9 +23,9 @@ from flexapod.plot.style import (
     styled,
 )
 from flexapod.plot.swings import MOST, vibration_line
+from flexapod.results.attributes import motion_end
 from flexapod.scene.colours import FLEXIBLE, LEG_COLORS, RIGID, colors_of_legs
 from flexapod.scene.drives import drives
-from flexapod.scene.robot import motion_end
 from flexapod.ties import EQUALS
 from flexapod.words import NOTHING, Scale, scale, text
 

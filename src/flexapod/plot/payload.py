@@ -21,10 +21,10 @@ from flexapod.plot.style import (
     needs,
     styled,
 )
+from flexapod.results.attributes import motion_coordinates, motion_end
 from flexapod.results.cause_words import cause_words
 from flexapod.results.summary import POINT_WORDS
 from flexapod.scene.colours import AXIS_COLORS, ENERGIES, FLEXIBLE, LEG_COLORS, RIGID
-from flexapod.scene.robot import motion_coordinates, motion_end
 from flexapod.ties import first_largest, ranked
 from flexapod.words import NOTHING, Scale, cleared, scale, text
 

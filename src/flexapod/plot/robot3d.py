@@ -15,8 +15,9 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
 from flexapod.control.arguments import number
 from flexapod.plot.style import NOTE, PAGE, SMALL, figure, ink, needs, styled
+from flexapod.results.attributes import motion_end
 from flexapod.scene.colours import colors_of_legs
-from flexapod.scene.robot import mode_scene, motion_end, scene
+from flexapod.scene.robot import mode_scene, scene
 from flexapod.scene.skeleton import Scene, around
 
 CYLINDER = "#8A8F98"

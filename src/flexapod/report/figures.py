@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from flexapod import model
 from flexapod.document.budget import peak_budget
-from flexapod.results.attributes import robot_of
+from flexapod.results.attributes import carried_study, robot_of
 from flexapod.results.of_elements import of_elements
 from flexapod.results.summary import tool_apart
 from flexapod.runtime.files import scratch
 from flexapod.runtime.processes import started
 from flexapod.scene.drives import drives
 from flexapod.scene.geometry import DrawnMotion
-from flexapod.scene.robot import carried_study
 from flexapod.words import capital
 
 if TYPE_CHECKING:

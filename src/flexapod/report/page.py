@@ -19,10 +19,10 @@ from flexapod.errors import FlexapodError
 from flexapod.report.curves import MOST_POINTS
 from flexapod.report.figures import Drawn
 from flexapod.report.linear import linear_section
+from flexapod.results.attributes import carried_study
 from flexapod.results.bodies import bodies_words
 from flexapod.results.summary import POINT_WORDS, RobotSummary, summaries
 from flexapod.runtime.files import scratch, write_text
-from flexapod.scene.robot import carried_study
 from flexapod.words import text
 
 if TYPE_CHECKING:

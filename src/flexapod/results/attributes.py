@@ -9,8 +9,10 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from flexapod import model, version
-from flexapod.errors import InputError
+from flexapod.errors import FlexapodError, InputError
 from flexapod.model.files import loads_among
 from flexapod.model.stored import stored_tables
 from flexapod.results.packed_tables import pack, unpack
@@ -187,3 +189,42 @@ def _ending(record: Record, duration: float) -> dict[str, object]:
     else:
         _log.warning("All %.6g s were computed, but not as exactly as was asked: %s", duration, reason)
     return {"partial": 1, "failure": reason, "time_reached": reached}
+
+
+def robot_study(data: Dataset) -> model.Study:
+    """The study of a robot that a result carries as text; InputError for that of a single actuator."""
+    study = study_of(data)
+    if not isinstance(study, model.Study):
+        raise InputError("is the result of a single actuator", key="data", allowed="results of a robot")
+    return study
+
+
+def carried_study(data: Dataset) -> model.Study | model.ActuatorStudy | None:
+    """The study that a result carries; None where it cannot be read any more, as when a table is gone."""
+    try:
+        return study_of(data)
+    except FlexapodError:
+        return None
+
+
+def motion_end(data: Dataset) -> float | None:
+    """Instant from which the rigid payload rests [s]; None where it moves until the end or never."""
+    if "com_position_rigid" not in data:
+        return None
+    path = data.com_position_rigid.values
+    away = np.abs(path - path[-1]).max(axis=1)
+    moving = np.flatnonzero(away > 1e-9 * max(float(away.max()), 1e-12))
+    if not moving.size or moving[-1] >= len(path) - 2:
+        return None
+    return float(data.time[moving[-1] + 1])
+
+
+def motion_coordinates(data: Dataset) -> Dataset:
+    """Commanded surge, sway, heave [m], roll, pitch, yaw [rad], their rates and accelerations (time, coordinate)."""
+    from flexapod.labelled import composed
+
+    dims, parts = ("time", "coordinate"), {}
+    for name, ending in (("position", ""), ("rate", "_rate"), ("acceleration", "_acceleration")):
+        both = [data[f"{kind}_command{ending}"].values for kind in ("translation", "rotation")]
+        parts[name] = (dims, np.concatenate(both, axis=1))
+    return composed(parts, {"time": data.time, "coordinate": list(model.AXES)})

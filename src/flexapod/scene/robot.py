@@ -10,52 +10,12 @@ import numpy as np
 
 from flexapod import model
 from flexapod.arrays import Array
-from flexapod.errors import FlexapodError, InputError
 from flexapod.kinematics.rotations import exponential, matrix
-from flexapod.results.attributes import robot_of, study_of
+from flexapod.results.attributes import robot_of
 from flexapod.scene.skeleton import STATIONS, Scene, Skeleton
 
 if TYPE_CHECKING:
     from xarray import Dataset
-
-
-def robot_study(data: Dataset) -> model.Study:
-    """The study of a robot that a result carries as text; InputError for that of a single actuator."""
-    study = study_of(data)
-    if not isinstance(study, model.Study):
-        raise InputError("is the result of a single actuator", key="data", allowed="results of a robot")
-    return study
-
-
-def carried_study(data: Dataset) -> model.Study | model.ActuatorStudy | None:
-    """The study that a result carries; None where it cannot be read any more, as when a table is gone."""
-    try:
-        return study_of(data)
-    except FlexapodError:
-        return None
-
-
-def motion_end(data: Dataset) -> float | None:
-    """Instant from which the rigid payload rests [s]; None where it moves until the end or never."""
-    if "com_position_rigid" not in data:
-        return None
-    path = data.com_position_rigid.values
-    away = np.abs(path - path[-1]).max(axis=1)
-    moving = np.flatnonzero(away > 1e-9 * max(float(away.max()), 1e-12))
-    if not moving.size or moving[-1] >= len(path) - 2:
-        return None
-    return float(data.time[moving[-1] + 1])
-
-
-def motion_coordinates(data: Dataset) -> Dataset:
-    """Commanded surge, sway, heave [m], roll, pitch, yaw [rad], their rates and accelerations (time, coordinate)."""
-    from flexapod.labelled import composed
-
-    dims, parts = ("time", "coordinate"), {}
-    for name, ending in (("position", ""), ("rate", "_rate"), ("acceleration", "_acceleration")):
-        both = [data[f"{kind}_command{ending}"].values for kind in ("translation", "rotation")]
-        parts[name] = (dims, np.concatenate(both, axis=1))
-    return composed(parts, {"time": data.time, "coordinate": list(model.AXES)})
 
 
 def scene(data: Dataset, time: float = 0.0, magnify: float = 1.0) -> Scene:

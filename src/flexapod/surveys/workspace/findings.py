@@ -11,10 +11,10 @@ from flexapod import kinematics
 from flexapod.arrays import Array
 from flexapod.errors import InputError
 from flexapod.model import AXES
+from flexapod.results.attributes import robot_study
 from flexapod.results.names import Variable
 from flexapod.results.poses import coordinate_words, coordinates_of, in_shown_unit
 from flexapod.review.reach import REACHED, REASONS
-from flexapod.scene.robot import robot_study
 from flexapod.ties import first_largest, first_least
 
 if TYPE_CHECKING:
