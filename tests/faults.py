@@ -67,7 +67,8 @@ SWAPS = {"sin": "cos", "cos": "sin", "max": "min", "min": "max", "maximum": "min
          "sinh": "cosh", "all": "any", "any": "all", "zeros": "ones", "hstack": "vstack", "cumsum": "asarray",
          "base_joint": "platform_joint", "platform_joint": "base_joint", "base_joints": "platform_joints",
          "platform_joints": "base_joints", "mouth": "begins", "rad2deg": "deg2rad", "deg2rad": "rad2deg"}  # fmt: skip
-SYMBOLIC = ("elements", "mechanics", "symbolic")  # their text is in the key of every kernel: all are compiled anew
+#: Their text is in the key of every kernel: all are compiled anew.
+SYMBOLIC = tuple(f"src/flexapod/mechanics/{room}/" for room in ("elements", "leg", "symbolic"))
 #: Seconds of a fault's tests, by what they took before; a fault that so many files have reached is left as it is.
 ROUNDS = ((15.0, 0), (40.0, 3))
 LONGEST = 20  # a run may take so many times as long: processors are shared
@@ -93,7 +94,7 @@ class Fault:
 
     @property
     def symbolic(self) -> bool:
-        return self.path.split("/")[2] in SYMBOLIC
+        return self.path.startswith(SYMBOLIC)
 
 
 # Faults of a file

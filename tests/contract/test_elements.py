@@ -196,9 +196,9 @@ FRAMEWORK = ("element.py", "known.py", "slot.py", "trial.py")  # what an element
 
 @pytest.mark.parametrize(
     "path",
-    sorted(path for path in (ROOT / "src/flexapod/elements").glob("[a-z]*.py") if path.name not in FRAMEWORK),
+    sorted(path for path in (ROOT / "src/flexapod/mechanics/elements").glob("[a-z]*.py") if path.name not in FRAMEWORK),
     ids=lambda path: path.stem,
 )
 def test_every_element_has_its_theory(path):
     pages = "\n".join(page.read_text(encoding="utf-8") for page in (ROOT / "docs/theory").glob("*.md"))
-    assert f"`{path.name}`" in pages or f"`elements/{path.name}`" in pages
+    assert f"`{path.name}`" in pages or f"`mechanics/elements/{path.name}`" in pages

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linear_sum_assignment, minimize_scalar
 
-from flexapod.control.arguments import number, numbers
-from flexapod.control.interconnect import closed, opened
+from flexapod.common.arguments import number, numbers
+from flexapod.common.errors import InputError
+from flexapod.common.units import quantity
+from flexapod.control.discretization import law_beside
+from flexapod.control.feedback import closed, opened
 from flexapod.control.poles import damping_of
-from flexapod.control.sampling import law_beside
 from flexapod.control.state_space import a_system
 from flexapod.control.zeros import zeros_of
-from flexapod.errors import InputError
-from flexapod.units import quantity
 
 if TYPE_CHECKING:
     from xarray import Dataset
