@@ -191,7 +191,12 @@ def test_a_pose_closure_without_moments_is_a_point_closure(seed):
     assert not M[n:].any() and not K[n:].any()
 
 
-FRAMEWORK = ("element.py", "known.py", "slot.py", "trial.py")  # what an element is, which there are, where, if they do
+FRAMEWORK = (
+    "element.py",
+    "registry.py",
+    "slot.py",
+    "trial.py",
+)  # what an element is, which there are, where, if they do
 
 
 @pytest.mark.parametrize(

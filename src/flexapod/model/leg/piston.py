@@ -24,7 +24,7 @@ from flexapod.model.leg.material import (
     read_material,
     read_tube,
 )
-from flexapod.model.leg.sections import SHARES, PistonSection, PistonStep, as_uniform, rotary_inertia
+from flexapod.model.leg.sections import SHARES, PistonSection, PistonStep, as_uniform, has_sections, rotary_inertia
 
 if TYPE_CHECKING:
     from flexapod.common.tables.section import Section
@@ -121,7 +121,7 @@ class Piston(Table):
     ] = False
 
     def __init__(self, **fields: Any) -> None:
-        for name in ("diameter", "density") if _stepped(fields) else ():
+        for name in ("diameter", "density") if has_sections(fields) else ():
             if fields.get(name) is not None:
                 raise InputError(
                     "is given together with sections", key=name, value=fields[name],
@@ -219,7 +219,7 @@ class Piston(Table):
         """
         fields = {**self._given, **changes}
         follow, bare = self._following(fields), self._section(fields) is None
-        for name, others in () if _stepped(fields) else _BY_HAND.items():
+        for name, others in () if has_sections(fields) else _BY_HAND.items():
             given = {other: changes[other] for other in others if changes.get(other) is not None}
             by_hand = any(not agree(value, follow.get(other)) for other, value in given.items())
             if changes.get(name) is None and (bare or by_hand):
@@ -342,12 +342,6 @@ class Piston(Table):
     def depth(self) -> float | None:
         """Size in the direction of bending [m]; None where no section is given."""
         return self.diameter
-
-
-def _stepped(fields: Mapping[str, Any]) -> bool:
-    """Whether these fields have sections."""
-    sections = fields.get("sections")
-    return isinstance(sections, list | tuple) and bool(sections)
 
 
 class Strip(Table):

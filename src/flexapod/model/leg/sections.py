@@ -209,3 +209,9 @@ def as_uniform(sections: Sequence[PistonSection]) -> dict[str, Any]:
         "E": moduli.pop() if len(moduli) == 1 else None,
         "yield_stress": min(limits) if len(limits) == len(sections) else None,
     }
+
+
+def has_sections(fields: Mapping[str, Any]) -> bool:
+    """Whether these fields have sections."""
+    sections = fields.get("sections")
+    return isinstance(sections, list | tuple) and bool(sections)
