@@ -7,6 +7,7 @@ the paper gives no numbers for is ours, here as constants.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Literal
 
 import numpy as np
 from xarray import Dataset
@@ -24,7 +25,7 @@ from flexapod.verification.paper.claim import after_motion, axis_motion
 from flexapod.verification.paper.readings import robot_preset, with_legs
 
 #: Words for commands that make up for more and more, and the orders of `compensate` that do.
-COMMANDS = {
+COMMANDS: dict[str, Literal[0, 2, "stable-inversion"] | None] = {
     "as it is": None,
     "weight": 0,
     "weight and inertia": 2,

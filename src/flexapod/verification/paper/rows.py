@@ -60,6 +60,6 @@ def row(where: str, says: str, *parts: str, expected: str = "", whose: str = OWN
 
 
 #: The same for a row in which the paper is read, or its robot changed, in a way of ours.
-variant = partial(row, whose=VARIANT)
+variant: Callable[..., Callable[[Numbers], ClaimRow]] = partial(row, whose=VARIANT)
 #: The same for what the paper names as a limit of its study or as work to come.
-outlook = partial(row, whose=NEXT)
+outlook: Callable[..., Callable[[Numbers], ClaimRow]] = partial(row, whose=NEXT)
