@@ -258,8 +258,8 @@ for name in sys.argv[1:]:
     except fx.InputError as error:
         what = "refused: " + error.what
     print(Path(name).name, time.process_time() - began, what, sep=chr(9))
-import resource
-print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024)
+status = dict(line.split(":", 1) for line in Path("/proc/self/status").read_text().splitlines() if ":" in line)
+print(int(status["VmHWM"].split()[0]) * 1024)  # of this program alone; ru_maxrss counts what its parent had, too
 """
 
 

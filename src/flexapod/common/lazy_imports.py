@@ -85,7 +85,7 @@ class FormerPaths:
             import warnings
 
             warnings.warn(f"{name} is {now} now", FutureWarning, stacklevel=2)
-        return ModuleSpec(name, _Former(loaded(now)))
+        return ModuleSpec(name, _Former(loaded(now)))  # type: ignore[arg-type]  # all that a loader needs
 
 
 class _Former:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -93,7 +93,7 @@ def best_gain(
     ratios = np.array([_least_ratio(system, law, factor, edge)[0] for factor in factors])
     at = int(ratios.argmax())
     low, high = (np.log(factors[max(at - 1, 0)]), np.log(factors[min(at + 1, len(factors) - 1)]))
-    found = minimize_scalar(
+    found: Any = minimize_scalar(
         lambda x: -_least_ratio(system, law, np.exp(x), edge)[0],
         bounds=(low, high), method="bounded", options={"xatol": FINEST},
     )  # fmt: skip
