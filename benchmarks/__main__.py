@@ -14,7 +14,7 @@ from time import perf_counter
 
 from benchmarks.machine import machine, one_core, peak
 from benchmarks.report import Section
-from flexapod.runtime.threads import one_thread
+from flexapod.common.resources import one_thread
 
 PAGE = Path(__file__).with_name("RESULTS.md")
 
@@ -72,7 +72,7 @@ def main(arguments: list[str]) -> int:
         wall, processor = perf_counter() - begin, _processor() - before
         print(f"  {name}: {wall:.0f} s, {processor:.0f} s of the processor", file=sys.stderr, flush=True)
     if "--write" in arguments:
-        from flexapod.plot.style import save
+        from flexapod.output.figures.style import save
 
         for section in measured:
             for name, picture in section.pictures.items():

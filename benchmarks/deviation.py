@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.arrays import Array
+from flexapod.common.arrays import Array
 from flexapod.model import ActuatorStudy, Study, override, preset
 from flexapod.solve.shapes import actuator_shapes
 from flexapod.solve.time.actuator_march import prepare_actuator

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import time
 
-from flexapod.arrays import Array
-from flexapod.verify.engines import exudyn_robot
-from flexapod.verify.engines.exudyn_builder import Builder
-from flexapod.verify.engines.exudyn_integration import Integration
-from flexapod.verify.engines.exudyn_robot import RobotProblem, RobotResult
+from flexapod.common.arrays import Array
+from flexapod.verification.engines import exudyn_robot
+from flexapod.verification.engines.exudyn_builder import Builder
+from flexapod.verification.engines.exudyn_integration import Integration
+from flexapod.verification.engines.exudyn_robot import RobotProblem, RobotResult
 
 __all__ = ["solve"]
 

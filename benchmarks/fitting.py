@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.arrays import Array
+from flexapod.common.arrays import Array
 
 __all__ = ["Polynomial", "Power", "fitted_polynomial", "fitted_power"]
 

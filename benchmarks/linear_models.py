@@ -9,8 +9,8 @@ import numpy as np
 
 from benchmarks.report import Section, goal
 from benchmarks.timing import interleaved
+from flexapod.analysis import linearize
 from flexapod.model import preset
-from flexapod.study import linearize
 
 __all__ = ["linear_models"]
 

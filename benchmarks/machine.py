@@ -13,7 +13,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from flexapod.symbolic.compiler import compiler
+from flexapod.mechanics.symbolic.compiler import compiler
 
 __all__ = ["Machine", "all_cores", "machine", "one_core", "peak"]
 

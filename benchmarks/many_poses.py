@@ -10,9 +10,9 @@ import numpy as np
 from benchmarks.report import Section, goal
 from benchmarks.timing import interleaved
 from flexapod import kinematics
+from flexapod.analysis import budget, modes
+from flexapod.design.maps import workspace_map
 from flexapod.model import preset
-from flexapod.study import budget, modes
-from flexapod.surveys.workspace import workspace_map
 
 __all__ = ["many_poses"]
 

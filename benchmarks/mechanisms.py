@@ -12,11 +12,11 @@ from pathlib import Path
 import flexapod as fx
 from benchmarks.report import Section, goal
 from benchmarks.timing import interleaved
+from flexapod.mechanics.symbolic.functions import operations
 from flexapod.model import Study
 from flexapod.solve.kernel import Kernel
 from flexapod.solve.time import native
 from flexapod.solve.time.robot_march import prepare
-from flexapod.symbolic.functions import operations
 
 __all__ = ["count", "first_run", "least_step", "mechanisms", "with_step"]
 
@@ -64,7 +64,7 @@ def _run(study: Study) -> float:
 
 
 def count(kernel: Kernel, name: str) -> float:
-    from flexapod.mechanics.assembly import leg_functions
+    from flexapod.mechanics.leg.kernel_functions import leg_functions
 
     function = next(f for f in leg_functions(kernel.shapes) if f.name == name)
     return float(sum(operations(function.build()).values()))

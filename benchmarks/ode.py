@@ -17,20 +17,22 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from benchmarks.deviation import Curve, deflection, rigid_centre
-from flexapod import elements, kinematics, mechanics, symbolic
-from flexapod.arrays import Array
-from flexapod.mechanics.assembly import payload_functions
-from flexapod.mechanics.layout import Shapes, leg_parameters
-from flexapod.mechanics.leg import leg
+from flexapod import kinematics
+from flexapod.common.arrays import Array
+from flexapod.mechanics import elements, symbolic
+from flexapod.mechanics import leg as mechanics
+from flexapod.mechanics.leg.kernel_functions import payload_functions
+from flexapod.mechanics.leg.layout import Shapes, leg_parameters
+from flexapod.mechanics.leg.leg import leg
+from flexapod.mechanics.symbolic.compiler import compiled_library, compiler
+from flexapod.mechanics.symbolic.functions import NamedFunction
+from flexapod.mechanics.symbolic.lagrange import inverse_dynamics, mass_matrix
+from flexapod.mechanics.symbolic.vocabulary import jacobian, symbols, time_derivative, zeros
 from flexapod.model import ActuatorStudy, Study
 from flexapod.solve.shapes import home
 from flexapod.solve.time.actuator_march import prepare_actuator
+from flexapod.solve.time.command_tables import robot_law
 from flexapod.solve.time.robot_march import prepare
-from flexapod.solve.time.tables import robot_law
-from flexapod.symbolic.compiler import compiled_library, compiler
-from flexapod.symbolic.functions import NamedFunction
-from flexapod.symbolic.lagrange import inverse_dynamics, mass_matrix
-from flexapod.symbolic.vocabulary import jacobian, symbols, time_derivative, zeros
 
 __all__ = ["METHODS", "Ode", "ode"]
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from benchmarks.report import Section
 from benchmarks.timing import interleaved
-from flexapod.arrays import Array
+from flexapod.analysis import simulate_actuator, simulate_solid
+from flexapod.common.arrays import Array
 from flexapod.model import override, preset
-from flexapod.study import simulate_actuator, simulate_solid
 
 __all__ = ["one_actuator"]
 

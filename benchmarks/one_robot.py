@@ -9,9 +9,9 @@ from benchmarks.machine import peak
 from benchmarks.operations import Count, casadi_count, counted
 from benchmarks.report import Section, goal
 from benchmarks.timing import Spread, interleaved
+from flexapod.analysis import simulate
 from flexapod.model import DEFAULT_TOLERANCE, Study
 from flexapod.solve.time.robot_march import prepare
-from flexapod.study import simulate
 
 __all__ = ["one_robot"]
 
@@ -160,7 +160,7 @@ def _share(words: str, step: float, count: Count) -> str:
 
 def _generated(run: Marched) -> tuple[Count, list[list[str]]]:
     """Operations of the generated functions in a step, and their rows."""
-    from flexapod.mechanics.assembly import leg_functions, payload_functions
+    from flexapod.mechanics.leg.kernel_functions import leg_functions, payload_functions
 
     shapes = prepare(roll()).system.kernel.shapes
     counts = {f.name: casadi_count(f.build()) for f in [*leg_functions(shapes), *payload_functions(shapes)]}

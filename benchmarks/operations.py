@@ -20,7 +20,7 @@ from pathlib import Path
 import casadi
 import numpy as np
 
-from flexapod.symbolic.functions import operations
+from flexapod.mechanics.symbolic.functions import operations
 
 __all__ = ["Count", "casadi_count", "counted", "main"]
 

@@ -7,10 +7,10 @@ from collections.abc import Callable
 
 from benchmarks.report import Section, goal
 from benchmarks.timing import interleaved
+from flexapod.analysis.controller_settings import sampled_controller
 from flexapod.control import IFF
 from flexapod.model import ServoDrive, Study, override, preset
 from flexapod.solve.time.robot_march import prepare
-from flexapod.study.controlled import sampled_controller
 
 __all__ = ["sampled_loops"]
 

@@ -14,8 +14,8 @@ from benchmarks.deviation import error, marched, roll
 from benchmarks.fitting import Power, fitted_polynomial, fitted_power
 from benchmarks.report import Section
 from benchmarks.timing import interleaved
+from flexapod.analysis import simulate
 from flexapod.model import DEFAULT_TOLERANCE, Study, loads, override, preset_text
-from flexapod.study import simulate
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -199,8 +199,8 @@ def _laws(laws: list[Law]) -> Section:
 
 def _figure(laws: Sequence[Law]) -> Figure:
     """A panel for each quantity, logarithmic; dashed: the straight lines."""
-    from flexapod.plot.style import figure, styled
-    from flexapod.scene.colours import FLEXIBLE
+    from flexapod.output.figures.style import figure, styled
+    from flexapod.output.scene.colours import FLEXIBLE
 
     against = dict.fromkeys(law.against for law in laws)
 

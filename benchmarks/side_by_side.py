@@ -15,10 +15,10 @@ from benchmarks.deviation import Curve, error, marched, reference, roll, undampe
 from benchmarks.ode import Ode, ode
 from benchmarks.report import Section, goal
 from benchmarks.timing import interleaved
-from flexapod.arrays import Array
-from flexapod.errors import ComputationError
+from flexapod.common.arrays import Array
+from flexapod.common.errors import ComputationError
 from flexapod.model import override
-from flexapod.verify.engines.engine import EXUDYN
+from flexapod.verification.engines.engine import EXUDYN
 
 __all__ = ["Family", "chosen", "side_by_side"]
 
@@ -161,9 +161,9 @@ def _exudyn() -> list[Family]:
 
 def _asked(elements: int, guide: float, rho: float, h: float, tolerance: float = 1e-4) -> tuple[Curve, float]:
     from benchmarks.exudyn_tuned import solve
-    from flexapod.verify.engines.exudyn_integration import Integration
-    from flexapod.verify.engines.exudyn_process import ask
-    from flexapod.verify.engines.exudyn_robot import RobotProblem
+    from flexapod.verification.engines.exudyn_integration import Integration
+    from flexapod.verification.engines.exudyn_process import ask
+    from flexapod.verification.engines.exudyn_robot import RobotProblem
 
     # Its process finds this package here, and takes Exudyn's build without range checks.
     os.environ |= {"PYTHONPATH": _with_this(os.environ.get("PYTHONPATH", "")), "EXUDYN_MODULE": "fast"}

@@ -40,14 +40,14 @@ NO_COMPILER = (
 def startup() -> list[Section]:
     """One section, times of the clock on the wall."""
     imported = _median(lambda: _seconds("-c", "import flexapod") - _seconds("-c", "pass"))
-    study = _median(lambda: _seconds("-c", "import flexapod.study") - _seconds("-c", "pass"))
+    study = _median(lambda: _seconds("-c", "import flexapod.analysis") - _seconds("-c", "pass"))
     helped = _median(lambda: _seconds("-m", "flexapod", "--help"))
     cold, warm = _median(_cold, 3), _median(lambda: _seconds("-c", ROLL))
     new = _median(_new_kind, 3)
     (check, ran), step, paper = _commands(), _interpreted(), _replicate()
     rows = [
         ["import flexapod", f"{imported:.3f} s", goal(imported, 0.3, "0.3 s")],
-        ["import flexapod.study", f"{study:.2f} s", ""],
+        ["import flexapod.analysis", f"{study:.2f} s", ""],
         ["flexapod --help", f"{helped:.3f} s", goal(helped, 0.5, "0.5 s")],
         ["flexapod check, preset paper-robot", f"{check:.2f} s", ""],
         ["flexapod run of it: figures, report", f"{ran:.2f} s", goal(ran, 3.5, "3.5 s")],

@@ -16,13 +16,13 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from benchmarks.report import goal
 from flexapod import sweep
+from flexapod.analysis.simulation import simulated
+from flexapod.design.sweeps import schedule
+from flexapod.design.sweeps.outputs import kept
+from flexapod.design.sweeps.plan import read_plan
+from flexapod.design.sweeps.samples import Points
+from flexapod.design.sweeps.worker import compute_point
 from flexapod.model import override, preset
-from flexapod.study.simulation import simulated
-from flexapod.surveys.sweeps import schedule
-from flexapod.surveys.sweeps.batch import compute_point
-from flexapod.surveys.sweeps.kept import kept
-from flexapod.surveys.sweeps.plan import read_plan
-from flexapod.surveys.sweeps.points import Points
 
 GOAL = 0.05 * 0.05  # overhead: 5 % of a simulation of 50 ms [s]
 REPEATS = 3

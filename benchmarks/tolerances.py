@@ -14,8 +14,8 @@ from benchmarks.deviation import Curve, Marched, error, marched, roll
 from benchmarks.ode import Ode, ode
 from benchmarks.report import Section, goal
 from benchmarks.timing import Spread, interleaved
+from flexapod.analysis import run
 from flexapod.model import DEFAULT_TOLERANCE, ActuatorStudy, Study, loads, override, preset, preset_text
-from flexapod.study import run
 
 __all__ = ["at_error", "tolerances"]
 

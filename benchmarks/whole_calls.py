@@ -29,10 +29,10 @@ import sys, time
 import flexapod as fx
 from flexapod.model import override
 from flexapod.solve.time.robot_march import prepare
-from flexapod.surveys.sweeps.batch import compute_point
-from flexapod.surveys.sweeps.kept import kept
-from flexapod.surveys.sweeps.plan import read_plan
-from flexapod.surveys.sweeps.points import Points
+from flexapod.design.sweeps.worker import compute_point
+from flexapod.design.sweeps.outputs import kept
+from flexapod.design.sweeps.plan import read_plan
+from flexapod.design.sweeps.samples import Points
 
 def prepared(what, study):
     if what == "march":

@@ -36,7 +36,7 @@ def quickly_compiled(request: pytest.FixtureRequest) -> Iterator[None]:
     from flexapod.solve.kernel import kernel
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flexapod.symbolic.compiler.FLAGS", ("-O0",))
+        patch.setattr("flexapod.mechanics.symbolic.compiler.FLAGS", ("-O0",))
         yield
     kernel.cache_clear()
 

@@ -22,14 +22,14 @@ from pathlib import Path
 
 import numpy as np
 
-from flexapod.description.robot import describe
-from flexapod.errors import ComputationError, InputError
+from flexapod.analysis import simulate, simulate_actuator
+from flexapod.analysis.description.robot_description import describe
+from flexapod.common.errors import ComputationError, InputError
+from flexapod.common.tables.base import Frozen
+from flexapod.design.sweeps.outputs import columns, kept
+from flexapod.design.sweeps.plan import read_plan
+from flexapod.design.sweeps.samples import Points
 from flexapod.model import Study, load, loads, to_toml
-from flexapod.schema.base import Frozen
-from flexapod.study import simulate, simulate_actuator
-from flexapod.surveys.sweeps.kept import columns, kept
-from flexapod.surveys.sweeps.plan import read_plan
-from flexapod.surveys.sweeps.points import Points
 
 SAMPLES = Path(__file__).parents[1] / "examples" / "mechanisms"
 MECHANISMS = {path.stem: {"study.toml": path.read_text(encoding="utf-8")} for path in sorted(SAMPLES.glob("*.toml"))}

@@ -43,8 +43,9 @@ import pytest
 from tests.nearness import Nearness
 
 ROOT = Path(__file__).parents[1]
-#: Chances of a place in a room's code; numbers and laws before pictures and words.
-ROOMS = {"app": 0.1, "plot": 0.1, "report": 0.1, "paper": 0.3, "proof": 0.05, "exchange": 0.7, "scene": 0.7, "": 0.5}
+#: Chances of a place in a folder's code, the innermost that has one; numbers and laws before pictures and words.
+ROOMS = {"app": 0.1, "figures": 0.1, "report": 0.1, "verification": 0.05, "paper": 0.3, "exchange": 0.7, "scene": 0.7,
+         "common": 0.5}  # fmt: skip
 IN_A_FILE = 3
 #: Files and functions that are about words, looks, files or speed.
 WORDS = re.compile(
@@ -52,8 +53,8 @@ WORDS = re.compile(
     r"names?$|__repr__|__str__|progress|announce|sentence|_say|hint|advice|tick|table$|document|log"
 )
 FILES = re.compile(
-    r"(^|/)(names|words|\w*_words|page|notes|citations|loading|threads|typing|version|errors|compiler|cache|lock|html|"
-    r"style|colours|c_source|failures|terminal|logs|door|server|network|visitor|files|processes|write|toml|printed|"
+    r"(^|/)(variables|quantities|\w*_words|page|field_help|citations|lazy_imports|resources|version|errors|compiler|cache|lock|html|"
+    r"style|colours|c_source|failures|terminal|logs|access|server|network|client_limits|files|processes|write|toml|printed|"
     r"documents?|header|player|background|running|opening)\.py$"
 )
 SILENT = {"strict", "frozen", "kw_only", "repr", "exist_ok", "copy", "maxsize", "errors", "description", "mode", "eq",
@@ -67,7 +68,8 @@ SWAPS = {"sin": "cos", "cos": "sin", "max": "min", "min": "max", "maximum": "min
          "sinh": "cosh", "all": "any", "any": "all", "zeros": "ones", "hstack": "vstack", "cumsum": "asarray",
          "base_joint": "platform_joint", "platform_joint": "base_joint", "base_joints": "platform_joints",
          "platform_joints": "base_joints", "mouth": "begins", "rad2deg": "deg2rad", "deg2rad": "rad2deg"}  # fmt: skip
-SYMBOLIC = ("elements", "mechanics", "symbolic")  # their text is in the key of every kernel: all are compiled anew
+#: Their text is in the key of every kernel: all are compiled anew.
+SYMBOLIC = tuple(f"src/flexapod/mechanics/{room}/" for room in ("elements", "leg", "symbolic"))
 #: Seconds of a fault's tests, by what they took before; a fault that so many files have reached is left as it is.
 ROUNDS = ((15.0, 0), (40.0, 3))
 LONGEST = 20  # a run may take so many times as long: processors are shared
@@ -93,7 +95,7 @@ class Fault:
 
     @property
     def symbolic(self) -> bool:
-        return self.path.split("/")[2] in SYMBOLIC
+        return self.path.startswith(SYMBOLIC)
 
 
 # Faults of a file
@@ -233,12 +235,13 @@ def faults(count: int, seed: int, rooms: Sequence[str] = ()) -> list[Fault]:
     drawn = []
     for path in sorted((ROOT / "src").rglob("*.py")):
         name = str(path.relative_to(ROOT))
-        room = name.split("/")[2] if name.count("/") > 2 else ""
-        if FILES.search(name) or name.endswith("__init__.py") or (rooms and room not in rooms):
+        inside = name.split("/")[2:-1]
+        if FILES.search(name) or name.endswith("__init__.py") or (rooms and not {*inside} & {*rooms}):
             continue
+        weight = next((ROOMS[room] for room in reversed(inside) if room in ROOMS), 1.0)
         for fault in Places(name, path.read_text(encoding="utf-8")).found:
             chance = int(hashlib.sha256(f"{seed} {fault.name}".encode()).hexdigest()[:12], 16) / 16**12
-            drawn.append((chance ** (1 / ROOMS.get(room, 1.0)), fault))
+            drawn.append((chance ** (1 / weight), fault))
     kept, functions, files = [], set(), Counter()
     for _, fault in sorted(drawn, key=lambda x: (-x[0], x[1].name)):
         place = (fault.path, fault.function)
@@ -252,7 +255,7 @@ def faults(count: int, seed: int, rooms: Sequence[str] = ()) -> list[Fault]:
 
 
 def _rooms() -> list[str]:
-    return sorted(x.name for x in (ROOT / "src" / "flexapod").iterdir() if x.is_dir() and x.name[0] != "_")
+    return sorted({x.name for x in (ROOT / "src" / "flexapod").rglob("*") if x.is_dir() and x.name[0] != "_"})
 
 
 def faulty(source: str, fault: Fault) -> str:

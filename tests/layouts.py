@@ -2,13 +2,13 @@
 
 from dataclasses import fields
 
-from flexapod.elements.flexure import Flexures
-from flexapod.elements.slot import Slot
-from flexapod.elements.tip_body import PlanarTipBody, TipBody
-from flexapod.elements.torsion import Torsion
-from flexapod.mechanics.layout import Shapes
-from flexapod.mechanics.leg_beam import LegBeam
-from flexapod.mechanics.leg_chain import LegChain
+from flexapod.mechanics.elements.flexure import Flexures
+from flexapod.mechanics.elements.slot import Slot
+from flexapod.mechanics.elements.tip_body import PlanarTipBody, TipBody
+from flexapod.mechanics.elements.torsion import Torsion
+from flexapod.mechanics.leg.layout import Shapes
+from flexapod.mechanics.leg.leg_beam import LegBeam
+from flexapod.mechanics.leg.leg_chain import LegChain
 
 CHAIN = {field.name for field in fields(LegChain)}
 

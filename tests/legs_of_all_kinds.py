@@ -5,16 +5,16 @@ from functools import cache
 import numpy as np
 from tests.layouts import layout
 
-from flexapod.bases import axial_basis, lateral_basis
-from flexapod.elements.drive_train import DriveTrain
-from flexapod.elements.mount import BaseMounting, MovedBase, PlatformMounting
-from flexapod.elements.shear import RotaryInertia
-from flexapod.elements.slot import Slot
-from flexapod.elements.soft_joint import SoftBase, SoftPlatform
 from flexapod.kinematics.rotations import quaternion
-from flexapod.mechanics.assembly import leg_functions
-from flexapod.mechanics.layout import leg_parameters
-from flexapod.symbolic.functions import Interpreted
+from flexapod.mechanics.elements.drive_train import DriveTrain
+from flexapod.mechanics.elements.mount import BaseMounting, MovedBase, PlatformMounting
+from flexapod.mechanics.elements.shear import RotaryInertia
+from flexapod.mechanics.elements.slot import Slot
+from flexapod.mechanics.elements.soft_joint import SoftBase, SoftPlatform
+from flexapod.mechanics.leg.kernel_functions import leg_functions
+from flexapod.mechanics.leg.layout import leg_parameters
+from flexapod.mechanics.shapes import axial_basis, lateral_basis
+from flexapod.mechanics.symbolic.functions import Interpreted
 
 GUIDE, CYLINDER = lateral_basis("tip-load", 2), lateral_basis("tip-load", 3, moment=True)
 INSIDE = ("ga", "gb", "ha", "hb", "ka", "kb")

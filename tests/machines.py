@@ -6,13 +6,13 @@ import numpy as np
 from tests.mechanisms import LOWER, UPPER, built, ring
 
 from flexapod.model import MATERIALS, Bearing, Nut, Rotor, ScrewDrive, Study
-from flexapod.model.cylinder import Cylinder
-from flexapod.model.joint import Joint
-from flexapod.model.leg import Leg
+from flexapod.model.leg.cylinder import Cylinder
+from flexapod.model.leg.joint import Joint
+from flexapod.model.leg.leg import Leg
+from flexapod.model.leg.piston import Piston
 from flexapod.model.motion import AxisMotion
-from flexapod.model.payload import Payload
-from flexapod.model.piston import Piston
-from flexapod.model.simulation import Simulation
+from flexapod.model.study.payload import Payload
+from flexapod.model.study.simulation import Simulation
 
 TON = Payload(mass=1000.0, inertia=np.diag([120.0, 120.0, 180.0]), com=[0.02, 0.01, 0.15])
 BODY = Cylinder(mass=28.0, com=0.3, inertia=2.1, axial_inertia=0.05, mouth=0.6)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod.model import Robot
-from flexapod.model.cylinder import Cylinder
-from flexapod.model.joint import Carriage
-from flexapod.model.payload import Payload
-from flexapod.verify.robots import CYLINDER, LOWER, PISTON, THREE, UPPER, leg, rod, tangents
+from flexapod.model.leg.cylinder import Cylinder
+from flexapod.model.leg.joint import Carriage
+from flexapod.model.study.payload import Payload
+from flexapod.verification.robots import CYLINDER, LOWER, PISTON, THREE, UPPER, leg, rod, tangents
 
 __all__ = ["CYLINDER", "LOWER", "PISTON", "ROBOTS", "THREE", "UPPER", "built", "leg", "ring", "rod", "tangents"]
 

@@ -13,7 +13,7 @@ KINDS = {"unit": 3, "contract": 5, "analytic": 6, "consistency": 7, "property": 
          "convergence": 10, "conservation": 10, "cli": 15}  # fmt: skip
 WORD = re.compile(r"[A-Za-z_]\w+")
 LEVELS, FADES = 6, 0.6
-SYMBOLIC = ("elements", "mechanics", "symbolic")
+SYMBOLIC = tuple(f"src/flexapod/mechanics/{room}/" for room in ("elements", "leg", "symbolic"))
 STARTING = 1.0  # seconds, of any file
 
 
@@ -90,7 +90,7 @@ class Nearness:
             near += 0.2 * sum(w * self.rare.get(name, 0.3) for name, w in names.items() if name in lent - own)
             near += 0.5 * (stem in own) + 0.7 * (stem in Path(file).stem) + 0.2 * (room in own)
             near += 1.0 * (dotted in self.text(file))
-            worth[file] = near * self._called(module, function, known.called.get(file), room)
+            worth[file] = near * self._called(module, function, known.called.get(file))
         takes = {file: STARTING + known.seconds.get(file, KINDS[file.split("/")[1]]) for file in worth}
         order = sorted((f for f in worth if f not in without), key=lambda f: (-worth[f] / takes[f] ** 0.6, f))
         chosen = [file for file in self._first(module) if file not in without]
@@ -107,9 +107,9 @@ class Nearness:
         own = module.removeprefix("src/flexapod/")
         return [f"tests/{file}.py" for name, files in self.first.items() if own.startswith(name) for file in files]
 
-    def _called(self, module: str, function: str, called: list[str] | None, room: str) -> float:
+    def _called(self, module: str, function: str, called: list[str] | None) -> float:
         """How much a file of tests counts that calls a function, does not, or has not been looked at."""
-        if called is None or room in SYMBOLIC:  # equations are built where their kernel is not yet there
+        if called is None or module.startswith(SYMBOLIC):  # equations are built where their kernel is not yet there
             return 1.0
         inside = {name.split(":")[1] for name in called if name.startswith(module + ":")}
         if function in inside or (inside and function.split(".")[0] in self.constants[module]):

@@ -1,12 +1,12 @@
 """Outcomes of the verification pack for tests, each computed once in a process.
 
-That every case passes is tested in `tests/cli/test_verify.py`, the cases of a subject (`verify/cases`) by one process:
-their group of pytest-xdist is "pack of SUBJECT", and who else asks for one of them belongs to it.
+That every case passes is tested in `tests/cli/test_verify.py`, the cases of a subject (`verification/cases`) by one
+process: their group of pytest-xdist is "pack of SUBJECT", and who else asks for one of them belongs to it.
 """
 
 from functools import cache
 
-from flexapod.verify.pack import verify
+from flexapod.verification.pack import verify
 
 
 @cache

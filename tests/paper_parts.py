@@ -5,8 +5,8 @@ Who asks for them belongs to the group "claims" of pytest-xdist, so that one pro
 
 from functools import cache
 
-from flexapod.paper.study import STEPS, PaperStudy
-from flexapod.paper.variants import HALF_ANGLES
+from flexapod.verification.paper.study import STEPS, PaperStudy
+from flexapod.verification.paper.variants import HALF_ANGLES
 
 
 def quiet(_):

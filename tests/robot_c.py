@@ -6,8 +6,8 @@ import subprocess
 
 import numpy as np
 
-from flexapod.exchange.c_source import FLAGS
-from flexapod.symbolic.compiler import compiler
+from flexapod.mechanics.symbolic.compiler import compiler
+from flexapod.output.exchange.c_source import FLAGS
 
 STRICT = ("-Wall", "-Wextra", "-Werror")
 

@@ -5,8 +5,8 @@ from functools import lru_cache
 import numpy as np
 from tests.layouts import layout
 
-from flexapod.bases import axial_basis, lateral_basis
-from flexapod.mechanics.layout import LEG_PARAMETERS
+from flexapod.mechanics.leg.layout import LEG_PARAMETERS
+from flexapod.mechanics.shapes import axial_basis, lateral_basis
 from flexapod.model import override, preset
 from flexapod.solve.kernel import interpreted_kernel
 from flexapod.solve.time.actuator_march import prepare_actuator

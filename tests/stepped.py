@@ -7,13 +7,13 @@ from scipy.linalg import eigh, expm, null_space
 from scipy.optimize import brentq
 from tests.layouts import layout
 
-from flexapod.bases import axial_basis, lateral_basis
-from flexapod.mechanics.assembly import leg_functions
-from flexapod.mechanics.layout import leg_parameters
+from flexapod.mechanics.leg.kernel_functions import leg_functions
+from flexapod.mechanics.leg.layout import leg_parameters
+from flexapod.mechanics.shapes import axial_basis, lateral_basis
+from flexapod.mechanics.symbolic.functions import Interpreted
 from flexapod.model import Cylinder, Leg, Piston, PistonSection
 from flexapod.solve.parameters import _inside, _leg
 from flexapod.solve.sections import section_parameters
-from flexapod.symbolic.functions import Interpreted
 
 STEEL = {"E": 200e9, "density": 7800.0}
 

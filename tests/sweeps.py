@@ -10,8 +10,8 @@ from dataclasses import replace
 
 from tests.texts import replaced
 
+from flexapod.design.sweeps.worker import compute_batch
 from flexapod.model import loads, preset_text
-from flexapod.surveys.sweeps.batch import compute_batch
 
 KEY = "leg.piston.diameter"
 QUICK = (

@@ -5,10 +5,10 @@ from unittest.mock import patch
 import numpy as np
 from tests.runs import uncompiled, uncompiled_kernel
 
-from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS
+from flexapod.mechanics.leg.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS
 from flexapod.model import Simulation
 from flexapod.solve.batch import RestStates
-from flexapod.solve.modal.loss_factor import per_loss
+from flexapod.solve.modal.structural_damping import per_loss
 from flexapod.solve.robot_system import robot_system
 from flexapod.solve.system import System
 

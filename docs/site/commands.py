@@ -6,7 +6,7 @@ from pathlib import Path
 
 import typer
 
-from flexapod.cli.cli import app
+from flexapod.app.cli.cli import app
 
 FOLDER = Path("reference/commands")
 

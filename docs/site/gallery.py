@@ -12,10 +12,10 @@ from tempfile import TemporaryDirectory
 
 import matplotlib
 
-from flexapod.cli.examples import titles
+from flexapod.app.cli.examples import titles
 
 FOLDER = Path("gallery")
-EXAMPLES = Path(__file__).parents[2] / "src" / "flexapod" / "_examples"
+EXAMPLES = Path(__file__).parents[2] / "src" / "flexapod" / "examples/gallery"
 SECTIONS = {
     "A robot and its answer": (
         "paper_robot",

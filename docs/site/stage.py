@@ -37,7 +37,7 @@ def staged(folder: Path) -> Path:
     for make in MADE:
         written |= {_write(folder / place, text) for place, text in make().items()}
     written |= gallery.pictures(folder)
-    notebooks = ROOT / "src" / "flexapod" / "_notebooks"
+    notebooks = ROOT / "src" / "flexapod" / "examples/notebooks"
     written |= {_copy(path, folder / "notebooks" / path.name) for path in notebooks.glob("*.py")}
     for image in (ROOT / "docs").rglob("*.png"):
         written.add(_copy(image, folder / image.relative_to(ROOT / "docs")))

@@ -6,7 +6,7 @@ import re
 from functools import cache
 from pathlib import Path
 
-from flexapod.model import page
+from flexapod.model.file import page
 
 FOLDER = Path("reference/study-file")
 #: First tables that are a page for each table in them.

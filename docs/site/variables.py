@@ -10,8 +10,8 @@ import numpy as np
 from xarray import Dataset
 
 import flexapod as fx
+from flexapod.analysis.results.variables import COORDINATES, GROUPS, Variable
 from flexapod.control import IFF, best_gain, impedance, margins, root_locus
-from flexapod.results.names import COORDINATES, GROUPS, Variable
 
 FOLDER = Path("reference/variables")
 HEAD = "| Name | Dimensions | Unit | What it is |\n| --- | --- | --- | --- |"

@@ -7,21 +7,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flexapod.runtime.loading import loaded
+from flexapod.common.lazy_imports import loaded
 
 if TYPE_CHECKING:
-    from flexapod import control, kinematics, model, plot, study
-    from flexapod.citations import cite
-    from flexapod.control.measured import read_frf
-    from flexapod.elements.element import Along, Contribution, Element, Output
-    from flexapod.elements.frame import Energies, Frame
-    from flexapod.errors import ComputationError, FlexapodError, InputError
-    from flexapod.exchange.formats import export
-    from flexapod.feedforward import compensate, shape, time_optimal
-    from flexapod.model import ActuatorStudy, Study, loads, open_values, preset
-    from flexapod.paper.study import replicate
-    from flexapod.schema.base import Key, Quantity
-    from flexapod.study import (
+    from flexapod import analysis as study
+    from flexapod import control, kinematics, model
+    from flexapod.analysis import (
         accuracy,
         budget,
         compliance,
@@ -41,25 +32,36 @@ if TYPE_CHECKING:
         transmissibility,
         vibration,
     )
-    from flexapod.surveys.convergence import converge
-    from flexapod.surveys.convergence.ladder import ladder
-    from flexapod.surveys.stored_study import load
-    from flexapod.surveys.sweeps import sweep
-    from flexapod.surveys.workspace import workspace_map
-    from flexapod.version import __version__
+    from flexapod.commissioning.feedforward import compensate, shape, time_optimal
+    from flexapod.common.citations import cite
+    from flexapod.common.errors import ComputationError, FlexapodError, InputError
+    from flexapod.common.tables.base import Key, Quantity
+    from flexapod.common.version import __version__
+    from flexapod.control.measurements import read_frf
+    from flexapod.design.convergence import converge
+    from flexapod.design.convergence.ladder import ladder
+    from flexapod.design.maps import workspace_map
+    from flexapod.design.stored_study import load
+    from flexapod.design.sweeps import sweep
+    from flexapod.mechanics.elements.element import Along, Contribution, Element, Output
+    from flexapod.mechanics.elements.frames import Energies, Frame
+    from flexapod.model import ActuatorStudy, Study, loads, open_values, preset
+    from flexapod.output import figures as plot
+    from flexapod.output.exchange.formats import export
+    from flexapod.verification.paper.study import replicate
 
 _HOMES = {
-    "flexapod.elements.element": ("Along", "Contribution", "Element", "Output"),
-    "flexapod.elements.frame": ("Energies", "Frame"),
-    "flexapod.schema.base": ("Key", "Quantity"),
-    "flexapod.errors": ("ComputationError", "FlexapodError", "InputError"),
-    "flexapod.citations": ("cite",),
-    "flexapod.control.measured": ("read_frf",),
-    "flexapod.exchange.formats": ("export",),
-    "flexapod.feedforward": ("compensate", "shape", "time_optimal"),
+    "flexapod.mechanics.elements.element": ("Along", "Contribution", "Element", "Output"),
+    "flexapod.mechanics.elements.frames": ("Energies", "Frame"),
+    "flexapod.common.tables.base": ("Key", "Quantity"),
+    "flexapod.common.errors": ("ComputationError", "FlexapodError", "InputError"),
+    "flexapod.common.citations": ("cite",),
+    "flexapod.control.measurements": ("read_frf",),
+    "flexapod.output.exchange.formats": ("export",),
+    "flexapod.commissioning.feedforward": ("compensate", "shape", "time_optimal"),
     "flexapod.model": ("ActuatorStudy", "Study", "loads", "open_values", "preset"),
-    "flexapod.paper.study": ("replicate",),
-    "flexapod.study": (
+    "flexapod.verification.paper.study": ("replicate",),
+    "flexapod.analysis": (
         "accuracy",
         "budget",
         "compliance",
@@ -79,16 +81,22 @@ _HOMES = {
         "transmissibility",
         "vibration",
     ),
-    "flexapod.surveys.convergence": ("converge",),
-    "flexapod.surveys.convergence.ladder": ("ladder",),
-    "flexapod.surveys.stored_study": ("load",),
-    "flexapod.surveys.sweeps": ("sweep",),
-    "flexapod.surveys.workspace": ("workspace_map",),
-    "flexapod.version": ("__version__",),
+    "flexapod.design.convergence": ("converge",),
+    "flexapod.design.convergence.ladder": ("ladder",),
+    "flexapod.design.stored_study": ("load",),
+    "flexapod.design.sweeps": ("sweep",),
+    "flexapod.design.maps": ("workspace_map",),
+    "flexapod.common.version": ("__version__",),
 }
 _NAMES = {name: module for module, names in _HOMES.items() for name in names}
 _FORMER = {"rigid": "kinematics"}  # names of the release before
-_PACKAGES = ("control", "kinematics", "model", "plot", "study")
+_PACKAGES = {
+    "control": "control",
+    "kinematics": "kinematics",
+    "model": "model",
+    "plot": "output.figures",
+    "study": "analysis",
+}
 
 __all__ = [
     "ActuatorStudy",
@@ -150,7 +158,7 @@ def __getattr__(name: str) -> object:
     if name in _NAMES:
         value = getattr(loaded(_NAMES[name]), name)
     elif name in _PACKAGES:
-        value = loaded(f"flexapod.{name}")
+        value = loaded(f"flexapod.{_PACKAGES[name]}")
     elif name in _FORMER:
         import warnings
 

@@ -1,6 +1,6 @@
 """`python -m flexapod` is the command `flexapod`."""
 
-from flexapod.cli.cli import main
+from flexapod.app.cli.cli import main
 
 if __name__ == "__main__":
     main()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.oracles import beams
 
-from flexapod.errors import ComputationError, InputError
+from flexapod.common.errors import ComputationError, InputError
 from flexapod.model import Actuator, Simulation, preset
 from flexapod.solve.modal.actuator_modes import actuator_modes
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.scene.robot import beam_modes
+from flexapod.output.scene.robot_scene import beam_modes
 
 BETA = np.array([1.875104068711961, 4.694091132974174, 7.854757438237613])  # roots of cos b cosh b = -1
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flexapod.control as fc
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 
 
 def mass(m=2.0, k=5e3, c=4.0):

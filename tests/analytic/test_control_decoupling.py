@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 import flexapod as fx
 import flexapod.control as fc
-from flexapod.errors import ComputationError, InputError
+from flexapod.common.errors import ComputationError, InputError
 
 M, INERTIA, K, C = 400.0, 115.0, 15e3, 20.0
 HA, HB, LA, LB = 1.7 / 2, 0.91, 1.0 / 2, 1.7  # struts below the centre of mass, beside it

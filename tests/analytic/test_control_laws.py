@@ -6,7 +6,7 @@ from scipy import signal
 
 import flexapod as fx
 import flexapod.control as fc
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 
 HZ = np.geomspace(0.3, 300.0, 25)
 S = 2j * np.pi * HZ

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flexapod.control as fc
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 
 M, K, C = 3.0, 1200.0, 0.9  # kg, N/m, N s/m
 W = np.sqrt(K / M)  # 20 rad/s

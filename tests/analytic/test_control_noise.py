@@ -8,7 +8,7 @@ import xarray as xr
 from numpy.linalg import inv, solve
 
 import flexapod.control as fc
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 
 HZ = np.geomspace(0.3, 60, 25)
 S = 2j * np.pi * HZ

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flexapod.control as fc
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 
 M, K, C = 2.5, 4000.0, 3.0
 

@@ -5,7 +5,7 @@ import pytest
 from tests.analytic.test_leg_frequencies import LEGS, PISTON, hertz, squared_frequencies
 from tests.oracles import beams
 
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 from flexapod.model import Actuator, Simulation
 from flexapod.solve.modal.actuator_modes import actuator_modes
 

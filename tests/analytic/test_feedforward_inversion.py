@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import flexapod as fx
+from flexapod.commissioning.feedforward.actuator_inversion import tip_inversion
+from flexapod.commissioning.feedforward.noncausal_filter import answer, inverse
 from flexapod.control import StateSpace
-from flexapod.feedforward.beam import tip_inversion
-from flexapod.feedforward.inversion import answer, inverse
 from flexapod.kinematics import motion_law
 
 

@@ -7,9 +7,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import flexapod as fx
+from flexapod.commissioning.feedforward.drive_loads import limits_of
+from flexapod.commissioning.feedforward.least_time import fastest
 from flexapod.control import StateSpace
-from flexapod.feedforward.drive_loads import limits_of
-from flexapod.feedforward.least_time import fastest
 from flexapod.kinematics import coordinates
 
 # m1 = m2 = k = 1, |u| <= 1, a unit move: Singh, Kabamba & McClamroch 1989; Liu & Wie 1992 (robust), to four digits
@@ -82,7 +82,9 @@ def heaving() -> tuple[fx.Study, float, float]:
     study = fx.preset("paper-robot")
     leg, payload = study.robot.legs[0], study.robot.payload
     bare = leg.replace(
-        piston=fx.model.piston.Piston(length=leg.piston.length, EA=3e-3 * leg.piston.EA, EI=leg.piston.EI, rhoA=0.0),
+        piston=fx.model.leg.piston.Piston(
+            length=leg.piston.length, EA=3e-3 * leg.piston.EA, EI=leg.piston.EI, rhoA=0.0
+        ),
         cylinder=leg.cylinder.replace(mass=0.0, inertia=0.0),
         damping=0.0,
     )

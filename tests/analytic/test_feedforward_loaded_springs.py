@@ -5,7 +5,7 @@ from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
 import flexapod as fx
-from flexapod.feedforward.compensation import compensation
+from flexapod.commissioning.feedforward.compensation import compensation
 from flexapod.kinematics import coordinates
 
 # The equations are solved by both sides to rounding: forces of 1e3 N to 1e-12, over 1e8 N/m and a condition below 1e3.
@@ -18,7 +18,7 @@ def springs() -> fx.Study:
     study = fx.preset("paper-robot")
     leg = study.robot.legs[0]
     bare = leg.replace(
-        piston=fx.model.piston.Piston(length=leg.piston.length, EA=leg.piston.EA, EI=leg.piston.EI, rhoA=0.0),
+        piston=fx.model.leg.piston.Piston(length=leg.piston.length, EA=leg.piston.EA, EI=leg.piston.EI, rhoA=0.0),
         cylinder=leg.cylinder.replace(mass=0.0, inertia=0.0),
     )
     robot = study.robot.replace(legs=(bare,) * 6)

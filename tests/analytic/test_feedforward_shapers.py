@@ -6,8 +6,8 @@ from tests.oracles import integrator
 from tests.oracles.integrator import residual, residual_of_motion
 
 import flexapod as fx
-from flexapod.feedforward.shapers import KINDS, insensitivity, shaper
-from flexapod.feedforward.vibration import vibration_along
+from flexapod.commissioning.feedforward.modal_path import vibration_along
+from flexapod.commissioning.feedforward.shapers import KINDS, insensitivity, shaper
 from flexapod.kinematics import coordinates
 
 # Singer & Seering 1990; Singhose, Seering & Singer 1994, 1996: printed to three digits, half a unit of the last one
@@ -78,7 +78,7 @@ def heaving(profile: str, periods: float) -> tuple[fx.Study, float]:
     study = fx.preset("paper-robot")
     leg, payload = study.robot.legs[0], study.robot.payload
     bare = leg.replace(
-        piston=fx.model.piston.Piston(length=leg.piston.length, EA=leg.piston.EA, EI=leg.piston.EI, rhoA=0.0),
+        piston=fx.model.leg.piston.Piston(length=leg.piston.length, EA=leg.piston.EA, EI=leg.piston.EI, rhoA=0.0),
         cylinder=leg.cylinder.replace(mass=0.0, inertia=0.0),
         damping=0.0,
     )

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 from tests.analytic.test_feedforward_loaded_springs import lengths, springs
 
 import flexapod as fx
-from flexapod.feedforward.vibration import vibration_along
+from flexapod.commissioning.feedforward.modal_path import vibration_along
 
 MOVING, AFTER = 0.2, 0.03  # s
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flexapod.fem.hexahedra import element_stiffness, integrals, stiffness
-from flexapod.fem.mesh import beam_mesh
 from flexapod.model import Rectangle
+from flexapod.solve.fem.hexahedra import element_stiffness, integrals, stiffness
+from flexapod.solve.fem.mesh import beam_mesh
 
 LINEAR = ["hex8", "hex8r", "hex8i"]
 E, POISSON = 2.0, 0.3

@@ -6,7 +6,7 @@ from scipy.linalg import eig, null_space
 from tests import legs_of_all_kinds as legs
 from tests.layouts import layout
 
-from flexapod.bases import axial_basis, lateral_basis
+from flexapod.mechanics.shapes import axial_basis, lateral_basis
 
 EI, LENGTH = 5217.4, 0.435
 HOME = dict.fromkeys(("base_stiffness", "gamma_stiffness", "gravity", "joint", "base", "gamma_home"), np.zeros(3))

@@ -7,8 +7,8 @@ from tests.mechanisms import built, leg, ring
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
-from flexapod.description.robot import describe
-from flexapod.errors import ComputationError, InputError
+from flexapod.analysis.description.robot_description import describe
+from flexapod.common.errors import ComputationError, InputError
 from flexapod.model import Cylinder, Piston, ServoDrive
 
 FOUR = np.arange(4) * 90.0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.verify.cases.linear import gravimeter
+from flexapod.verification.cases.linear import gravimeter
 
 M, INERTIA, K, C = 400.0, 115.0, 15e3, 20.0
 BELOW, BESIDE = 0.85, 0.5

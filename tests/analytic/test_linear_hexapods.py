@@ -8,12 +8,12 @@ from tests.oracles.ups import Hexapod
 import flexapod as fx
 from flexapod.kinematics.rotations import matrix
 from flexapod.model import ConstantWrench, Load, ServoDrive, Simulation, Study
-from flexapod.model.cylinder import Cylinder
-from flexapod.model.leg import Leg
+from flexapod.model.leg.cylinder import Cylinder
+from flexapod.model.leg.leg import Leg
+from flexapod.model.leg.piston import Piston
 from flexapod.model.motion import AxisMotion
-from flexapod.model.mount import BaseMotion
-from flexapod.model.payload import Payload
-from flexapod.model.piston import Piston
+from flexapod.model.study.mount import BaseMotion
+from flexapod.model.study.payload import Payload
 
 HZ = np.array([0.01, 0.5, 6.0, 40.0])
 POSE = {"surge": 0.03, "sway": -0.02, "heave": 0.02, "roll": 0.12, "pitch": -0.08, "yaw": 0.15}

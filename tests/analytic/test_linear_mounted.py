@@ -8,8 +8,8 @@ from tests.machines import machine, study
 
 import flexapod as fx
 from flexapod.kinematics.rotations import matrix
-from flexapod.model.mount import BaseMotion
-from flexapod.verify.cases.linear import stewart
+from flexapod.model.study.mount import BaseMotion
+from flexapod.verification.cases.linear import stewart
 
 HZ = np.array([3.0, 40.0, 300.0])
 S = 2j * np.pi * HZ

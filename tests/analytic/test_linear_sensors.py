@@ -7,7 +7,7 @@ from tests.consistency.test_mounts import BASE
 from tests.machines import machine, study
 
 import flexapod as fx
-from flexapod.verify.cases.linear import stewart
+from flexapod.verification.cases.linear import stewart
 
 HZ = np.array([3.0, 40.0, 300.0])
 S = 2j * np.pi * HZ

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.verify.cases.linear import DAMPER as C
-from flexapod.verify.cases.linear import SPRING as K
-from flexapod.verify.cases.linear import stewart
+from flexapod.verification.cases.linear import DAMPER as C
+from flexapod.verification.cases.linear import SPRING as K
+from flexapod.verification.cases.linear import stewart
 
 HZ = np.array([10.0, 100.0, 500.84, 1e4])
 

@@ -6,9 +6,9 @@ from tests.machines import SCREW, TUBE, machine, study
 
 import flexapod as fx
 from flexapod.model import Feedback, Motor, preset_text
-from flexapod.model.mount import Mount
+from flexapod.model.study.mount import Mount
 from flexapod.solve.modal.damped import damping_ratios, poles
-from flexapod.solve.modal.frequencies import natural
+from flexapod.solve.modal.eigenproblem import natural
 
 
 def modal(mass, stiffness, damping):

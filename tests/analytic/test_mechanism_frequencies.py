@@ -13,11 +13,11 @@ from tests.mechanisms import PISTON, ROBOTS, THREE, built, hexapod, leg, ring, t
 from tests.oracles import frames
 
 import flexapod as fx
-from flexapod.model.cylinder import Cylinder
-from flexapod.model.joint import Joint
-from flexapod.model.leg import Leg
-from flexapod.model.payload import Payload
-from flexapod.model.piston import Piston
+from flexapod.model.leg.cylinder import Cylinder
+from flexapod.model.leg.joint import Joint
+from flexapod.model.leg.leg import Leg
+from flexapod.model.leg.piston import Piston
+from flexapod.model.study.payload import Payload
 
 pytestmark = pytest.mark.usefixtures("uncompiled")
 FOUR = np.arange(4) * 90.0

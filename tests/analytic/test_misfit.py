@@ -84,7 +84,7 @@ def test_one_leg_too_long_far_from_home(modes):
 
 def angles(p, leg):
     """Of the universal joint, so that the leg points along a vector of the world."""
-    from flexapod.mechanics.layout import LEG_PARAMETERS, columns
+    from flexapod.mechanics.leg.layout import LEG_PARAMETERS, columns
 
     x, y, z = p[columns(LEG_PARAMETERS, "R0")].reshape(3, 3) @ leg / np.linalg.norm(leg)
     return np.arctan2(-y, z), np.arcsin(x)

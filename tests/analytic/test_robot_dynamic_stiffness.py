@@ -1,6 +1,6 @@
 """Frequencies of the locked 6-UPS robot against exact dynamic stiffness and a count that misses none.
 
-First the oracle (`verify/dynamic_stiffness.py`) against closed forms and a count by finite elements, then `modes`
+First the oracle (`verification/dynamic_stiffness.py`) against closed forms and a count by finite elements, then `modes`
 against the oracle. Both are about the undeformed pose: gravity is zero.
 """
 
@@ -14,9 +14,9 @@ from tests.oracles import beams
 
 from flexapod import modes
 from flexapod.model import ServoDrive, preset
-from flexapod.verify import dynamic_stiffness, locked_robot
-from flexapod.verify.locked_robot import legs_and_body
-from flexapod.verify.robots import unlike_legs, without_cylinders, without_gravity
+from flexapod.verification import dynamic_stiffness, locked_robot
+from flexapod.verification.locked_robot import legs_and_body
+from flexapod.verification.robots import unlike_legs, without_cylinders, without_gravity
 
 pytestmark = pytest.mark.usefixtures("uncompiled")
 PISTON = beams.round_section(0.027, 200e9, 7800.0)

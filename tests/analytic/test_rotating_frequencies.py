@@ -46,7 +46,7 @@ def test_shapes_without_the_layer_miss_it(g):
     # The polynomials of a leg's basis (no speed in them) on the same beam: what the load-dependent shapes are for.
     from scipy.linalg import eigh
 
-    from flexapod.bases import lateral_basis
+    from flexapod.mechanics.shapes import lateral_basis
 
     b = lateral_basis("tip-load", 3)
     stiffness = b.stiffness + g**2 * (5.0 * b.slope_first + b.slope_moment)

@@ -6,12 +6,12 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 from tests.oracles import beams
 
-from flexapod.fem.frequencies import frequencies
-from flexapod.fem.mesh import beam_mesh
-from flexapod.fem.mouth import mouth_of
-from flexapod.fem.reduction import reduced_beam
-from flexapod.fem.sliding import HubMotion, SlidingBeam
 from flexapod.model import Rectangle, Tube
+from flexapod.solve.fem.frequencies import frequencies
+from flexapod.solve.fem.mesh import beam_mesh
+from flexapod.solve.fem.mouth import mouth_of
+from flexapod.solve.fem.reduction import reduced_beam
+from flexapod.solve.fem.sliding import HubMotion, SlidingBeam
 
 FLAT = Rectangle(width=0.1524, height=0.0095)
 EI, RHOA, LENGTH = 756.65, 4.02, 3.66

@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 from tests.oracles.stretching_rotor import lag_frequency
 
 import flexapod as fx
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 from flexapod.model import (
     Actuator,
     ActuatorInitial,

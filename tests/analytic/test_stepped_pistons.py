@@ -5,8 +5,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from tests.stepped import STEEL, leg_of, misfit, root_near, section, squared_frequencies, thrust_of_shapes
 
+from flexapod.analysis.checks.estimates import buckling_load
 from flexapod.model import Piston
-from flexapod.review.estimates import buckling_load
 
 TWO = [section(0.3, 0.04), section(0.45, 0.03)]
 HOLLOW = [section(0.25, 0.04), section(0.5, 0.04, inner_diameter=0.03)]

@@ -5,13 +5,13 @@ import pytest
 from tests.runs import FIELDS, paper_robot, run_actuator, run_robot, with_legs
 
 import flexapod as fx
-from flexapod.document.study import _damping
-from flexapod.errors import InputError
-from flexapod.mechanics.layout import LEG_PARAMETERS, columns
+from flexapod.common.errors import InputError
+from flexapod.common.tables.key_paths import parse_key
+from flexapod.mechanics.leg.layout import LEG_PARAMETERS, columns
 from flexapod.model import Actuator, ActuatorMotion, ActuatorStudy, Damping, Simulation, loads, override, to_toml
-from flexapod.model.fields import read_fields
-from flexapod.model.key_paths import put, value_at
-from flexapod.schema.key_paths import parse_key
+from flexapod.model.file.fields import read_fields
+from flexapod.model.file.key_paths import put, value_at
+from flexapod.output.text.study import _damping
 from flexapod.solve.modal.actuator_modes import actuator_modes
 from flexapod.solve.time.robot_march import prepare
 

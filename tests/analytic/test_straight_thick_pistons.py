@@ -8,7 +8,7 @@ from tests.runs import with_legs
 
 import flexapod as fx
 from flexapod.model import MATERIALS, Tube
-from flexapod.model.piston import Piston
+from flexapod.model.leg.piston import Piston
 
 LENGTH, D, d = 0.75, 0.12, 0.05
 STEEL = MATERIALS["steel"]

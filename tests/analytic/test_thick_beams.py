@@ -5,8 +5,8 @@ import pytest
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
+from flexapod.analysis.checks.estimates import BendingSection, beam_section, bending_errors, piston_section
 from flexapod.model import MATERIALS, Actuator, Piston, Rectangle, Tube
-from flexapod.review.estimates import BendingSection, beam_section, bending_errors, piston_section
 
 KAPPAS = [0.4, 0.886, 1.0]
 SLENDER = [0.004, 0.025, 0.1]  # radius of gyration over length; the last of a bar 2.5 times as long as wide

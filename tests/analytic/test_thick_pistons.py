@@ -15,8 +15,8 @@ from tests.stepped import (
     vector,
 )
 
-from flexapod.elements.steps import held
-from flexapod.review.estimates import bending_errors, piston_section
+from flexapod.analysis.checks.estimates import bending_errors, piston_section
+from flexapod.mechanics.elements.steps import held
 from flexapod.solve.sections import numeric_pieces, turning
 
 

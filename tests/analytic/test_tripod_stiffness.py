@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 from tests.mechanisms import THREE, built, leg, ring, tangents
 
+from flexapod.design.sweeps.outputs import kept
+from flexapod.design.sweeps.plan import read_plan
+from flexapod.design.sweeps.samples import Points
+from flexapod.design.sweeps.worker import compute_point
 from flexapod.model import MATERIALS, AxisMotion, ConstantWrench, Load, Simulation, Study
-from flexapod.model.cylinder import Cylinder
-from flexapod.model.material import Tube
-from flexapod.model.payload import Payload
-from flexapod.model.piston import Piston
+from flexapod.model.leg.cylinder import Cylinder
+from flexapod.model.leg.material import Tube
+from flexapod.model.leg.piston import Piston
+from flexapod.model.study.payload import Payload
 from flexapod.solve.modal.at_poses import robot_modes, robot_stiffness
-from flexapod.surveys.sweeps.batch import compute_point
-from flexapod.surveys.sweeps.kept import kept
-from flexapod.surveys.sweeps.plan import read_plan
-from flexapod.surveys.sweeps.points import Points
 
 PISTON = Piston(length=0.75, EA=1.1e8, EI=5e3, rhoA=4.5)
 WEIGHTLESS = Payload(mass=1e-6, inertia=[1e-8, 1e-8, 1e-8], com=[0, 0, 0])

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from tests.mechanisms import CYLINDER, PISTON, hexapod
 
-from flexapod.kinematics.limbs import limbs
+from flexapod.kinematics.leg_geometry import limbs
 from flexapod.model import Simulation
-from flexapod.model.joint import Joint
-from flexapod.model.payload import Payload
+from flexapod.model.leg.joint import Joint
+from flexapod.model.study.payload import Payload
 from flexapod.solve.modal.at_poses import robot_stiffness
 
 NOTHING = Payload(mass=1.0, inertia=[1.0, 1.0, 1.0], com=[0.0, 0.05, 0.1], tool=[0.1, 0.0, 0.2])

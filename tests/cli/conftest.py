@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner, Result
 
-from flexapod.cli.cli import app
+from flexapod.app.cli.cli import app
 from flexapod.model import preset_text
 
 Command = Callable[..., Result]

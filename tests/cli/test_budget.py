@@ -6,9 +6,9 @@ import pytest
 from tests.cli.conftest import SHORT
 
 import flexapod as fx
-from flexapod.document.budget import peak_budget
-from flexapod.error_budget import sentences
-from flexapod.study import open_results
+from flexapod.analysis import open_results
+from flexapod.analysis.error_budget import text as sentences
+from flexapod.output.text.budget import peak_budget
 
 PLAY = '\n[tolerances]\nleg_offset = "10 um"\n[heat]\nreference = 20\npiston = 23\nexpansion = { piston = 1.2e-5 }\n'
 

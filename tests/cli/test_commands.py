@@ -14,8 +14,8 @@ import pytest
 from tests.cli.conftest import SHORT
 
 import flexapod as fx
+from flexapod.analysis import open_results
 from flexapod.model import ForceDrive
-from flexapod.study import open_results
 
 FIGURES = {"com-path", "deviation-by-cause", "actuator-forces", "leg-lengths", "motion", "energies", "robot"}
 
@@ -33,7 +33,7 @@ def test_help_and_version_import_nothing_heavy():
     # What makes a start slow; half a second is held by the benchmark, on an idle machine.
     heavy = "casadi", "scipy", "numpy", "xarray", "matplotlib", "pydantic", "pint", "netCDF4"
     code = (
-        "import sys\nsys.argv = ['flexapod', '--help']\nfrom flexapod.cli.cli import main\n"
+        "import sys\nsys.argv = ['flexapod', '--help']\nfrom flexapod.app.cli.cli import main\n"
         "try:\n    main()\nexcept SystemExit:\n    pass\n"
         f"print([name for name in {heavy} if name in sys.modules], file=sys.stderr)"
     )
@@ -182,7 +182,7 @@ def test_run_writes_the_formats_asked_for(flexapod, study, folder):
 def test_unknown_formats_are_refused_before_anything_is_computed(
     flexapod, study, folder, monkeypatch, command, formats, named
 ):
-    monkeypatch.setattr("flexapod.study.run", lambda *_, **__: pytest.fail("computed"))
+    monkeypatch.setattr("flexapod.analysis.run", lambda *_, **__: pytest.fail("computed"))
     result = flexapod(
         command, study(preset=f"paper-{'robot' if command == 'run' else 'actuator'}"), "--format", formats
     )
@@ -268,7 +268,7 @@ def test_full_disk_is_told_and_leaves_no_half_file(flexapod, study, folder, monk
         Path(path).write_bytes(b"half")
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("flexapod.results.netcdf.write", full)
+    monkeypatch.setattr("flexapod.analysis.netcdf.write", full)
     result = flexapod("run", study(*SHORT))
     assert result.exit_code == 2
     assert "No space left on device" in result.stderr
@@ -276,7 +276,7 @@ def test_full_disk_is_told_and_leaves_no_half_file(flexapod, study, folder, monk
 
 
 def test_fault_of_ours_is_one_line_and_how_to_report_it(flexapod, study, monkeypatch):
-    monkeypatch.setattr("flexapod.description.robot.describe", lambda _: 1 / 0)
+    monkeypatch.setattr("flexapod.analysis.description.robot_description.describe", lambda _: 1 / 0)
     monkeypatch.delenv("FLEXAPOD_DEBUG", raising=False)
     result = flexapod("check", study())
     assert result.exit_code == 1

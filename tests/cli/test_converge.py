@@ -5,9 +5,9 @@ import json
 
 import pytest
 
-from flexapod.study import open_results
-from flexapod.surveys.convergence import plan
-from flexapod.surveys.convergence.trials import Trials
+from flexapod.analysis import open_results
+from flexapod.design.convergence import plan
+from flexapod.design.convergence.trials import Trials
 
 BEAM = (('duration = "10 s"', 'duration = "0.3 s"\nstep = "1 ms"\noutput_step = "5 ms"'),)
 

@@ -8,9 +8,9 @@ import pytest
 from tests.cli.conftest import SHORT
 
 from flexapod import load, modes
-from flexapod.exchange.export import ELEMENTS, MODES
-from flexapod.verify.engines import calculix
-from flexapod.verify.engines.engine import CALCULIX
+from flexapod.output.exchange.export import ELEMENTS, MODES
+from flexapod.verification.engines import calculix
+from flexapod.verification.engines.engine import CALCULIX
 
 
 def test_writes_a_deck_named_after_the_study(flexapod, study, folder):

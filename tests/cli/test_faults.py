@@ -12,10 +12,10 @@ import pytest
 from tests.cli.conftest import SHORT
 from tests.cli.test_interrupt import heed_interrupts
 
-from flexapod.cli import failures, options
-from flexapod.cli.failures import guarded
-from flexapod.review import room
-from flexapod.study import open_results, store
+from flexapod.analysis import open_results, store
+from flexapod.analysis.checks import resource_limits
+from flexapod.app.cli import failures, options
+from flexapod.app.cli.failures import guarded
 
 posix = pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
 
@@ -84,7 +84,7 @@ def test_a_pipe_and_a_device_as_files(flexapod, folder, study):
 @posix
 def test_names_that_are_not_utf8_are_refused_at_once(flexapod, study, monkeypatch):
     """Results once were computed and then lost, since neither NetCDF nor the report can hold such a name."""
-    monkeypatch.setattr("flexapod.study.run", lambda *_, **__: pytest.fail("computed"))
+    monkeypatch.setattr("flexapod.analysis.run", lambda *_, **__: pytest.fail("computed"))
     bad = os.fsdecode(b"b\xe9")
     file = study(*SHORT)
     os.symlink(file, f"{bad}.toml")
@@ -99,7 +99,7 @@ def test_names_that_are_not_utf8_are_refused_at_once(flexapod, study, monkeypatc
 
 
 def test_a_disk_too_small_is_told_before(flexapod, study, folder, monkeypatch):
-    monkeypatch.setattr(room, "free_disk", lambda folder: 1000.0)
+    monkeypatch.setattr(resource_limits, "free_disk", lambda folder: 1000.0)
     done = flexapod("run", study(*SHORT))
     assert done.exit_code == 2
     assert "more results than can be kept: 201 instants, 1.21 MB on the disk, where 0.001 MB is free" in done.stderr
@@ -114,7 +114,7 @@ def test_a_disk_that_fills_while_modes_are_written(flexapod, study, folder, monk
     def say(path, size):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("flexapod.results.netcdf.write", full)
+    monkeypatch.setattr("flexapod.analysis.netcdf.write", full)
     monkeypatch.setattr(store, "_fill", say)
     for arguments in (["modes", study(*SHORT), "--out", "m"], ["run", study(*SHORT), "--out", "m"]):
         done = flexapod(*arguments)
@@ -124,7 +124,7 @@ def test_a_disk_that_fills_while_modes_are_written(flexapod, study, folder, monk
 
 
 def test_a_page_of_verify_that_could_not_be_written_is_refused_first(flexapod, folder, monkeypatch):
-    monkeypatch.setattr("flexapod.verify.pack.verify", lambda *_, **__: pytest.fail("computed"))
+    monkeypatch.setattr("flexapod.verification.pack.verify", lambda *_, **__: pytest.fail("computed"))
     (folder / "file").touch()
     for key in ("--html", "--markdown"):
         done = flexapod("verify", key, "file/page")
@@ -136,8 +136,8 @@ def test_a_page_of_verify_that_could_not_be_written_is_refused_first(flexapod, f
 #: `flexapod run` in a process that gets a signal while results.nc is half written.
 WRITING = """
 import os, signal, sys
-from flexapod.cli import cli
-from flexapod.results import netcdf
+from flexapod.app.cli import cli
+from flexapod.analysis import netcdf
 
 whole = netcdf.write
 def half(data, path, **more):
@@ -168,13 +168,13 @@ def test_a_signal_while_results_are_written_leaves_nothing_half(study, folder, n
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 @pytest.mark.parametrize(
     ("module", "name"),
-    [("study.simulation", "Simulated.values"), ("study.store", "save_csv"), ("report.figures", "drawing")],
+    [("analysis.simulation", "Simulated.values"), ("analysis.store", "save_csv"), ("output.report.figures", "drawing")],
 )
 def test_a_signal_after_the_last_step_loses_nothing(study, folder, module, name):
     """The results were made and written once, and gone with a signal that came meanwhile."""
     *cls, function = name.split(".")
     code = (
-        f"import os, signal, sys\nfrom flexapod.cli import cli\nimport flexapod.{module} as owner\n"
+        f"import os, signal, sys\nfrom flexapod.app.cli import cli\nimport flexapod.{module} as owner\n"
         + "".join(f"owner = owner.{part}\n" for part in cls)
         + f"whole, count = owner.{function}, []\n"
         "def once(*a, **k):\n    count.append(1)\n    len(count) == 1 and os.kill(os.getpid(), signal.SIGTERM)\n"
@@ -193,7 +193,8 @@ def test_sigterm_keeps_what_was_computed(study, folder):
     changes = [('duration = "2 s" ', 'duration = "1000 s" '), ('hold = "1 s" ', 'hold = "999 s" ')]
     file = study(*changes, ("tolerance = 1e-4", 'step = "0.5 ms"\noutput_step = "10 ms"'))
     code = (
-        "import os, signal, sys\nfrom flexapod.results import record\nfrom flexapod.cli import cli\n"
+        "import os, signal, sys\nfrom flexapod.analysis.results import time_history as record\n"
+        "from flexapod.app.cli import cli\n"
         "kept = record.kept\ncount = []\n"
         "def some(*a):\n    count.append(1)\n    len(count) == 3 and os.kill(os.getpid(), signal.SIGTERM)\n"
         "    return kept(*a)\nrecord.kept = some\nsys.argv = ['flexapod', 'run', sys.argv[1]]\ncli.main()"
@@ -232,7 +233,7 @@ import os, signal, sys
 signal.signal(signal.SIGINT, signal.default_int_handler)
 from multiprocessing import popen_spawn_posix
 import distributed
-from flexapod.cli import cli
+from flexapod.app.cli import cli
 
 launch = popen_spawn_posix.Popen._launch
 def announce(self, process):

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from tests.sweeps import QUICK
 
-from flexapod.surveys.convergence import plan
+from flexapod.design.convergence import plan
 
 PICTURES = (".png", ".svg", ".pdf")
 SWEEP = """
@@ -60,7 +60,7 @@ def test_results_lie_beside_the_study_in_a_folder_of_their_own(flexapod, far, fo
 def test_no_figures(flexapod, far, folder, monkeypatch, command, options):
     (folder / "sweep.toml").write_text(SWEEP)
     monkeypatch.setattr(plan, "COUNTS", {"shapes": (1, 2), "elements": (1,), "segments": (1,)})
-    monkeypatch.setattr("flexapod.plot.save", lambda *_, **__: pytest.fail("drawn"))
+    monkeypatch.setattr("flexapod.output.figures.save", lambda *_, **__: pytest.fail("drawn"))
     result = flexapod(command, far, *options, "--no-figures", "--out", "out", "--json")
     assert result.exit_code == 0, result.stderr
     assert json.loads(result.stdout)["files"]

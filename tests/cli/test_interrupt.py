@@ -11,9 +11,9 @@ import time
 import pytest
 import typer
 
-from flexapod.cli import cli
-from flexapod.cli.failures import guarded
-from flexapod.study import open_results
+from flexapod.analysis import open_results
+from flexapod.app.cli import cli
+from flexapod.app.cli.failures import guarded
 
 LONG = [
     ('duration = "2 s" ', 'duration = "1000 s" '),
@@ -79,8 +79,8 @@ def test_interrupted_run_as_json(study, folder):
 #: The command in a process that sends itself SIGINT when the simulation is under way.
 PROGRAM = """
 import os, signal, sys
-from flexapod.cli import cli
-from flexapod.document import terminal
+from flexapod.app.cli import cli
+from flexapod.output.text import terminal
 from contextlib import contextmanager
 
 calls = []

@@ -9,14 +9,14 @@ import pytest
 from tests.cli.conftest import SHORT
 from tests.started import none_left, started_by
 
-from flexapod.runtime import files
+from flexapod.common import files
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are found in /proc")
 #: A command that says when it is at a certain place, and stays there.
 STAYING = """
 import sys, time
 from pathlib import Path
-from flexapod.cli import cli
+from flexapod.app.cli import cli
 
 def stay(*_, **__):
     print("<here>", flush=True)
@@ -56,7 +56,7 @@ def unfinished(folder):
 def test_a_run_that_is_killed_while_it_draws(study, folder):
     """A copy that draws slept for ever in its pipe, 210 MB each."""
     file = study(*SHORT)
-    place = "from flexapod.cli import options\noptions.PROCESSES, options.MANY = 3, 0\noptions.write_data = stay"
+    place = "from flexapod.app.cli import options\noptions.PROCESSES, options.MANY = 3, 0\noptions.write_data = stay"
     killed(place, "run", file, "--quiet", others=2)
 
 
@@ -68,7 +68,7 @@ def test_what_a_killed_command_left_is_removed_by_the_next(command, study, folde
         "new": ("new", "other.toml", "--force"),
         "modes": ("modes", file, "--out", "modes"),
     }[command]
-    killed("from flexapod.runtime import files\nfiles._settle = stay", *arguments)
+    killed("from flexapod.common import files\nfiles._settle = stay", *arguments)
     assert len(unfinished(folder)) == 1
     assert flexapod(*arguments).exit_code == 0
     assert unfinished(folder) == []
@@ -93,6 +93,6 @@ def test_a_compiler_that_works_for_a_command_that_is_killed(study, folder, flexa
 def test_a_sweep_that_is_killed_while_its_workers_compute(study, folder):
     plan = Path("plan.toml")
     plan.write_text('[[vary]]\nkey = "payload.mass"\nstart = "90 kg"\nstop = "120 kg"\ncount = 4000\n')
-    place = "from flexapod.surveys.sweeps import executors\nexecutors.DaskExecutor.result = stay"
+    place = "from flexapod.design.sweeps import executors\nexecutors.DaskExecutor.result = stay"
     environment = {"FLEXAPOD_CACHE": os.environ.get("FLEXAPOD_CACHE", "")}
     killed(place, "sweep", study(*SHORT), plan, "--workers", 2, "--quiet", others=3, **environment)

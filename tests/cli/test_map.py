@@ -4,9 +4,9 @@ import json
 
 import pytest
 
-from flexapod.review import room
-from flexapod.study import open_results
-from flexapod.surveys.workspace.findings import SCALARS
+from flexapod.analysis import open_results
+from flexapod.analysis.checks import resource_limits
+from flexapod.design.maps.findings import SCALARS
 
 LUMPED = ('fidelity = "assumed-modes"', 'fidelity = "lumped"')
 
@@ -88,7 +88,7 @@ def test_an_actuator_has_no_map(flexapod, study):
 
 
 def test_stopped_by_the_user_nothing_is_half_written(flexapod, study, folder, monkeypatch):
-    import flexapod.surveys.workspace.maps as workspace
+    import flexapod.design.maps.maps as workspace
 
     def stop(*_):
         raise KeyboardInterrupt
@@ -101,7 +101,7 @@ def test_stopped_by_the_user_nothing_is_half_written(flexapod, study, folder, mo
 
 
 def test_a_map_beyond_the_disk_is_refused_before_it_is_computed(flexapod, study, folder, monkeypatch):
-    monkeypatch.setattr(room, "free_disk", lambda folder: 1.5e8)
+    monkeypatch.setattr(resource_limits, "free_disk", lambda folder: 1.5e8)
     axes = ["--x", "surge=-1..1mm:100", "--y", "sway=-1..1mm:100", "--z", "heave=-1..1mm:100"]
     done = flexapod("map", study(LUMPED), *axes, "--out", "m")
     assert done.exit_code == 2

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-EXAMPLES = Path(__file__).parents[2] / "src" / "flexapod" / "_examples"
+EXAMPLES = Path(__file__).parents[2] / "src" / "flexapod" / "examples/gallery"
 
 
 def test_an_example_is_the_file_of_the_gallery(flexapod, folder):

@@ -9,7 +9,7 @@ import pytest
 import typer
 from tests.cli.conftest import SHORT
 
-from flexapod.cli.cli import program
+from flexapod.app.cli.cli import program
 
 #: What an option says in SI, in units, and in a unit of something else; more words that the command needs.
 QUANTITIES = {

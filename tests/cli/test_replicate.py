@@ -7,11 +7,11 @@ from html.parser import HTMLParser
 import pytest
 from tests.paper_parts import at_hand, study_parts, whole_study
 
-from flexapod.errors import InputError
-from flexapod.paper import outputs as app_replicate
-from flexapod.paper import study as paper
-from flexapod.paper.outputs import replicate
-from flexapod.study import open_results
+from flexapod.analysis import open_results
+from flexapod.common.errors import InputError
+from flexapod.verification.paper import outputs as app_replicate
+from flexapod.verification.paper import study as paper
+from flexapod.verification.paper.outputs import replicate
 
 pytestmark = pytest.mark.xdist_group("claims")  # one process computes the parts
 ANGLES = (10.0, 29.0)

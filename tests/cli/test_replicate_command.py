@@ -5,7 +5,7 @@ import json
 import pytest
 from tests.paper_parts import whole_study
 
-from flexapod.errors import ComputationError
+from flexapod.common.errors import ComputationError
 
 pytestmark = pytest.mark.xdist_group("claims")  # one process computes the parts
 ANGLES = (10.0, 29.0)
@@ -18,7 +18,7 @@ def replaced(monkeypatch, action):
         (folder / "report.html").write_text("page")
         return action()
 
-    monkeypatch.setattr("flexapod.paper.outputs.replicate", repeat)
+    monkeypatch.setattr("flexapod.verification.paper.outputs.replicate", repeat)
 
 
 def test_answer_and_claims(flexapod, folder, monkeypatch):

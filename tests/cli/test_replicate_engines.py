@@ -12,14 +12,14 @@ import pytest
 from tests.paper_parts import at_hand
 
 from flexapod import model
-from flexapod.errors import ComputationError
-from flexapod.paper import engines
-from flexapod.paper import figures as paper_figures
-from flexapod.paper.outputs import replicate
-from flexapod.paper.report import paper_page
-from flexapod.paper.study import PaperStudy
-from flexapod.study import modes, simulate, simulate_actuator
-from flexapod.verify.engines.engine import EXUDYN
+from flexapod.analysis import modes, simulate, simulate_actuator
+from flexapod.common.errors import ComputationError
+from flexapod.verification.engines.engine import EXUDYN
+from flexapod.verification.paper import engines
+from flexapod.verification.paper import figures as paper_figures
+from flexapod.verification.paper.outputs import replicate
+from flexapod.verification.paper.report import paper_page
+from flexapod.verification.paper.study import PaperStudy
 
 ASKED = {
     "engine": "Exudyn", "engine_version": "1.2.3", "elements": [30, 60], "guide": [0.01, 0.005], "step": 2.5e-4,
@@ -46,7 +46,7 @@ def parts():
 def few(monkeypatch):
     """No claims, and only the figures of the engine."""
     for module in ("claims", "outputs"):
-        monkeypatch.setattr(f"flexapod.paper.{module}.claims", lambda _: [])
+        monkeypatch.setattr(f"flexapod.verification.paper.{module}.claims", lambda _: [])
     for name in ("_actuator", "_robot", "_outlook", "_variants"):
         monkeypatch.setattr(paper_figures, name, lambda _: [])
 
@@ -58,7 +58,7 @@ def replaced(monkeypatch, result):
         (folder / "report.html").write_text("page")
         return result
 
-    monkeypatch.setattr("flexapod.paper.outputs.replicate", repeat)
+    monkeypatch.setattr("flexapod.verification.paper.outputs.replicate", repeat)
 
 
 def test_answer(flexapod, few, parts, monkeypatch):
@@ -89,7 +89,7 @@ def test_engine_that_fails_is_told_when_all_else_is_written(flexapod, few, parts
 
 
 def test_report_names_engine_version_settings_and_how_to_repeat(few, parts, tmp_path, monkeypatch):
-    monkeypatch.setattr("flexapod.paper.outputs.compute", at_hand(PaperStudy(parts=parts)))
+    monkeypatch.setattr("flexapod.verification.paper.outputs.compute", at_hand(PaperStudy(parts=parts)))
     replicate(tmp_path)
     for name in ("engine-forces-rigid", "engine-forces-flexible", "engine-com-path"):
         assert (tmp_path / "figures" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
@@ -129,8 +129,8 @@ def test_absent_engine_is_refused_before_anything_is_touched(flexapod, folder, m
 PROGRAM = """
 import os, signal, subprocess, sys
 from contextlib import contextmanager
-from flexapod.cli import cli, commands_proof
-from flexapod.paper import study
+from flexapod.app.cli import cli, commands_proof
+from flexapod.verification.paper import study
 
 started, told = [], []
 class Popen(subprocess.Popen):

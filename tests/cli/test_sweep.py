@@ -13,8 +13,9 @@ import pytest
 from tests.sweeps import quick, quick_text, start
 
 import flexapod as fx
-from flexapod.surveys.sweeps import batch, open_sweep
-from flexapod.surveys.sweeps.batch import compute_batch
+from flexapod.design.sweeps import open_sweep
+from flexapod.design.sweeps import worker as batch
+from flexapod.design.sweeps.worker import compute_batch
 
 POSIX = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
 SWEEP = """
@@ -63,7 +64,7 @@ def test_what_it_prints_and_writes(flexapod, files, folder):
 def test_without_arrays_of_dask(files, folder):
     """To look for them xarray would import them, scipy's transforms and sparse matrices with them: a second."""
     seen = "print([m for m in ('dask.array', 'scipy.fft', 'scipy.sparse') if sys.modules.get(m)])"
-    code = f"import sys\nfrom flexapod.cli.cli import main\ntry:\n    main()\nfinally:\n    {seen}"
+    code = f"import sys\nfrom flexapod.app.cli.cli import main\ntry:\n    main()\nfinally:\n    {seen}"
     process = start("-c", code, "sweep", *files(), "--workers", "0", "--json", cwd=folder)
     out, err = process.communicate(timeout=300)
     assert process.returncode == 0, err
@@ -162,8 +163,8 @@ def test_interrupt(flexapod, files, folder, monkeypatch, form):
 #: The command with points that take 30 ms, however fast the processor is.
 SLOW = """
 import signal, sys
-from flexapod.cli import cli
-from flexapod.surveys.sweeps import batch
+from flexapod.app.cli import cli
+from flexapod.design.sweeps import worker as batch
 from tests.sweeps import slow
 
 signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 from tests.pack_outcomes import outcome
 
-from flexapod.errors import ComputationError
+from flexapod.common.errors import ComputationError
 from flexapod.solve.kernel import kernel
-from flexapod.verify import pack
-from flexapod.verify.case import Case, Check, checks
-from flexapod.verify.cases import CASES
-from flexapod.verify.engines.engine import CALCULIX, EXUDYN, MUJOCO, Engine
-from flexapod.verify.page import markdown, notes
+from flexapod.verification import pack
+from flexapod.verification.case import Case, Check, checks
+from flexapod.verification.cases import CASES
+from flexapod.verification.engines.engine import CALCULIX, EXUDYN, MUJOCO, Engine
+from flexapod.verification.page import markdown, notes
 
 PAGE = (Path(__file__).parents[2] / "docs" / "verification.md").read_text(encoding="utf-8")
 ROWS = {row[0]: row for line in PAGE.splitlines() if len(row := line.strip("| ").split(" | ")) == 6}
@@ -38,7 +38,7 @@ def compiled_as_called(name, monkeypatch):
     """Kernels of a case that has a few calls of them are not optimised."""
     few = any(case.name == name and subject(case) in MATRICES for case in FAST)
     if few:
-        monkeypatch.setattr("flexapod.symbolic.compiler.FLAGS", ("-O0",))
+        monkeypatch.setattr("flexapod.mechanics.symbolic.compiler.FLAGS", ("-O0",))
     yield
     if few:
         kernel.cache_clear()

@@ -5,7 +5,7 @@ import json
 import pytest
 from tests.cli.conftest import SHORT
 
-from flexapod.study import open_results
+from flexapod.analysis import open_results
 
 FLOOR = '\n[disturbance]\nfloor = "VC-A"\n'
 

@@ -17,13 +17,13 @@ from tests.cli.test_interrupt import heed_interrupts
 from tests.web.guests import guest, until
 
 import flexapod as fx
-from flexapod.errors import InputError
-from flexapod.page import network
-from flexapod.page.logs import CONNECTIONS
-from flexapod.page.network import address, free_port, is_local
-from flexapod.page.opening import open_source
-from flexapod.results.attributes import TABLES
-from flexapod.study import save
+from flexapod.analysis import save
+from flexapod.analysis.results.attributes import TABLES
+from flexapod.app.browser import network
+from flexapod.app.browser.logs import CONNECTIONS
+from flexapod.app.browser.network import address, free_port, is_local
+from flexapod.app.browser.opening import open_source
+from flexapod.common.errors import InputError
 
 
 def refused(result) -> str:
@@ -59,7 +59,7 @@ def test_a_missing_package_is_named_with_the_line_that_installs_it(flexapod, stu
 def test_other_commands_do_without_the_page_and_the_engines(study, command):
     """In a process of its own, where none of their packages can be imported."""
     absent = ("msgspec", "tomlkit", "viser", "websockets", "exudyn", "mujoco")
-    code = f"import sys; sys.modules.update(dict.fromkeys({absent})); from flexapod.cli.cli import main; main()"
+    code = f"import sys; sys.modules.update(dict.fromkeys({absent})); from flexapod.app.cli.cli import main; main()"
     words = [command, str(study())] if command == "check" else [command, "leg"]
     run = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr

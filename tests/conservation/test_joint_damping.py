@@ -9,13 +9,13 @@ from tests.mechanisms import built, leg
 from tests.runs import balance, collect
 
 import flexapod as fx
-from flexapod.elements.flexure import Flexures
-from flexapod.kinematics.limbs import limbs
+from flexapod.kinematics.leg_geometry import limbs
+from flexapod.mechanics.elements.flexure import Flexures
 from flexapod.model import AxisMotion, Joint, Payload, Simulation, loads, override, preset, preset_text, to_toml
-from flexapod.model.cylinder import Cylinder
-from flexapod.model.piston import Piston
+from flexapod.model.leg.cylinder import Cylinder
+from flexapod.model.leg.piston import Piston
 from flexapod.solve import parameters
-from flexapod.solve.modal.loss_factor import loss_frequency, loss_words
+from flexapod.solve.modal.structural_damping import loss_frequency, loss_words
 from flexapod.solve.time.robot_march import prepare
 
 LENGTH, STIFF = 0.5, 300.0

@@ -6,7 +6,7 @@ from tests.moving import KINDS, SOFT, moving
 from tests.runs import balance, run_robot, with_legs
 
 from flexapod.model import override
-from flexapod.model.joint import Joint
+from flexapod.model.leg.joint import Joint
 from flexapod.solve.time.robot_march import prepare
 
 #: Stiffness of a flexure in the axes of its leg [N/m, N, N m/rad].

@@ -10,15 +10,15 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod import kinematics
-from flexapod.errors import ComputationError, InputError
+from flexapod.analysis.checks.estimates import buckling_load
+from flexapod.analysis.pose_errors.backlash import half_play
+from flexapod.analysis.pose_errors.bent_legs import bent
+from flexapod.analysis.pose_errors.rows import rows
+from flexapod.analysis.pose_errors.sensitivity import sensitivity
+from flexapod.analysis.pose_errors.tolerances import spreading
+from flexapod.analysis.results.rigid_path import RigidPath
+from flexapod.common.errors import ComputationError, InputError
 from flexapod.model import Geometry, Gradient, Heat, Joint, LengthSpread, RatioSpread, Tolerances
-from flexapod.pose_errors.imperfect import bent
-from flexapod.pose_errors.play import half_play
-from flexapod.pose_errors.rows import rows
-from flexapod.pose_errors.sensitivity import sensitivity
-from flexapod.pose_errors.spread import spreading
-from flexapod.results.path import RigidPath
-from flexapod.review.estimates import buckling_load
 
 POSE = {"surge": 0.02, "heave": 0.03, "roll": 0.1, "yaw": -0.15}
 ROBOTS = {

@@ -8,8 +8,8 @@ from tests.mechanisms import hexapod
 
 import flexapod as fx
 from flexapod.model import MATERIALS
-from flexapod.model.material import Tube
-from flexapod.model.piston import Piston
+from flexapod.model.leg.material import Tube
+from flexapod.model.leg.piston import Piston
 
 STEEL = MATERIALS["steel"]
 ROUND = Piston.round(length=0.75, section=Tube(diameter=0.04, inner_diameter=0.02), material=STEEL)

@@ -7,10 +7,10 @@ from tests.machines import machine, study
 from tests.runs import run_robot
 
 import flexapod as fx
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 from flexapod.kinematics import base_law, base_placed
 from flexapod.model import Initial, ServoDrive, loads, preset_text
-from flexapod.model.mount import BaseMotion, Mount
+from flexapod.model.study.mount import BaseMotion, Mount
 
 A = np.array([0.7, -0.4, 1.1])
 MOUNT = Mount(at=[0, 0, -0.1], stiffness=np.diag([3e8, 2e8, 5e8, 3e7, 2e7, 4e7]), mass=150.0, inertia=np.eye(3) * 8,

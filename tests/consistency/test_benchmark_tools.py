@@ -11,9 +11,9 @@ from benchmarks.side_by_side import _with_this
 from benchmarks.tolerances import cases
 
 from flexapod.model import AxisMotion, override
-from flexapod.verify.engines.exudyn_integration import Integration
-from flexapod.verify.engines.exudyn_process import ask
-from flexapod.verify.engines.exudyn_robot import RobotProblem, simulate_robot
+from flexapod.verification.engines.exudyn_integration import Integration
+from flexapod.verification.engines.exudyn_process import ask
+from flexapod.verification.engines.exudyn_robot import RobotProblem, simulate_robot
 
 
 def test_independent_coordinates_give_the_motion_of_the_time_loop():

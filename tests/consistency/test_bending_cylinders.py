@@ -10,9 +10,9 @@ from tests.oracles.two_beams import TwoBeams
 from tests.stepped import function, vector
 
 from flexapod import kinematics
-from flexapod.bases import axial_basis
+from flexapod.mechanics.shapes import axial_basis
 from flexapod.model import MATERIALS, Cylinder, Guide, Mounted, Piston, PistonSection, Simulation
-from flexapod.model.material import Tube
+from flexapod.model.leg.material import Tube
 from flexapod.solve.shapes import robot_shapes
 from flexapod.solve.statics.buckling import leg_loads
 

@@ -6,7 +6,7 @@ from tests.mechanisms import planar
 from tests.stepped import section
 
 import flexapod as fx
-from flexapod.description.robot import describe
+from flexapod.analysis.description.robot_description import describe
 from flexapod.model import AxisMotion, ConstantWrench, Guide, Load, Piston, Simulation, StepWrench, Study
 from flexapod.solve.kernel import kernel
 

@@ -7,10 +7,10 @@ from tests.machines import SCREW, SOFT, machine, study, symmetric
 from tests.runs import paper_robot
 
 import flexapod as fx
-from flexapod.error_budget.rules import Budget
-from flexapod.errors import InputError
+from flexapod.analysis.error_budget.rules import Budget
+from flexapod.analysis.pose_errors.rows import ErrorRow
+from flexapod.common.errors import InputError
 from flexapod.model import AxisMotion, Geometry, Heat, Joint, Nut, PrescribedDrive, ServoDrive, Tolerances
-from flexapod.pose_errors.rows import ErrorRow
 
 SERVO = ServoDrive(stiffness=2e7, damping=2e4)
 OFFSETS = Geometry(leg_offset=[2e-5, 0, 0, -1e-5, 0, 0], lead=3e-5)

@@ -7,8 +7,8 @@ from tests.runs import paper_robot
 
 import flexapod as fx
 from flexapod import kinematics
-from flexapod.errors import ComputationError, InputError
-from flexapod.kinematics.built import built_parts
+from flexapod.common.errors import ComputationError, InputError
+from flexapod.kinematics.as_built import built_parts
 from flexapod.model import MATERIALS, Expansion, Geometry, Heat
 from flexapod.solve.time.robot_march import prepare
 

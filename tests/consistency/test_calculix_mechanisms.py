@@ -5,10 +5,10 @@ import pytest
 from tests.mechanisms import ROBOTS
 
 import flexapod as fx
-from flexapod.exchange.export import abaqus_deck
 from flexapod.model import AxialSpring
-from flexapod.verify.engines import calculix
-from flexapod.verify.engines.engine import CALCULIX
+from flexapod.output.exchange.export import abaqus_deck
+from flexapod.verification.engines import calculix
+from flexapod.verification.engines.engine import CALCULIX
 
 pytestmark = pytest.mark.skipif(not CALCULIX.found(), reason="needs CalculiX")
 

@@ -6,7 +6,7 @@ import time
 import pytest
 
 from flexapod import ComputationError
-from flexapod.verify.engines import calculix
+from flexapod.verification.engines import calculix
 
 TABLE = """
      E I G E N V A L U E   O U T P U T

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from flexapod import kinematics, modes
-from flexapod.exchange.export import abaqus_deck
+from flexapod.analysis.results.arguments import as_pose
 from flexapod.model import Study, preset
-from flexapod.results.arguments import as_pose
-from flexapod.verify.engines import calculix
-from flexapod.verify.engines.engine import CALCULIX
+from flexapod.output.exchange.export import abaqus_deck
+from flexapod.verification.engines import calculix
+from flexapod.verification.engines.engine import CALCULIX
 
 POSE = (0.35, 0.1, -0.05, 0.0, 0.0, 0.3)
 

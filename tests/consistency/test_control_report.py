@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import flexapod as fx
+from flexapod.analysis.predicted_damping import predicted_damping
 from flexapod.model import preset_text
-from flexapod.report.page import robot_report
-from flexapod.study.predicted import predicted_damping
+from flexapod.output.report.report import robot_report
 
 MORE = '\n[disturbance]\nfloor = "VC-C"\n\n[control]\nlaw = "iff"\ngain = 200\nsample = "0.1 ms"\n'
 

@@ -7,9 +7,9 @@ import pytest
 
 import flexapod as fx
 import flexapod.control as fc
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 from flexapod.model import Disturbance
-from flexapod.model.disturbance import Floor, Spectrum
+from flexapod.model.study.disturbance import Floor, Spectrum
 from flexapod.solve.linear.random_vibration import random_vibration, sources_of
 from flexapod.solve.linear.robot import LinearRobot
 
@@ -174,7 +174,7 @@ def test_python_control_has_the_same_system():
 def test_without_python_control_words_say_what_to_install(monkeypatch):
     import sys
 
-    from flexapod.errors import ComputationError
+    from flexapod.common.errors import ComputationError
 
     monkeypatch.setitem(sys.modules, "control", None)
     with pytest.raises(ComputationError, match="pip install"):

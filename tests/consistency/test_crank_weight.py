@@ -11,10 +11,10 @@ from tests.moving import moving
 from tests.runs import balance, collect
 
 import flexapod as fx
-from flexapod.elements.carriage import carriage
-from flexapod.elements.frame import Frame
-from flexapod.model.joint import Carriage
-from flexapod.solve.statics.released import rigid_forces
+from flexapod.mechanics.elements.frames import Frame
+from flexapod.mechanics.leg.joints import carriage
+from flexapod.model.leg.joint import Carriage
+from flexapod.solve.statics.ideal_robot import rigid_forces
 from flexapod.solve.time.robot_march import prepare
 
 MASS, COM = 4.0, 0.05

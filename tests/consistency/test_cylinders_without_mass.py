@@ -8,7 +8,7 @@ from tests.machines import BODY, SCREW, SOFT, machine, study
 import flexapod as fx
 from flexapod.kinematics import home_pose
 from flexapod.model import Loop, ServoDrive
-from flexapod.model.joint import Joint
+from flexapod.model.leg.joint import Joint
 
 NONE = BODY.replace(mass=0.0, com=0.0, inertia=0.0, axial_inertia=0.0)
 SERVO, ALONG, ACROSS = 3e7, 2e8, 1e13  # N/m: drive, base joint along the leg, and across it as good as ideal

@@ -9,11 +9,11 @@ from tests.runs import with_legs
 
 import flexapod as fx
 from flexapod import kinematics
-from flexapod.elements.clearance import Clearance
-from flexapod.elements.encoder import Resolution
-from flexapod.elements.flexure import Flexures
-from flexapod.elements.known import OURS
-from flexapod.elements.turning_nut import TurningNut
+from flexapod.mechanics.elements.clearance import Clearance
+from flexapod.mechanics.elements.encoder import Resolution
+from flexapod.mechanics.elements.flexure import Flexures
+from flexapod.mechanics.elements.registry import OURS
+from flexapod.mechanics.elements.turning_nut import TurningNut
 from flexapod.model import (
     MATERIALS,
     Guide,

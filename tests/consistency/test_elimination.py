@@ -8,13 +8,13 @@ import pytest
 from tests.runs import paper_robot, with_legs
 
 from flexapod import kinematics
-from flexapod.mechanics.layout import columns, leg_parameters
+from flexapod.mechanics.leg.layout import columns, leg_parameters
 from flexapod.model import ForceDrive, PrescribedDrive, ServoDrive, override, preset
 from flexapod.solve.time import interpreted, native
 from flexapod.solve.time.actuator_march import prepare_actuator
+from flexapod.solve.time.command_tables import robot_law
 from flexapod.solve.time.recording import Counters
 from flexapod.solve.time.robot_march import prepare
-from flexapod.solve.time.tables import robot_law
 
 DRIVES = {
     "prescribed": PrescribedDrive(),
@@ -91,7 +91,7 @@ def test_legs_whose_matrix_is_not_positive_seek_pivots():
 
 
 def replace_method(study):
-    from flexapod.integration import GeneralizedAlpha
+    from flexapod.common.generalized_alpha import GeneralizedAlpha
 
     return GeneralizedAlpha(study.simulation.rho_inf)
 

@@ -7,10 +7,10 @@ import pytest
 from tests.fmi_importer import Instance, Unit
 
 import flexapod as fx
-from flexapod.design import first_robot, parse_request
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
+from flexapod.design.first_robot import first_robot, parse_request
+from flexapod.mechanics.symbolic.compiler import compiler
 from flexapod.model import preset_text
-from flexapod.symbolic.compiler import compiler
 
 pytestmark = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
 STEP = 5e-4

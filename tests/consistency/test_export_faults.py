@@ -11,7 +11,7 @@ from tests.fmi_importer import Instance, Unit
 from tests.robot_c import compiled
 
 import flexapod as fx
-from flexapod.symbolic.compiler import compiler
+from flexapod.mechanics.symbolic.compiler import compiler
 
 pytestmark = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
 STEP = 5e-4

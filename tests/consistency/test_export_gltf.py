@@ -13,11 +13,11 @@ from tests.readers import GlbReader, z_up
 from tests.stepped import section
 
 import flexapod as fx
+from flexapod.analysis.results.variables import VARIABLES
 from flexapod.kinematics.rotations import exponential, matrix
 from flexapod.model import CsvMotion, Guide, Piston, override
-from flexapod.results.names import VARIABLES
-from flexapod.scene.colours import LEG_COLORS
-from flexapod.scene.geometry import RobotMotion
+from flexapod.output.scene.colours import LEG_COLORS
+from flexapod.output.scene.geometry import RobotMotion
 
 SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 SIDES, STATIONS = 16, 25

@@ -6,8 +6,8 @@ import xarray as xr
 from scipy.io import loadmat
 
 import flexapod as fx
-from flexapod.exchange.uff import uff
 from flexapod.model import override
+from flexapod.output.exchange.uff import uff
 
 STUDY = override(fx.preset("tripod"), modes=1)
 CHANNELS = {"inputs": ["wrench", "command"], "outputs": ["tool", "stroke:2"]}

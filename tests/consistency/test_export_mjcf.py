@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import flexapod as fx
+from flexapod.analysis.results.variables import VARIABLES
 from flexapod.kinematics import poses, rigid_limbs
 from flexapod.model import (
     AxisMotion,
@@ -21,10 +22,9 @@ from flexapod.model import (
     ServoDrive,
     override,
 )  # fmt: skip
-from flexapod.model.joint import Joint
-from flexapod.results.names import VARIABLES
-from flexapod.verify.engines import mujoco_forces
-from flexapod.verify.engines.mujoco_rest import AtRest
+from flexapod.model.leg.joint import Joint
+from flexapod.verification.engines import mujoco_forces
+from flexapod.verification.engines.mujoco_rest import AtRest
 
 mujoco = pytest.importorskip("mujoco")
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import flexapod as fx
-from flexapod.exchange.formats import FORMATS
 from flexapod.model import override, preset_text
+from flexapod.output.exchange.formats import FORMATS
 
 FOLDER = "a-private-folder-of-somebody"
 USER, MACHINE = "somebody-private", "a-private-machine"

@@ -8,9 +8,9 @@ import pytest
 from tests.readers import VtuReader
 
 import flexapod as fx
+from flexapod.analysis.results.variables import VARIABLES
 from flexapod.kinematics.rotations import matrix
 from flexapod.model import override
-from flexapod.results.names import VARIABLES
 
 SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 LINE, TRIANGLE, STATIONS = 4, 5, 25

@@ -8,9 +8,9 @@ import pytest
 from tests.robot_c import STRICT
 
 import flexapod as fx
-from flexapod.exchange.c_source import FLAGS
+from flexapod.mechanics.symbolic.compiler import compiler
 from flexapod.model import PRESETS, ActuatorStudy
-from flexapod.symbolic.compiler import compiler
+from flexapod.output.exchange.c_source import FLAGS
 
 pytestmark = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
 SAMPLES = {path.stem: path for path in sorted((Path(__file__).parents[2] / "examples" / "mechanisms").glob("*.toml"))}

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from flexapod import model
-from flexapod.errors import InputError
-from flexapod.study.actuator import simulate_actuator
-from flexapod.verify.engines.engine import EXUDYN
-from flexapod.verify.engines.exudyn_actuator import simulate_actuator as exudyn_actuator
-from flexapod.verify.engines.exudyn_integration import Integration, extrapolated
+from flexapod.analysis.actuator import simulate_actuator
+from flexapod.common.errors import InputError
+from flexapod.verification.engines.engine import EXUDYN
+from flexapod.verification.engines.exudyn_actuator import simulate_actuator as exudyn_actuator
+from flexapod.verification.engines.exudyn_integration import Integration, extrapolated
 
 pytestmark = pytest.mark.skipif(not EXUDYN.found(), reason="needs Exudyn")
 

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from flexapod import model
-from flexapod.errors import InputError
-from flexapod.model.joint import Joint
-from flexapod.model.spring import AxialSpring
-from flexapod.study.simulation import simulate
-from flexapod.verify.cases.exudyn_parts import LOOP, MOTION, damped
-from flexapod.verify.engines.engine import EXUDYN
-from flexapod.verify.engines.exudyn_integration import Integration
-from flexapod.verify.engines.exudyn_robot import simulate_robot
+from flexapod.analysis.simulation import simulate
+from flexapod.common.errors import InputError
+from flexapod.model.leg.joint import Joint
+from flexapod.model.leg.spring import AxialSpring
+from flexapod.verification.cases.exudyn_parts import LOOP, MOTION, damped
+from flexapod.verification.engines.engine import EXUDYN
+from flexapod.verification.engines.exudyn_integration import Integration
+from flexapod.verification.engines.exudyn_robot import simulate_robot
 
 pytestmark = pytest.mark.skipif(not EXUDYN.found(), reason="needs Exudyn")
 

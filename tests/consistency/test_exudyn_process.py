@@ -9,12 +9,12 @@ from dataclasses import replace
 import pytest
 
 from flexapod import model
-from flexapod.errors import ComputationError
-from flexapod.verify.engines import exudyn_process, exudyn_robot
-from flexapod.verify.engines.engine import EXUDYN
-from flexapod.verify.engines.exudyn_integration import Integration
-from flexapod.verify.engines.exudyn_process import ask
-from flexapod.verify.engines.exudyn_robot import simulate_robot
+from flexapod.common.errors import ComputationError
+from flexapod.verification.engines import exudyn_process, exudyn_robot
+from flexapod.verification.engines.engine import EXUDYN
+from flexapod.verification.engines.exudyn_integration import Integration
+from flexapod.verification.engines.exudyn_process import ask
+from flexapod.verification.engines.exudyn_robot import simulate_robot
 
 ROLL = model.AxisMotion(type="roll", amplitude=0.05, duration=0.1)
 
@@ -60,7 +60,8 @@ class TestPresent:
 
 def test_our_own_process_does_not_import_it():
     modules = ", ".join(
-        f"flexapod.verify.engines.exudyn_{name}" for name in ("robot", "actuator", "builder", "process", "integration")
+        f"flexapod.verification.engines.exudyn_{name}"
+        for name in ("robot", "actuator", "builder", "process", "integration")
     )
     code = f"import sys, {modules}; sys.exit('exudyn' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from flexapod import kinematics, model
-from flexapod.errors import InputError
-from flexapod.study.simulation import simulate
-from flexapod.verify.engines.engine import EXUDYN
-from flexapod.verify.engines.exudyn_integration import Integration, extrapolated
-from flexapod.verify.engines.exudyn_robot import simulate_robot
+from flexapod.analysis.simulation import simulate
+from flexapod.common.errors import InputError
+from flexapod.verification.engines.engine import EXUDYN
+from flexapod.verification.engines.exudyn_integration import Integration, extrapolated
+from flexapod.verification.engines.exudyn_robot import simulate_robot
 
 pytestmark = pytest.mark.skipif(not EXUDYN.found(), reason="needs Exudyn")
 

@@ -10,14 +10,14 @@ from tests.mechanisms import ROBOTS
 from tests.moving import moving
 
 from flexapod import kinematics
-from flexapod.errors import ComputationError
+from flexapod.common.errors import ComputationError
 from flexapod.kinematics.closures import Closed, Task, close, gaps
-from flexapod.kinematics.limbs import COORDINATES, limbs
+from flexapod.kinematics.leg_geometry import COORDINATES, limbs
 from flexapod.kinematics.screws import screws
 from flexapod.solve.batch import RestStates
 from flexapod.solve.rigid_motion import rigid_state
 from flexapod.solve.robot_system import robot_system
-from flexapod.solve.statics.branch import fallen, refuse_fallen
+from flexapod.solve.statics.assembly_mode import fallen, refuse_fallen
 from flexapod.solve.time.robot_march import _Range, prepare
 
 SPIN, GAMMA3 = COORDINATES.index("spin"), COORDINATES.index("gamma3")

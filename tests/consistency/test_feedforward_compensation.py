@@ -9,11 +9,11 @@ from scipy.spatial.transform import Rotation
 from typer.testing import CliRunner
 
 import flexapod as fx
-from flexapod.cli.cli import app
-from flexapod.feedforward.elastic_path import elastic_compensation
+from flexapod.analysis import check_path
+from flexapod.app.cli.cli import app
+from flexapod.commissioning.feedforward.elastic_path import elastic_compensation
 from flexapod.kinematics import coordinates, poses
-from flexapod.model.files import preset_text
-from flexapod.study import check_path
+from flexapod.model.file.files import preset_text
 
 SIX = ("paper-robot", "paper-robot-radii", "flight-simulator", "machine-hexapod", "small-hexapod", "nano-hexapod")
 INSTANTS = (0.0, 0.31, 0.5, 0.82, 1.0)  # of the motion's duration; none of them a Chebyshev point but the ends

@@ -4,7 +4,7 @@ import numpy as np
 from tests.analytic.test_feedforward_vibration import AFTER, MOVING, turning
 
 import flexapod as fx
-from flexapod.feedforward.vibration import vibration_along
+from flexapod.commissioning.feedforward.modal_path import vibration_along
 
 
 def test_legs_with_mass_shake_the_tool_as_the_march_in_time_says() -> None:

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 import flexapod as fx
-from flexapod.feedforward.shaping import shaping
+from flexapod.commissioning.feedforward.shaping import shaping
 from flexapod.kinematics import coordinates, poses
 
 # of the unshaped residual: the largest difference that the task allows between linear model and march

@@ -14,14 +14,14 @@ import pytest
 from tests.fmi_importer import Instance, Unit
 
 import flexapod as fx
-from flexapod.errors import InputError
-from flexapod.exchange.c_source import FLAGS
-from flexapod.exchange.fmu import UNITS
+from flexapod.common.errors import InputError
+from flexapod.mechanics.symbolic.compiler import compiler
 from flexapod.model import override
+from flexapod.output.exchange.c_source import FLAGS
+from flexapod.output.exchange.fmu import UNITS
 from flexapod.solve.time import native
 from flexapod.solve.time.recording import Counters, unpack
 from flexapod.solve.time.robot_march import prepare
-from flexapod.symbolic.compiler import compiler
 
 pytestmark = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
 STEP = 5e-4

@@ -15,24 +15,24 @@ from tests.runs import balance, run_robot
 
 import flexapod as fx
 from flexapod import kinematics
-from flexapod.bases import lateral_basis
-from flexapod.elements.element import Standing
-from flexapod.elements.friction import BaseFriction, DriveFriction, PlatformFriction, rubbing, turning
-from flexapod.elements.slot import Slot
-from flexapod.elements.springs import springs_along
-from flexapod.error_budget.sentences import part_words
+from flexapod.analysis.checks.sliding import steady_friction
+from flexapod.analysis.error_budget.text import part_words
 from flexapod.kinematics.rotations import exponential
-from flexapod.mechanics.layout import columns, leg_parameters
-from flexapod.mechanics.sliding import friction_functions
+from flexapod.mechanics.elements.element import Standing
+from flexapod.mechanics.elements.friction import BaseFriction, DriveFriction, PlatformFriction, rubbing, turning
+from flexapod.mechanics.elements.slot import Slot
+from flexapod.mechanics.elements.springs import springs_along
+from flexapod.mechanics.leg.layout import columns, leg_parameters
+from flexapod.mechanics.leg.sliding import friction_functions
+from flexapod.mechanics.shapes import lateral_basis
+from flexapod.mechanics.symbolic.functions import Interpreted
+from flexapod.mechanics.symbolic.vocabulary import constant, symbol, zeros
 from flexapod.model import Feedback, Joint, JointFriction, ScrewFriction, ServoDrive, StrokeFriction, override
-from flexapod.review.sliding import steady_friction
 from flexapod.solve.friction import numbers, sliding
 from flexapod.solve.kernel import kernel
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.statics.lost_motion import lost_motion, reversal
 from flexapod.solve.statics.stiffness import displacement, tool_motion
-from flexapod.symbolic.functions import Interpreted
-from flexapod.symbolic.vocabulary import constant, symbol, zeros
 
 RUBS = Joint(friction=JointFriction(moment=2.0))
 PLAIN = Joint(friction=JointFriction(mu=0.1, diameter=0.04))

@@ -7,12 +7,12 @@ import pytest
 from tests.machines import SCREW, machine, study
 
 import flexapod as fx
-from flexapod.elements.drive_train import DriveTrain
-from flexapod.elements.gap import Gap, past_gap, touching
-from flexapod.elements.slot import Slot
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
+from flexapod.mechanics.elements.drive_train import DriveTrain
+from flexapod.mechanics.elements.gap import Gap, past_gap, touching
+from flexapod.mechanics.elements.slot import Slot
 from flexapod.model import AxialSpring, Load, SineWrench, to_toml
-from flexapod.model.joint import Joint
+from flexapod.model.leg.joint import Joint
 
 PLAY = {"base_joint": Joint(play=10e-6)}
 

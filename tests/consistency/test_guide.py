@@ -18,25 +18,25 @@ from tests.oracles.guided import Guided
 from tests.runs import balance, run_robot
 
 import flexapod as fx
-from flexapod.bases import axial_basis, lateral_basis
-from flexapod.description.robot import describe
-from flexapod.elements.clearance import Clearance
-from flexapod.elements.guide import inner_turn
-from flexapod.error_budget.sentences import part_words
-from flexapod.errors import InputError
-from flexapod.exchange.export import abaqus_deck
+from flexapod.analysis.checks.estimates import buckling_load
+from flexapod.analysis.description.robot_description import describe
+from flexapod.analysis.error_budget.text import part_words
+from flexapod.analysis.results.bodies import bodies_words
+from flexapod.common.errors import InputError
 from flexapod.kinematics.rotations import exponential, quaternion, rotation_vector
+from flexapod.mechanics.elements.clearance import Clearance
+from flexapod.mechanics.elements.guide import inner_turn
+from flexapod.mechanics.shapes import axial_basis, lateral_basis
 from flexapod.model import MATERIALS, Cylinder, ForceDrive, Guide, Mounted, PrescribedDrive, ServoDrive
-from flexapod.model.material import Tube
-from flexapod.model.spring import AxialSpring
-from flexapod.report.replay import replay
-from flexapod.results.bodies import bodies_words
-from flexapod.review.estimates import buckling_load
-from flexapod.scene.geometry import RobotMotion
+from flexapod.model.leg.material import Tube
+from flexapod.model.leg.spring import AxialSpring
+from flexapod.output.exchange.export import abaqus_deck
+from flexapod.output.report.replay import replay
+from flexapod.output.scene.geometry import RobotMotion
 from flexapod.solve.statics.buckling import leg_loads
-from flexapod.verify.engines import calculix
-from flexapod.verify.engines.engine import CALCULIX
-from flexapod.verify.engines.exudyn_robot import RobotProblem
+from flexapod.verification.engines import calculix
+from flexapod.verification.engines.engine import CALCULIX
+from flexapod.verification.engines.exudyn_robot import RobotProblem
 
 L_P, MOUTH, LENGTH = 0.75, 0.315, 0.91
 TUBE = 4.0

@@ -9,13 +9,13 @@ from tests.moving import KINDS, SOFT, moving
 from tests.runs import run_robot
 
 from flexapod import kinematics
-from flexapod.bases import lateral_basis
-from flexapod.elements.tip_body import TipBody
-from flexapod.elements.torsion import Torsion
-from flexapod.integration import GeneralizedAlpha
-from flexapod.kinematics.limbs import limbs
-from flexapod.mechanics.layout import PAYLOAD_PARAMETERS, columns, leg_parameters
-from flexapod.mechanics.leg_chain import LegChain
+from flexapod.common.generalized_alpha import GeneralizedAlpha
+from flexapod.kinematics.leg_geometry import limbs
+from flexapod.mechanics.elements.tip_body import TipBody
+from flexapod.mechanics.elements.torsion import Torsion
+from flexapod.mechanics.leg.layout import PAYLOAD_PARAMETERS, columns, leg_parameters
+from flexapod.mechanics.leg.leg_chain import LegChain
+from flexapod.mechanics.shapes import lateral_basis
 from flexapod.model import AxisMotion, Cylinder, Load, Piston, Study, override, preset
 from flexapod.solve import parameters, robot_system
 from flexapod.solve.batch import RestStates
@@ -25,10 +25,10 @@ from flexapod.solve.shapes import space_shapes
 from flexapod.solve.statics.equilibrium import equilibria
 from flexapod.solve.system import State, System
 from flexapod.solve.time import interpreted, native
+from flexapod.solve.time.command_tables import robot_law
 from flexapod.solve.time.recording import Counters
 from flexapod.solve.time.robot_march import prepare
 from flexapod.solve.time.start import consistent_start
-from flexapod.solve.time.tables import robot_law
 
 METHOD, H = GeneralizedAlpha(0.9), 5e-4
 PUSH = [50.0, -30, 20, 4, 5, -6]

@@ -11,17 +11,17 @@ from tests.texts import replaced
 
 import flexapod as fx
 from flexapod import model
-from flexapod.description.hydraulic import describe_hydraulics, hydraulic_remarks, oil_frequency
-from flexapod.description.robot import describe
-from flexapod.document import html
-from flexapod.document.check import check_items
-from flexapod.document.study import study_items
-from flexapod.document.terminal import show
-from flexapod.elements.springs import springs_along
-from flexapod.errors import InputError
+from flexapod.analysis.description.hydraulic_description import describe_hydraulics, hydraulic_remarks, oil_frequency
+from flexapod.analysis.description.robot_description import describe
+from flexapod.analysis.results.rigid_path import RigidPath
+from flexapod.common.errors import InputError
+from flexapod.mechanics.elements.springs import springs_along
 from flexapod.model import AxialSpring, HydraulicDrive, HydraulicLimits
-from flexapod.results.path import RigidPath
-from flexapod.solve.modal.loss_factor import loss_frequency
+from flexapod.output.text import html
+from flexapod.output.text.check import check_items
+from flexapod.output.text.study import study_items
+from flexapod.output.text.terminal import show
+from flexapod.solve.modal.structural_damping import loss_frequency
 
 OIL = HydraulicDrive(
     bore=0.08, rod=0.056, stroke=0.5, bottom=0.05, dead_volume=[1e-4, 3e-4], bulk_modulus=1.2e9, leakage=1e-12

@@ -12,11 +12,11 @@ from tests.systems import ring as circle
 from tests.systems import robot, tangents
 
 from flexapod import kinematics
+from flexapod.analysis.results.poses import from_home
 from flexapod.model import Simulation
-from flexapod.model.joint import Carriage, Joint
-from flexapod.results.poses import from_home
+from flexapod.model.leg.joint import Carriage, Joint
 from flexapod.solve.modal.at_poses import robot_stiffness
-from flexapod.solve.statics.released import rigid_forces
+from flexapod.solve.statics.ideal_robot import rigid_forces
 
 FLEXIBLE = Simulation(fidelity="assumed-modes", modes=2)
 

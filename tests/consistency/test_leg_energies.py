@@ -5,8 +5,8 @@ import pytest
 from tests.layouts import layout
 from tests.oracles import nonlinear
 
-from flexapod.bases import axial_basis, lateral_basis
-from flexapod.mechanics.layout import LEG_PARAMETERS, Shapes
+from flexapod.mechanics.leg.layout import LEG_PARAMETERS, Shapes
+from flexapod.mechanics.shapes import axial_basis, lateral_basis
 from flexapod.solve.kernel import kernel
 from flexapod.solve.shapes import space_shapes
 

@@ -8,7 +8,7 @@ from tests.machines import study
 
 import flexapod as fx
 from flexapod import kinematics, model
-from flexapod.model.mount import BaseMotion
+from flexapod.model.study.mount import BaseMotion
 
 ROW, END = 5e-6, 0.02  # rows of all tables [s]; steps are as long, or twice
 TIME = np.arange(round(END / ROW) + 1) * ROW

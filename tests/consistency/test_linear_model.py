@@ -12,12 +12,12 @@ from tests.machines import SCREW, machine, study
 
 import flexapod as fx
 from flexapod import kinematics, model
+from flexapod.analysis.linear import MATRICES
+from flexapod.analysis.results.arguments import as_pose
 from flexapod.kinematics import inverse_kinematics, poses_from_home
 from flexapod.kinematics.rotations import exponential
-from flexapod.results.arguments import as_pose
 from flexapod.solve.linear.robot import linear_robot
 from flexapod.solve.modal.at_poses import locked_poses
-from flexapod.study.linear import MATRICES
 
 HZ = np.geomspace(1.0, 500.0, 25)
 AXES = ("floor:x", "floor:y", "floor:z")

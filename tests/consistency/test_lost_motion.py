@@ -6,8 +6,8 @@ from tests.machines import BEARING, SCREW, machine, study
 
 import flexapod as fx
 from flexapod.model import MATERIALS, Feedback, Motor, ScrewFriction, ServoDrive, StrokeFriction
-from flexapod.model.friction import TurningStribeck
-from flexapod.model.motor import Encoder
+from flexapod.model.leg.friction import TurningStribeck
+from flexapod.model.leg.motor import Encoder
 
 RUBS = SCREW.replace(friction=ScrewFriction(torque=0.8, stribeck=TurningStribeck(moment=1.1, rate=5.0)))
 LOOP = Feedback(stiffness=5e3, damping=20.0)

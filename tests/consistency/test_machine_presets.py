@@ -10,8 +10,8 @@ from tests.texts import replaced
 
 import flexapod as fx
 from flexapod import model
-from flexapod.description.robot import describe
-from flexapod.results.ideal import held
+from flexapod.analysis.description.robot_description import describe
+from flexapod.analysis.results.idealizations import held
 
 
 def shares(name):

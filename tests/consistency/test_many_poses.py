@@ -10,15 +10,15 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod import kinematics
+from flexapod.analysis.results.poses import from_home
 from flexapod.model import ConstantWrench, Cylinder, Load, ServoDrive, Waypoint, WaypointMotion, override
-from flexapod.results.poses import from_home
 from flexapod.solve.batch import RestStates, matrices_at_rest, residual_at_rest
 from flexapod.solve.kernel import interpreted_kernel
 from flexapod.solve.modal.at_poses import locked_poses, robot_modes, robot_stiffness
 from flexapod.solve.modal.modes import modes_of
 from flexapod.solve.rigid_motion import rigid_rest
-from flexapod.solve.saddle import saddle_solve, solve_each
-from flexapod.solve.statics.arrow import arrow_solve
+from flexapod.solve.saddle_point import saddle_solve, solve_each
+from flexapod.solve.statics.block_arrow import arrow_solve
 from flexapod.solve.statics.equilibrium import equilibria
 from flexapod.solve.statics.static_loads import rest_commands
 from flexapod.solve.statics.stiffness import stiffness_of, tool_motion

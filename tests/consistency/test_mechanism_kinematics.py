@@ -7,7 +7,7 @@ from tests.mechanisms import ROBOTS, THREE, built, leg, ring
 from tests.oracles import virtual_power
 
 from flexapod import kinematics
-from flexapod.kinematics.limbs import limbs
+from flexapod.kinematics.leg_geometry import limbs
 from flexapod.kinematics.mobility import mobility
 from flexapod.model import CombinedMotion
 

@@ -11,10 +11,10 @@ from tests.systems import of_robot, ring, robot, tangents
 
 from flexapod import kinematics
 from flexapod.kinematics.rotations import turned
-from flexapod.model.payload import Payload
+from flexapod.model.study.payload import Payload
 from flexapod.solve.batch import matrices_at_rest, residual_at_rest
 from flexapod.solve.rigid_motion import rigid_rest
-from flexapod.solve.statics.arrow import arrow_solve
+from flexapod.solve.statics.block_arrow import arrow_solve
 from flexapod.solve.statics.equilibrium import _Acts, _loaded_slowly, equilibria
 from flexapod.solve.statics.reduction import independent
 from flexapod.solve.statics.substitutes import with_substitutes

@@ -8,11 +8,11 @@ from tests.runs import balance, run_robot
 
 import flexapod as fx
 from flexapod import model
-from flexapod.description.robot import describe
-from flexapod.document.check import check_items
-from flexapod.document.terminal import show
-from flexapod.errors import InputError
+from flexapod.analysis.description.robot_description import describe
+from flexapod.common.errors import InputError
 from flexapod.model import Loop, Motor, Ripple, Rotor
+from flexapod.output.text.check import check_items
+from flexapod.output.text.terminal import show
 
 RIPPLE = Ripple(torque=0.4, per_turn=6, harmonics=[1.0, 0.0, 0.3])
 MOTOR = Motor(ripple=RIPPLE, torque_constant=0.8)

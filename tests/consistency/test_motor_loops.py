@@ -13,19 +13,19 @@ from tests.runs import balance, run_robot
 
 import flexapod as fx
 from flexapod import kinematics, model
-from flexapod.description.robot import describe
-from flexapod.errors import InputError
-from flexapod.exchange.export import abaqus_deck
-from flexapod.integration import GeneralizedAlpha
+from flexapod.analysis.description.robot_description import describe
+from flexapod.common.errors import InputError
+from flexapod.common.generalized_alpha import GeneralizedAlpha
 from flexapod.model import Encoder, Loop, Motor, Ripple, Rotor
+from flexapod.output.exchange.export import abaqus_deck
 from flexapod.solve.linear.robot import linear_robot
 from flexapod.solve.modal.at_poses import locked_poses
-from flexapod.solve.modal.loss_factor import loss_frequency
+from flexapod.solve.modal.structural_damping import loss_frequency
 from flexapod.solve.time import interpreted, native
+from flexapod.solve.time.command_tables import robot_law
 from flexapod.solve.time.recording import Counters
 from flexapod.solve.time.robot_march import prepare
-from flexapod.solve.time.tables import robot_law
-from flexapod.verify.engines.exudyn_robot import RobotProblem
+from flexapod.verification.engines.exudyn_robot import RobotProblem
 
 LOOP = Loop(stiffness=50.0, damping=0.5)
 STEEL = SCREW.material.replace(E=1e15, density=1e-3)

@@ -12,21 +12,21 @@ from tests.mechanisms import ROBOTS
 from tests.runs import balance, run_robot
 
 import flexapod as fx
-from flexapod.bases import axial_basis, lateral_basis
-from flexapod.elements.mount import PlatformMounting
-from flexapod.elements.slot import Slot
-from flexapod.errors import InputError
-from flexapod.exchange.export import abaqus_deck, left_out
+from flexapod.analysis.results.attributes import study_of
+from flexapod.common.errors import InputError
 from flexapod.kinematics.rotations import quaternion, turned
-from flexapod.mechanics.assembly import payload_functions
+from flexapod.mechanics.elements.mount import PlatformMounting
+from flexapod.mechanics.elements.slot import Slot
+from flexapod.mechanics.leg.kernel_functions import payload_functions
+from flexapod.mechanics.shapes import axial_basis, lateral_basis
+from flexapod.mechanics.symbolic.functions import Interpreted
 from flexapod.model import AxialSpring, loads, preset, to_toml
-from flexapod.model.joint import Joint
-from flexapod.model.mount import BaseMotion, Mount
-from flexapod.report.replay import replay
-from flexapod.results.attributes import study_of
-from flexapod.scene.geometry import RobotMotion
+from flexapod.model.leg.joint import Joint
+from flexapod.model.study.mount import BaseMotion, Mount
+from flexapod.output.exchange.export import abaqus_deck, left_out
+from flexapod.output.report.replay import replay
+from flexapod.output.scene.geometry import RobotMotion
 from flexapod.solve.statics.buckling import leg_loads
-from flexapod.symbolic.functions import Interpreted
 
 NONE = lateral_basis("clamped-free", 0)
 

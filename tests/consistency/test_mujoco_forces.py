@@ -5,12 +5,12 @@ import pytest
 from tests.pack_outcomes import outcome
 
 from flexapod import kinematics
-from flexapod.errors import ComputationError
+from flexapod.common.errors import ComputationError
 from flexapod.model import AxisMotion, preset
-from flexapod.verify.cases import mujoco_forces as case
-from flexapod.verify.engines import mujoco_forces
-from flexapod.verify.engines.mujoco_model import mjcf
-from flexapod.verify.robots import unlike_legs, without_cylinders
+from flexapod.verification.cases import mujoco_forces as case
+from flexapod.verification.engines import mujoco_forces
+from flexapod.verification.engines.mujoco_model import mjcf
+from flexapod.verification.robots import unlike_legs, without_cylinders
 
 pytestmark = pytest.mark.xdist_group("pack of mujoco_forces")  # one process computes its cases
 mujoco = pytest.importorskip("mujoco")

@@ -11,7 +11,7 @@ from flexapod.model import CombinedMotion, Simulation
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.robot_system import robot_system
 from flexapod.solve.statics.rigid_forces import joint_forces
-from flexapod.verify.engines import mujoco_forces
+from flexapod.verification.engines import mujoco_forces
 
 pytest.importorskip("mujoco")
 

@@ -8,11 +8,11 @@ from scipy.linalg import eigh, null_space
 from tests.machines import SOFT, machine, study
 
 import flexapod as fx
+from flexapod.analysis.results.arguments import as_pose
 from flexapod.kinematics.rotations import matrix
 from flexapod.model import AxialSpring
-from flexapod.results.arguments import as_pose
 from flexapod.solve.modal.at_poses import locked_poses
-from flexapod.verify.engines.mujoco_model import LEAST, mjcf
+from flexapod.verification.engines.mujoco_model import LEAST, mjcf
 
 mujoco = pytest.importorskip("mujoco")
 

@@ -9,7 +9,7 @@ from tests.moving import moving
 
 import flexapod as fx
 from flexapod.model import AxisMotion, CombinedMotion, Simulation, Study, override
-from flexapod.solve.statics.released import rigid_forces
+from flexapod.solve.statics.ideal_robot import rigid_forces
 
 X, Y = np.eye(3)[:2]
 

@@ -12,17 +12,17 @@ from tests.trial_element.maxwell import Maxwell
 from tests.trial_element.seal import Seal
 
 import flexapod as fx
-from flexapod.document.parts import Bullets
-from flexapod.document.study import study_items
-from flexapod.elements.element import registered
-from flexapod.exchange.export import abaqus_deck
+from flexapod.app.browser.charts import charts
+from flexapod.mechanics.elements.element import registered
 from flexapod.model import ServoDrive, StrokeFriction, preset_text, to_toml
-from flexapod.page.charts import charts
-from flexapod.report import figures
+from flexapod.output.exchange.export import abaqus_deck
+from flexapod.output.report import figures
+from flexapod.output.text.parts import Bullets
+from flexapod.output.text.study import study_items
 from flexapod.solve.modal.at_poses import robot_modes
-from flexapod.verify.engines import exudyn_robot
-from flexapod.verify.engines.exudyn_integration import Integration
-from flexapod.verify.engines.mujoco_model import mjcf
+from flexapod.verification.engines import exudyn_robot
+from flexapod.verification.engines.exudyn_integration import Integration
+from flexapod.verification.engines.mujoco_model import mjcf
 
 STIFFNESS, RELAXATION = 2e4, 0.1
 TABLE = '[leg.maxwell]\nstiffness = "20 kN/m"\nrelaxation = "0.1 s"\n'
@@ -233,13 +233,13 @@ def test_its_kernel_is_made_anew_when_its_equations_change_and_not_for_a_comment
 
 
 def test_an_entry_point_makes_it_known(tmp_path, monkeypatch):
-    """As an installed package has it: a name in the group `flexapod.elements`."""
+    """As an installed package has it: a name in the group `flexapod.mechanics.elements`."""
     source = Path(sys.modules[Maxwell.__module__].__file__).read_text().replace('"maxwell"', '"installed"')
     (tmp_path / "installed_element.py").write_text(source)
     meta = tmp_path / "installed_element-1.0.dist-info"
     meta.mkdir()
     (meta / "METADATA").write_text("Metadata-Version: 2.1\nName: installed-element\nVersion: 1.0\n")
-    (meta / "entry_points.txt").write_text("[flexapod.elements]\ninstalled = installed_element:Maxwell\n")
+    (meta / "entry_points.txt").write_text("[flexapod.mechanics.elements]\ninstalled = installed_element:Maxwell\n")
     monkeypatch.syspath_prepend(tmp_path)
     assert fx.loads(text(TABLE.replace("maxwell", "installed"))).robot.legs[0].elements[0].stiffness == 2e4
 

@@ -16,12 +16,12 @@ from tests.trial_element.maxwell import Maxwell
 from tests.trial_element.turbulent_damper import TurbulentDamper
 
 import flexapod as fx
-from flexapod.elements.element import registered
+from flexapod.mechanics.elements.element import registered
+from flexapod.mechanics.symbolic import elementary
+from flexapod.mechanics.symbolic.elementary import fabs
+from flexapod.mechanics.symbolic.vocabulary import sqrt
 from flexapod.model import ServoDrive
-from flexapod.symbolic import elementary
-from flexapod.symbolic.elementary import fabs
-from flexapod.symbolic.vocabulary import sqrt
-from flexapod.verify.robots import ROUND, STEEL
+from flexapod.verification.robots import ROUND, STEEL
 
 AIR = AirSpring(pressure=6e5, bore=0.05, height=0.15)
 DAMPER = TurbulentDamper(force=100.0, rate=0.3)

@@ -11,10 +11,10 @@ import pytest
 from tests.oracles import sliding
 from tests.paper_parts import part
 
-from flexapod.bases import lateral_basis
-from flexapod.paper import printed_lines
-from flexapod.paper.energies import SHAPES, TIP_MASS, matrices
-from flexapod.paper.printed_lines import GRAVITY, LINES, tip_paths
+from flexapod.mechanics.shapes import lateral_basis
+from flexapod.verification.paper import printed_equations
+from flexapod.verification.paper.energies import SHAPES, TIP_MASS, matrices
+from flexapod.verification.paper.printed_equations import GRAVITY, LINES, tip_paths
 
 RHO, EI, L0, FEED, TURN = 4.02, 756.65, 1.83, 0.1, 0.785
 AT = {"L": 2.1, "L_dot": 0.1, "angle": 0.9, "angle_dot": 0.785}
@@ -112,7 +112,7 @@ def test_derived_paths_are_those_of_another_engine(monkeypatch):
     Runge-Kutta's phase is off by (omega h)^4 / 120 a radian: of the third shape, 253 rad/s and 9 um, two at the tip,
     by 2e-6 x 506 = 1e-3, that is 2e-8 m; of the others less. Upright its amplitude is rho g L^4 f / EI eps^4 = 39 um.
     """
-    monkeypatch.setattr(printed_lines, "DURATION", 2.0)
+    monkeypatch.setattr(printed_equations, "DURATION", 2.0)
     ours = tip_paths([(None, False), (None, True)])
     basis = lateral_basis("clamped-free", SHAPES)
     static = np.linalg.solve(basis.stiffness, basis.tip)

@@ -9,8 +9,8 @@ from tests.runs import balance, run_robot
 
 import flexapod as fx
 from flexapod import kinematics
-from flexapod.errors import ComputationError
-from flexapod.solve.statics.released import rigid_forces
+from flexapod.common.errors import ComputationError
+from flexapod.solve.statics.ideal_robot import rigid_forces
 
 
 def test_forces_of_eight_rigid_legs_are_those_of_the_rigid_robot():

@@ -8,12 +8,12 @@ from tests.mechanisms import hexapod, sliders, three_rps
 from tests.runs import uncompiled_kernel
 
 from flexapod import kinematics
-from flexapod.kinematics.limbs import DRIVEN
+from flexapod.kinematics.leg_geometry import DRIVEN
 from flexapod.model import Feedback, ForceDrive, Simulation
-from flexapod.model.drive import ServoDrive
+from flexapod.model.leg.drive import ServoDrive
 from flexapod.solve.batch import port_forces
 from flexapod.solve.modal.at_poses import locked_poses
-from flexapod.solve.statics.released import rigid_forces
+from flexapod.solve.statics.ideal_robot import rigid_forces
 from flexapod.solve.statics.static_loads import at_drives
 
 ROBOTS = {"stroke": hexapod, "carriage": lambda: sliders("PUS"), "hinges": three_rps}

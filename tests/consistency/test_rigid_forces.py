@@ -8,15 +8,15 @@ from tests.consistency.test_mechanism_statics import hexapod, hold, octopod, tri
 from tests.runs import paper_robot
 
 from flexapod import kinematics
-from flexapod.errors import ComputationError
+from flexapod.common.errors import ComputationError
 from flexapod.kinematics.jacobian import length_jacobian
 from flexapod.model import override
 from flexapod.solve.batch import Rates, matrices_at_rest, residual
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.robot_system import robot_system
 from flexapod.solve.statics.equilibrium import equilibria
+from flexapod.solve.statics.minimum_energy_forces import open_forces
 from flexapod.solve.statics.rigid_forces import displacement_by_error, joint_forces
-from flexapod.solve.statics.shared import open_forces
 
 WRENCH = np.array([50.0, -30.0, -200.0, 5.0, 4.0, -3.0])
 

@@ -8,10 +8,10 @@ import pytest
 from tests.mechanisms import ROBOTS, THREE, built, hexapod, leg, ring, sliders, tangents, three_rps
 
 from flexapod import kinematics
-from flexapod.errors import ComputationError, InputError
+from flexapod.common.errors import ComputationError, InputError
 from flexapod.kinematics import mechanism
 from flexapod.kinematics.jacobian import length_jacobian
-from flexapod.kinematics.limbs import COORDINATES, DRIVEN, limbs
+from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN, limbs
 from flexapod.kinematics.mobility import drive_jacobian, holding
 from flexapod.kinematics.screws import screws
 from flexapod.model.motion import AxisMotion, CombinedMotion

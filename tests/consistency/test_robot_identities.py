@@ -9,8 +9,8 @@ from tests.layouts import layout
 from tests.oracles import beams
 from tests.systems import CYLINDER, PISTON, packed, robot
 
-from flexapod.bases import axial_basis, lateral_basis
-from flexapod.mechanics.layout import leg_parameters
+from flexapod.mechanics.leg.layout import leg_parameters
+from flexapod.mechanics.shapes import axial_basis, lateral_basis
 from flexapod.solve.batch import RestStates, matrices_at_rest
 from flexapod.solve.kernel import interpreted_kernel
 from flexapod.solve.statics.equilibrium import equilibria

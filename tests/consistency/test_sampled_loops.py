@@ -7,9 +7,9 @@ import pytest
 from scipy.linalg import expm
 
 import flexapod as fx
+from flexapod.common.errors import InputError
 from flexapod.control import Function, StateSpace
-from flexapod.errors import InputError
-from flexapod.symbolic.compiler import compiler
+from flexapod.mechanics.symbolic.compiler import compiler
 
 pytestmark = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
 

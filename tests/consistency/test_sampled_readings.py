@@ -10,7 +10,7 @@ from xarray import Dataset
 
 import flexapod as fx
 from flexapod.control import StateSpace
-from flexapod.symbolic.compiler import compiler
+from flexapod.mechanics.symbolic.compiler import compiler
 
 pytestmark = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
 

@@ -8,8 +8,8 @@ from tests.mechanisms import ROBOTS, three_rps
 from tests.runs import balance, run_robot
 
 import flexapod as fx
-from flexapod.elements.springs import in_series, springs_along
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
+from flexapod.mechanics.elements.springs import in_series, springs_along
 from flexapod.model import AxialSpring, AxisMotion, Feedback, Joint, PrescribedDrive, ServoDrive, Simulation, Study
 
 STILL = {"gravity": [0, 0, 0]}

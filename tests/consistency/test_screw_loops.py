@@ -11,7 +11,7 @@ from tests.texts import replaced
 
 import flexapod as fx
 from flexapod import model
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 from flexapod.model import Encoder, Feedback, Geometry, Heat, LengthSpread, Loop, RatioSpread, Rotor, Tolerances
 
 TEXT = model.preset_text("machine-hexapod")

@@ -9,7 +9,7 @@ import pytest
 from tests.oracles import sliding
 from tests.runs import leg_vector, uncompiled
 
-from flexapod.bases import lateral_basis
+from flexapod.mechanics.shapes import lateral_basis
 from flexapod.model import Actuator
 from flexapod.solve.parameters import PLANE, actuator_parameters
 

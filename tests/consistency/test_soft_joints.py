@@ -8,9 +8,9 @@ from tests.runs import balance, run_robot
 
 import flexapod as fx
 from flexapod import kinematics
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 from flexapod.model import AxialSpring, Geometry, Simulation, Study
-from flexapod.model.joint import Joint
+from flexapod.model.leg.joint import Joint
 from flexapod.model.motion import AxisMotion
 from flexapod.solve.robot_system import robot_system
 

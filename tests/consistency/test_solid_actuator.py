@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.results.vibration import local_vibration
-from flexapod.study.solid import simulate_solid
+from flexapod.analysis.results.vibration import local_vibration
+from flexapod.analysis.solid import simulate_solid
 
 STUDY = fx.preset("paper-actuator")
 

@@ -9,8 +9,8 @@ import flexapod as fx
 from flexapod import kinematics
 from flexapod.solve.rigid_motion import rigid_state
 from flexapod.solve.robot_system import robot_system
+from flexapod.solve.time.command_tables import robot_law
 from flexapod.solve.time.start import accelerations
-from flexapod.solve.time.tables import robot_law
 
 
 @pytest.mark.parametrize("t", [0.2, 0.5, 0.83])

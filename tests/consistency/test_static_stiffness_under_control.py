@@ -5,8 +5,8 @@ import pytest
 from tests.consistency.test_sampled_loops import PID, STUDY, K, T, height
 
 import flexapod as fx
+from flexapod.analysis.predicted_damping import control_words, static_stiffness
 from flexapod.control import IFF, Decentralised, integrator
-from flexapod.study.predicted import control_words, static_stiffness
 
 FORCES = '[control]\nlaw = "iff"\ngain = 200\nsample = "0.5 ms"\n'
 

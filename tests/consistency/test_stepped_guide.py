@@ -16,10 +16,10 @@ from tests.stepped import (
     vector,
 )
 
-from flexapod.bases import lateral_basis
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
+from flexapod.mechanics.shapes import lateral_basis
 from flexapod.model import MATERIALS, Cylinder, Guide, Piston
-from flexapod.model.material import Tube
+from flexapod.model.leg.material import Tube
 
 BUSHINGS = Guide(gland=4e6, head=3e6)
 FREE, MOUTH = 0.6, 0.4

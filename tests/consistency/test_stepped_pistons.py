@@ -9,11 +9,11 @@ import pytest
 from tests.stepped import function, leg_of, section, shapes_of, vector
 
 import flexapod as fx
-from flexapod.elements.steps import held
-from flexapod.errors import InputError
-from flexapod.model.files import preset_text
+from flexapod.common.errors import InputError
+from flexapod.mechanics.elements.steps import held
+from flexapod.mechanics.symbolic.vocabulary import expanded
+from flexapod.model.file.files import preset_text
 from flexapod.solve.sections import numeric_pieces
-from flexapod.symbolic.vocabulary import expanded
 
 THREE = [section(0.2, 0.05), section(0.25, 0.04, inner_diameter=0.03), section(0.3, 0.03)]
 PISTON = '{{ sections = [{{ length = "200 mm", diameter = "{} mm", material = "steel" }}, ' \
@@ -181,8 +181,8 @@ def test_bad_sections_are_refused(piston, words):
 def test_sections_go_through_a_file_and_a_sweep():
     of = study(40)
     assert fx.loads(fx.model.to_toml(of)).robot == of.robot
-    from flexapod.model.key_paths import put
-    from flexapod.schema.key_paths import parse_key
+    from flexapod.common.tables.key_paths import parse_key
+    from flexapod.model.file.key_paths import put
 
     data = {"leg": {"piston": {"sections": [{"diameter": 0.04}, {"diameter": 0.027}]}}}
     put(data, parse_key("leg.piston.sections[2].diameter", what="key"), 0.03)

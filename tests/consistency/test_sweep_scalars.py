@@ -5,13 +5,13 @@ import pytest
 from tests.sweeps import quick_text
 
 import flexapod as fx
+from flexapod.analysis import summary
+from flexapod.analysis.scalars import ROBOT_SCALARS
+from flexapod.design.sweeps.outputs import kept
+from flexapod.design.sweeps.plan import read_plan
+from flexapod.design.sweeps.samples import Points
+from flexapod.design.sweeps.worker import compute_point
 from flexapod.model import loads
-from flexapod.study import summary
-from flexapod.surveys.sweeps.batch import compute_point
-from flexapod.surveys.sweeps.kept import kept
-from flexapod.surveys.sweeps.plan import read_plan
-from flexapod.surveys.sweeps.points import Points
-from flexapod.surveys.sweeps.scalars import ROBOT_SCALARS
 
 SERVO = ('drive = { type = "prescribed" }', 'drive = { type = "servo", stiffness = "20 N/um", damping = 1000 }')
 TOOL = ("# tool = [0, 0,", "tool = [0, 0,")

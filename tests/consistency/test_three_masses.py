@@ -13,7 +13,7 @@ from tests.consistency.test_soft_joints import light
 from tests.machines import SCREW, symmetric
 
 import flexapod as fx
-from flexapod.elements.springs import springs_along
+from flexapod.mechanics.elements.springs import springs_along
 from flexapod.model import Loop
 
 

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from flexapod import kinematics
-from flexapod.errors import ComputationError
-from flexapod.integration import GeneralizedAlpha
+from flexapod.common.errors import ComputationError
+from flexapod.common.generalized_alpha import GeneralizedAlpha
+from flexapod.mechanics.symbolic.compiler import compiler
 from flexapod.model import override, preset
 from flexapod.solve.time import native
+from flexapod.solve.time.command_tables import robot_law
 from flexapod.solve.time.recording import Counters
 from flexapod.solve.time.robot_march import prepare
-from flexapod.solve.time.tables import robot_law
-from flexapod.symbolic.compiler import compiler
 
 pytestmark = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
 

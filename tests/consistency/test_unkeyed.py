@@ -8,7 +8,7 @@ from tests.runs import balance, run_robot
 
 import flexapod as fx
 from flexapod import model
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 from flexapod.model import Encoder
 
 STIFF = SCREW.replace(bearing=SCREW.bearing.replace(stiffness=1e12), nut=NUT.replace(stiffness=1e12), root_diameter=5.0,

@@ -5,7 +5,7 @@ import pytest
 from tests.pack_outcomes import outcome
 
 from flexapod import model
-from flexapod.verify.cases import sliding as beam_fem
+from flexapod.verification.cases import sliding as beam_fem
 
 pytestmark = pytest.mark.xdist_group("pack of sliding")  # one process computes its cases
 

@@ -8,18 +8,18 @@ from tests.machines import study as heaved
 
 import flexapod as fx
 from flexapod import kinematics, model
-from flexapod.description.robot import describe
-from flexapod.error_budget.sentences import part_words
+from flexapod.analysis.description.robot_description import describe
+from flexapod.analysis.error_budget.text import part_words
+from flexapod.analysis.pose_errors.disturbances import vibration_rows, vibration_words
+from flexapod.analysis.pose_errors.sensitivity import sensitivity
+from flexapod.analysis.results.arguments import as_pose
 from flexapod.kinematics.rotations import difference, matrix, quaternion
-from flexapod.model.mount import BaseMotion, Mount
-from flexapod.pose_errors.disturbances import vibration_rows, vibration_words
-from flexapod.pose_errors.sensitivity import sensitivity
-from flexapod.results.arguments import as_pose
+from flexapod.model.study.mount import BaseMotion, Mount
 from flexapod.solve.linear.random_vibration import Source, panels, random_vibration
 from flexapod.solve.linear.robot import FAR, LinearRobot, linear_robot
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.modal.damped import poles
-from flexapod.solve.statics.locked import LockedPoses
+from flexapod.solve.statics.locked_robot import LockedPoses
 
 WHITE = np.array([1e-3, 1e5])
 TILTED = {"surge": 0.03, "heave": -0.02, "roll": 0.1, "yaw": 0.05}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from flexapod.bases import axial_basis
+from flexapod.mechanics.shapes import axial_basis
 
 COUNTS = range(1, 5)
 

@@ -11,19 +11,19 @@ import pytest
 from xarray import Dataset
 
 import flexapod as fx
-from flexapod.model.mount import BaseMotion
-from flexapod.model.page import study_data
+from flexapod.analysis import open_results, save
+from flexapod.analysis.results.attributes import FORMER, TABLES, attributes, robot_of, study_of
+from flexapod.analysis.results.packed_tables import pack, unpack
+from flexapod.app.browser.document import Document, read
+from flexapod.app.browser.opening import open_source
+from flexapod.app.browser.study_files import study_download
+from flexapod.app.browser.uploads import read_upload, store_table
+from flexapod.common.tables.named_files import Stored
+from flexapod.common.tables.reference import reference
+from flexapod.common.tables.toml import toml_text
+from flexapod.model.file.page import study_data
 from flexapod.model.stored import stored_tables
-from flexapod.page.document import Document, read
-from flexapod.page.opening import open_source
-from flexapod.page.study_files import study_download
-from flexapod.page.uploads import read_upload, store_table
-from flexapod.results.attributes import FORMER, TABLES, attributes, robot_of, study_of
-from flexapod.results.packed_tables import pack, unpack
-from flexapod.schema.named_files import Stored
-from flexapod.schema.reference import reference
-from flexapod.schema.toml import toml_text
-from flexapod.study import open_results, save
+from flexapod.model.study.mount import BaseMotion
 
 EXAMPLES = {
     f"{entry.table} {entry.title}".strip(): text
@@ -38,8 +38,8 @@ U = T / T[-1]
 def empty(tmp_path, monkeypatch):
     """The folder in which a test runs; nothing lies in it, and nothing that was known is remembered."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("flexapod.results.attributes._known", {})
-    monkeypatch.setattr("flexapod.results.attributes._latest", [])
+    monkeypatch.setattr("flexapod.analysis.results.attributes._known", {})
+    monkeypatch.setattr("flexapod.analysis.results.attributes._latest", [])
     return tmp_path
 
 

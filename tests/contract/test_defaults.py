@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 
 import flexapod as fx
-from flexapod.design.catalogue import SCREWS
-from flexapod.model import MATERIALS, rolling
-from flexapod.model.page import listed
-from flexapod.model.tolerances import CLASSES
+from flexapod.design.first_robot.catalogue import SCREWS
+from flexapod.model import MATERIALS
+from flexapod.model.file.page import listed
+from flexapod.model.leg import rolling
+from flexapod.model.study.tolerances import CLASSES
 
 PAGE = Path(__file__).parents[2] / "docs" / "defaults.md"
 FRICTION = {"0.01": " of a screw", "1e-05": " of a stroke"}  # one key, two drives

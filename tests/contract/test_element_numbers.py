@@ -8,11 +8,11 @@ from tests.mechanisms import hexapod
 
 import flexapod as fx
 from flexapod import kinematics
-from flexapod.elements.known import OURS
-from flexapod.mechanics.layout import LEG_PARAMETERS
+from flexapod.mechanics.elements.registry import OURS
+from flexapod.mechanics.leg.layout import LEG_PARAMETERS
 from flexapod.model import MATERIALS, Encoder, Joint, JointFriction, Loop, Motor, ScrewFriction, Tube
-from flexapod.model.mount import BaseMotion, Mount
-from flexapod.model.piston import Piston
+from flexapod.model.leg.piston import Piston
+from flexapod.model.study.mount import BaseMotion, Mount
 from flexapod.solve.parameters import standings
 from flexapod.solve.shapes import robot_shapes
 

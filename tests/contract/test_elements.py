@@ -191,14 +191,19 @@ def test_a_pose_closure_without_moments_is_a_point_closure(seed):
     assert not M[n:].any() and not K[n:].any()
 
 
-FRAMEWORK = ("element.py", "known.py", "slot.py", "trial.py")  # what an element is, which there are, where, if they do
+FRAMEWORK = (
+    "element.py",
+    "registry.py",
+    "slot.py",
+    "trial.py",
+)  # what an element is, which there are, where, if they do
 
 
 @pytest.mark.parametrize(
     "path",
-    sorted(path for path in (ROOT / "src/flexapod/elements").glob("[a-z]*.py") if path.name not in FRAMEWORK),
+    sorted(path for path in (ROOT / "src/flexapod/mechanics/elements").glob("[a-z]*.py") if path.name not in FRAMEWORK),
     ids=lambda path: path.stem,
 )
 def test_every_element_has_its_theory(path):
     pages = "\n".join(page.read_text(encoding="utf-8") for page in (ROOT / "docs/theory").glob("*.md"))
-    assert f"`{path.name}`" in pages or f"`elements/{path.name}`" in pages
+    assert f"`{path.name}`" in pages or f"`mechanics/elements/{path.name}`" in pages

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.bases import lateral_basis
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
+from flexapod.mechanics.shapes import lateral_basis
 from flexapod.model import Simulation, Study, loads, override, preset_text
 
 OWN = [("beam-fem", 6, "hermite"), ("finite-segment", 8, "segments")]

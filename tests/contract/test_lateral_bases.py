@@ -5,7 +5,7 @@ import pytest
 from tests.oracles import beams
 from tests.oracles.ritz import clamped_free
 
-from flexapod.bases import lateral_basis
+from flexapod.mechanics.shapes import lateral_basis
 
 BASES = [
     ("clamped-free", 0.0, 0.0),

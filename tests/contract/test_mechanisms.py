@@ -10,11 +10,11 @@ from scipy.spatial.transform import Rotation
 from typer.testing import CliRunner
 
 import flexapod as fx
-from flexapod.cli.cli import app
+from flexapod.analysis.results.stored_run import check_run
+from flexapod.analysis.results.variables import ANGLES, VARIABLES
+from flexapod.analysis.store import save
+from flexapod.app.cli.cli import app
 from flexapod.model import chains_of, override
-from flexapod.results.names import ANGLES, VARIABLES
-from flexapod.results.stored_run import check_run
-from flexapod.study.store import save
 
 FILES = sorted((Path(__file__).parents[2] / "examples" / "mechanisms").glob("*.toml"))
 SAMPLES = [path.stem for path in FILES]

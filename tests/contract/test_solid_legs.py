@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 from flexapod.model import Rectangle, preset_text
 
 ROBOT = fx.preset("paper-robot")

@@ -7,8 +7,9 @@ import pytest
 from tests.runs import paper_robot
 
 import flexapod as fx
-from flexapod.description.rest import RestingRobot
-from flexapod.description.robot import describe_pose
+from flexapod.analysis.description.residual_vibration import RestingRobot
+from flexapod.analysis.description.robot_description import describe_pose
+from flexapod.analysis.scalars import ROBOT_SCALARS, RobotRun
 from flexapod.model import (
     ConstantWrench,
     CsvWrench,
@@ -22,7 +23,6 @@ from flexapod.model import (
     Waypoint,
     WaypointMotion,
 )
-from flexapod.surveys.sweeps.scalars import ROBOT_SCALARS, RobotRun
 
 WRENCH = np.array([50.0, -30.0, -200.0, 5.0, 4.0, -3.0])
 POSE = {"sway": 0.03, "heave": 0.02, "roll": 0.1}

@@ -13,10 +13,10 @@ import xarray as xr
 from tests.sweeps import deadly, diameters, quick, start
 
 import flexapod as fx
-from flexapod.errors import ComputationError, InputError, Malformed
-from flexapod.surveys.sweeps import batch, executors, open_sweep, run, schedule
-from flexapod.surveys.sweeps.batch import compute_batch, compute_packed
-from flexapod.surveys.sweeps.executors import InProcess, WorkerDied
+from flexapod.common.errors import ComputationError, InputError, Malformed
+from flexapod.design.sweeps import executors, open_sweep, run, schedule, worker
+from flexapod.design.sweeps.executors import InProcess, WorkerDied
+from flexapod.design.sweeps.worker import compute_batch, compute_packed
 
 
 def sweep(count, **settings):
@@ -81,7 +81,7 @@ def test_batches_grow_to_what_is_worth_a_task_and_shrink_at_the_end():
     while batches.left:
         points = batches.take(2)
         sizes.append(len(points))
-        batches.learn(batch.BatchResult(points=tuple(points), results=(), seconds=0.05 * len(points)))
+        batches.learn(worker.BatchResult(points=tuple(points), results=(), seconds=0.05 * len(points)))
     assert sizes[0] == 1
     assert max(sizes) == pytest.approx(schedule.TASK / 0.05, abs=1)
     assert sum(sizes) == 1000
@@ -93,7 +93,7 @@ def test_batches_grow_to_what_is_worth_a_task_and_shrink_at_the_end():
 def test_two_local_workers_one_of_which_dies(monkeypatch, tmp_path):
     """A real cluster: a worker killed in mid-task, and a point that kills every process it comes to."""
     alone = sweep(30, workers=0)
-    monkeypatch.setattr(batch, "compute_batch", deadly(11))
+    monkeypatch.setattr(worker, "compute_batch", deadly(11))
     seen = []
 
     def progress(words, share):
@@ -129,8 +129,8 @@ def test_worker_of_another_version():
 
 def test_a_worker_of_another_version_is_told_from_other_faults():
     """The error lost its kind on the way from a worker, and the user read that a task could not be run."""
-    error = pickle.loads(pickle.dumps(batch.OtherVersion("a worker", next_step="Give")))
-    assert (type(error), str(error)) == (batch.OtherVersion, "a worker. Give.")
+    error = pickle.loads(pickle.dumps(worker.OtherVersion("a worker", next_step="Give")))
+    assert (type(error), str(error)) == (worker.OtherVersion, "a worker. Give.")
     malformed = pickle.loads(pickle.dumps(Malformed("is bad", key="a", value=3)))
     assert (type(malformed), malformed.key, malformed.value) == (Malformed, "a", 3)
 

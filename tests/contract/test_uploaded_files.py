@@ -7,17 +7,17 @@ from pathlib import Path
 import pytest
 
 from flexapod import model
-from flexapod.errors import InputError
-from flexapod.model.page import study_data
-from flexapod.page.document import Document, edited
-from flexapod.page.opening import open_source
-from flexapod.page.uploads import read_upload
-from flexapod.schema.columns import columns_of
-from flexapod.schema.named_files import NamedFiles
-from flexapod.schema.reference import reference
-from flexapod.schema.section import Section
-from flexapod.schema.table import Table
-from flexapod.schema.toml import toml_text
+from flexapod.app.browser.document import Document, edited
+from flexapod.app.browser.opening import open_source
+from flexapod.app.browser.uploads import read_upload
+from flexapod.common.errors import InputError
+from flexapod.common.tables.columns import columns_of
+from flexapod.common.tables.named_files import NamedFiles
+from flexapod.common.tables.reference import reference
+from flexapod.common.tables.section import Section
+from flexapod.common.tables.table import Table
+from flexapod.common.tables.toml import toml_text
+from flexapod.model.file.page import study_data
 
 NAME = re.compile(r'"([\w-]+\.(?:csv|json))"')  # of a table, in the examples of the reference
 EXAMPLES = {

@@ -11,14 +11,14 @@ import pytest
 from tests.oracles import beams, sliding
 
 import flexapod as fx
-from flexapod.errors import InputError
-from flexapod.fem.beam_contact import frozen_frequencies, static_shape
-from flexapod.fem.beam_guide import ElementContact, InterpolatedClamp, NodeContact, Rollers
-from flexapod.fem.beam_march import march_sliding_beam
-from flexapod.fem.beam_mesh import band_product, beam_mesh
+from flexapod.analysis.sliding_mesh import sliding_mesh
+from flexapod.common.errors import InputError
 from flexapod.model import ActuatorLoad, ActuatorMotion, preset
-from flexapod.plot.elements import sliding_mesh as plot_sliding_mesh
-from flexapod.study.sliding_mesh import sliding_mesh
+from flexapod.output.figures.elements import sliding_mesh as plot_sliding_mesh
+from flexapod.solve.fem.beam_contact import frozen_frequencies, static_shape
+from flexapod.solve.fem.beam_guide import ElementContact, InterpolatedClamp, NodeContact, Rollers
+from flexapod.solve.fem.beam_march import march_sliding_beam
+from flexapod.solve.fem.beam_mesh import band_product, beam_mesh
 
 STUDY = preset("paper-actuator")
 BEAM = STUDY.actuator

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.fem.frequencies import frequencies
-from flexapod.fem.mesh import beam_mesh
-from flexapod.fem.reduction import reduced_beam
-from flexapod.fem.sliding import HubMotion, SlidingBeam, gauss_step
+from flexapod.analysis.solid import simulate_solid
 from flexapod.model import Rectangle
-from flexapod.study.solid import simulate_solid
+from flexapod.solve.fem.frequencies import frequencies
+from flexapod.solve.fem.mesh import beam_mesh
+from flexapod.solve.fem.reduction import reduced_beam
+from flexapod.solve.fem.sliding import HubMotion, SlidingBeam, gauss_step
 
 FLAT, LENGTH = Rectangle(width=0.1524, height=0.0095), 3.66
 MATERIAL = {"E": 756.65 / FLAT.second_moment, "density": 4.02 / FLAT.area}

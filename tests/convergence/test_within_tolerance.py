@@ -12,7 +12,7 @@ import flexapod as fx
 from flexapod import kinematics
 from flexapod.kinematics.rotations import matrix
 from flexapod.model import Feedback, Joint, JointFriction, ScrewFriction, override, preset
-from flexapod.model.mount import BaseMotion, Mount
+from flexapod.model.study.mount import BaseMotion, Mount
 from flexapod.solve.time import radau
 from flexapod.solve.time.robot_march import prepare
 

@@ -25,7 +25,7 @@ from tests.texts import replaced
 import flexapod as fx
 from flexapod.model import preset_text
 from flexapod.solve.kernel import generated_text
-from flexapod.solve.modal.loss_factor import per_loss
+from flexapod.solve.modal.structural_damping import per_loss
 from flexapod.solve.robot_system import robot_system
 
 ROOT = Path(__file__).parents[2]

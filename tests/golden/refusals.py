@@ -24,8 +24,9 @@ from pathlib import Path
 from tests.damaged import WHOLE, added, doubled, removed, removed_neatly, retabled, scaled, value, wrong_name
 
 from flexapod import model
-from flexapod.errors import InputError
-from flexapod.model import PRESETS, files, preset_text
+from flexapod.common.errors import InputError
+from flexapod.model import PRESETS, preset_text
+from flexapod.model.file import files
 
 ROOT = Path(__file__).parents[2]
 RECORDED = ROOT / "build" / "refusals"

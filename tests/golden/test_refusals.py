@@ -2,7 +2,7 @@
 
 from tests.golden.refusals import message, packed, rows, samples, unpacked
 
-from flexapod.elements.element import registered
+from flexapod.mechanics.elements.element import registered
 
 
 def test_refusals_read_as_they_did(monkeypatch):

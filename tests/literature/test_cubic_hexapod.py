@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flexapod.kinematics.jacobian import length_jacobian, stiffness
-from flexapod.verify.cases.hexapods import EDGES_MM, above_the_centre, at_the_centre, joints
+from flexapod.verification.cases.hexapods import EDGES_MM, above_the_centre, at_the_centre, joints
 
 
 @pytest.mark.parametrize("edge", np.sqrt(3) * 1e-3 * np.array(EDGES_MM))

@@ -6,7 +6,7 @@ import pytest
 from flexapod.kinematics.forward import all_postures
 from flexapod.kinematics.inverse import leg_lengths
 from flexapod.kinematics.jacobian import length_jacobian
-from flexapod.verify.cases.hexapods import BASE, LENGTHS, PLATFORM
+from flexapod.verification.cases.hexapods import BASE, LENGTHS, PLATFORM
 
 
 @pytest.fixture(scope="module")

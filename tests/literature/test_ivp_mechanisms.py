@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from flexapod.errors import ComputationError
-from flexapod.verify import mechanism
-from flexapod.verify.cases import slider_crank, squeezer
+from flexapod.common.errors import ComputationError
+from flexapod.verification import mechanism
+from flexapod.verification.cases import slider_crank, squeezer
 
 
 def test_squeezer_of_second_order():

@@ -5,7 +5,7 @@ import pytest
 from tests.oracles import sliding
 from tests.oracles.ritz import clamped_free, clamped_free_shapes, polynomial_shapes
 
-from flexapod.verify.cases.sliding import TIP_MM
+from flexapod.verification.cases.sliding import TIP_MM
 
 RHO, EI = 4.02, 756.65
 STATE = {"L": 1.9, "L_dot": 0.4, "L_ddot": -0.3, "th": 0.6, "th_dot": 0.9, "th_ddot": 1.1}

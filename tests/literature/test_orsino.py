@@ -7,11 +7,11 @@ from tests.literature.test_oracle_mechanisms import orsino_motion
 from flexapod.kinematics.laws import Law
 from flexapod.kinematics.trajectory import Poses, poses_from_coordinates
 from flexapod.model import Home, Robot, Simulation
-from flexapod.model.cylinder import Cylinder
-from flexapod.model.joint import Carriage
-from flexapod.model.leg import Leg
-from flexapod.model.payload import Payload
-from flexapod.model.piston import Piston, Strut
+from flexapod.model.leg.cylinder import Cylinder
+from flexapod.model.leg.joint import Carriage
+from flexapod.model.leg.leg import Leg
+from flexapod.model.leg.piston import Piston, Strut
+from flexapod.model.study.payload import Payload
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.robot_system import robot_system
 from flexapod.solve.statics.rigid_forces import joint_forces

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from flexapod.verify.cases import bricard, four_bar
+from flexapod.verification.cases import bricard, four_bar
 
 
 def orders(errors):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from flexapod.verify.cases.solids import (
+from flexapod.verification.cases.solids import (
     PLANE_KAPPA,
     TABLE,
     TABLE_KAPPA,

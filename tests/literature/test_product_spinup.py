@@ -5,10 +5,10 @@ import pytest
 from tests.oracles import spinup
 from tests.runs import run_actuator
 
-from flexapod.bases import lateral_basis
+from flexapod.mechanics.shapes import lateral_basis
 from flexapod.model import Actuator, ActuatorMotion, ActuatorStudy, RateLaw, Simulation, SpinUpLaw
 from flexapod.solve.modal.actuator_modes import turning_matrices
-from flexapod.verify.cases.turning import TABLE
+from flexapod.verification.cases.turning import TABLE
 
 TS = 15.0
 # case; peak and its instant by Ritz's method, peak of full nonlinear finite elements, largest lag after the spin-up

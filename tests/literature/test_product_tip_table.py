@@ -6,9 +6,9 @@ from tests.oracles import sliding
 from tests.runs import run_actuator
 
 import flexapod as fx
-from flexapod.bases import lateral_basis
+from flexapod.mechanics.shapes import lateral_basis
 from flexapod.model import override, preset
-from flexapod.verify.cases.sliding import TIP_MM
+from flexapod.verification.cases.sliding import TIP_MM
 
 LENGTH, FEED, TURN = 1.83, 0.1, 0.785
 MOTION = sliding.uniform_motion(LENGTH, FEED, TURN)

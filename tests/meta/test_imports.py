@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 import flexapod
-from flexapod.cli.commands_view import PACKAGES
-from flexapod.verify.engines.engine import EXUDYN, MUJOCO
+from flexapod.app.cli.commands_view import PACKAGES
+from flexapod.verification.engines.engine import EXUDYN, MUJOCO
 
 HEAVY = ("casadi", "matplotlib", "netCDF4", "pint", "pydantic", "rich", "scipy", "typer", "xarray")
 
@@ -24,23 +24,27 @@ def test_import_is_light():
 
 
 def test_the_command_loads_neither_page_nor_proof_nor_paper():
-    own = ("flexapod.page", "flexapod.paper", "flexapod.verify")
+    own = ("flexapod.app.browser", "flexapod.verification.paper", "flexapod.verification")
     code = (
-        "import sys, flexapod.cli.cli as cli; cli.program(); print([m for m in sys.modules if m.startswith({names})])"
+        "import sys, flexapod.app.cli.cli as cli; cli.program(); "
+        "print([m for m in sys.modules if m.startswith({names})])"
     )
     assert python(code.format(names=own)) == "[]"
     engines = ("exudyn", "mujoco")  # loaded by what is computed, not by the tables of cases and claims
     code = "import sys, flexapod.{part}; print([m for m in {names} if m in sys.modules])"
-    assert python(code.format(part="verify.pack", names=engines)) == "[]"
-    assert python(code.format(part="paper.claims", names=engines)) == "[]"
+    assert python(code.format(part="verification.pack", names=engines)) == "[]"
+    assert python(code.format(part="verification.paper.claims", names=engines)) == "[]"
 
 
 def test_a_command_says_of_itself_what_it_says_among_all():
     """Only the module of the command that is asked for is imported; its help is the one among all commands."""
-    code = "import typer, flexapod.cli.cli as x; group = typer.main.get_command(x.program({names})); "
+    code = "import typer, flexapod.app.cli.cli as x; group = typer.main.get_command(x.program({names})); "
     code += "print(group.get_command(typer.Context(group), 'check').get_help(typer.Context(group)))"
     assert python(code.format(names="['check']")) == python(code.format(names="")) != ""
-    code = "import sys, flexapod.cli.cli as x; x.program(['check']); print('flexapod.cli.commands_run' in sys.modules)"
+    code = (
+        "import sys, flexapod.app.cli.cli as x; x.program(['check']); "
+        "print('flexapod.app.cli.commands_run' in sys.modules)"
+    )
     assert python(code) == "False"
 
 
@@ -93,7 +97,7 @@ def test_a_simulation_needs_no_scipy():
 
 def test_a_report_without_figures_needs_no_matplotlib(tmp_path):
     code = (
-        "import sys, flexapod as fx; from pathlib import Path; from flexapod.report.page import write_report; "
+        "import sys, flexapod as fx; from pathlib import Path; from flexapod.output.report.report import write_report; "
         "data = fx.simulate(fx.preset('paper-robot'), duration=0.01, step=1e-3); "
         f"write_report(data, Path({str(tmp_path)!r}), list); print('matplotlib' in sys.modules)"
     )
@@ -102,8 +106,8 @@ def test_a_report_without_figures_needs_no_matplotlib(tmp_path):
 
 def test_a_simulation_loads_no_budgets_and_builds_no_tables_that_its_study_lacks():
     code = (
-        "import sys, flexapod as fx, flexapod.study as study; fx.preset('paper-robot'); "
-        "later = [m for m in ('budgets', 'kinematics', 'static') if f'flexapod.study.{m}' in sys.modules]; "
+        "import sys, flexapod as fx, flexapod.analysis as study; fx.preset('paper-robot'); "
+        "later = [m for m in ('budgets', 'kinematics', 'static') if f'flexapod.analysis.{m}' in sys.modules]; "
         "print(later, fx.model.ScrewDrive.__pydantic_complete__, fx.model.Robot.__pydantic_complete__, "
         "all(getattr(study, name) for name in study.__all__))"
     )

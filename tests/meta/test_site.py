@@ -7,11 +7,11 @@ from docs.site import commands, gallery, python, stage, studyfile, variables
 from tests.golden.refusals import READERS, rows, samples, unpacked
 
 import flexapod as fx
-from flexapod.cli.cli import HOMES
-from flexapod.cli.examples import titles
-from flexapod.errors import InputError
-from flexapod.results.names import VARIABLES
-from flexapod.schema.reference import plain_path, reference
+from flexapod.analysis.results.variables import VARIABLES
+from flexapod.app.cli.cli import HOMES
+from flexapod.app.cli.examples import titles
+from flexapod.common.errors import InputError
+from flexapod.common.tables.reference import plain_path, reference
 
 NO_KEY = ("unknown key", "lies too deep", "has too many digits")
 

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from tests.property.test_written import plain
 
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
+from flexapod.common.tables.reference import reference
+from flexapod.common.units import to_si
 from flexapod.model import PRESETS, Study, loads, preset_text
-from flexapod.model.circle import Circle
-from flexapod.model.fields import read_fields
-from flexapod.model.page import study_data
-from flexapod.model.tolerances import RatioSpread
-from flexapod.schema.reference import reference
-from flexapod.units import to_si
+from flexapod.model.file.fields import read_fields
+from flexapod.model.file.page import study_data
+from flexapod.model.leg.circle import Circle
+from flexapod.model.study.tolerances import RatioSpread
 
 MECHANISMS = sorted((Path(__file__).parents[2] / "examples" / "mechanisms").glob("*.toml"))
 TEXTS = {name: preset_text(name) for name in PRESETS} | {path.stem: path.read_text("utf-8") for path in MECHANISMS}

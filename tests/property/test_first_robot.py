@@ -10,13 +10,13 @@ import pytest
 
 import flexapod as fx
 from flexapod import kinematics, model
-from flexapod.description.robot import describe
-from flexapod.design import Request, first_robot, parse_request, sizes
-from flexapod.document.first import first_words
-from flexapod.errors import InputError
-from flexapod.review.checks import check_path
-from flexapod.review.estimates import buckling_load
-from flexapod.units import to_si
+from flexapod.analysis.checks.checks import check_path
+from flexapod.analysis.checks.estimates import buckling_load
+from flexapod.analysis.description.robot_description import describe
+from flexapod.common.errors import InputError
+from flexapod.common.units import to_si
+from flexapod.design.first_robot import Request, first_robot, parse_request, sizing
+from flexapod.output.text.first import first_words
 
 RANDOM = np.random.default_rng(20240614)
 HOMES = np.geomspace(0.05, 5.0, 40)  # m
@@ -27,7 +27,7 @@ MATERIALS = RANDOM.choice(tuple(model.MATERIALS), 40)
 
 
 def wish(home, payload, share, motion, material):
-    stroke = share * sizes.longest_stroke(sizes.joints_of(Request(home=home, payload=payload)), 0.02 * home)
+    stroke = share * sizing.longest_stroke(sizing.joints_of(Request(home=home, payload=payload)), 0.02 * home)
     return (
         f"home={home:.5g} m, payload={payload:.5g} kg, stroke={1e3 * stroke:.5g} mm, motion={motion}, "
         f"material={material}"

@@ -5,7 +5,7 @@ import pytest
 from tests.runs import paper_robot
 
 import flexapod as fx
-from flexapod.surveys.workspace.findings import SCALARS
+from flexapod.design.maps.findings import SCALARS
 
 
 @pytest.fixture(scope="module")

@@ -10,11 +10,11 @@ import pytest
 from tests.damaged import WHOLE
 
 from flexapod import model
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
+from flexapod.common.tables.base import Frozen
+from flexapod.common.tables.reference import reference
 from flexapod.model import PRESETS, loads, preset_text, to_toml
-from flexapod.model.page import study_data
-from flexapod.schema.base import Frozen
-from flexapod.schema.reference import reference
+from flexapod.model.file.page import study_data
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 COUNT = 2000

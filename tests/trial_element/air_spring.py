@@ -4,7 +4,7 @@ import math
 from typing import Annotated, ClassVar
 
 import flexapod as fx
-from flexapod.symbolic.elementary import log
+from flexapod.mechanics.symbolic.elementary import log
 
 AMBIENT = 101325.0  # Pa
 

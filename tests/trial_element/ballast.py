@@ -3,7 +3,7 @@
 from typing import Annotated, ClassVar
 
 import flexapod as fx
-from flexapod.symbolic.vocabulary import dot, vertcat, zeros
+from flexapod.mechanics.symbolic.vocabulary import dot, vertcat, zeros
 
 
 class Ballast(fx.Element):

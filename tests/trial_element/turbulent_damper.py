@@ -3,7 +3,7 @@
 from typing import Annotated, ClassVar
 
 import flexapod as fx
-from flexapod.symbolic.elementary import fabs
+from flexapod.mechanics.symbolic.elementary import fabs
 
 
 class TurbulentDamper(fx.Element):

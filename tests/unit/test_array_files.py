@@ -17,10 +17,10 @@ from scipy.io import loadmat, savemat
 
 import flexapod as fx
 from flexapod import control
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
+from flexapod.common.tables.array_files import json_arrays, mat_arrays, npz_arrays, texts_of
+from flexapod.common.tables.systems import read_system
 from flexapod.model import preset_text
-from flexapod.schema.array_files import json_arrays, mat_arrays, npz_arrays, texts_of
-from flexapod.schema.systems import read_system
 
 #: Bytes: Python with NumPy and what is imported takes 120 MB of them, a file of the largest size thrice its own.
 ROOM = 600_000_000
@@ -249,7 +249,7 @@ import sys, time
 from pathlib import Path
 import numpy, zipfile, json
 import flexapod as fx
-from flexapod.schema.systems import read_system
+from flexapod.common.tables.systems import read_system
 for name in sys.argv[1:]:
     began = time.process_time()
     try:
@@ -258,8 +258,8 @@ for name in sys.argv[1:]:
     except fx.InputError as error:
         what = "refused: " + error.what
     print(Path(name).name, time.process_time() - began, what, sep=chr(9))
-import resource
-print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024)
+status = dict(line.split(":", 1) for line in Path("/proc/self/status").read_text().splitlines() if ":" in line)
+print(int(status["VmHWM"].split()[0]) * 1024)  # of this program alone; ru_maxrss counts what its parent had, too
 """
 
 

@@ -8,7 +8,7 @@ import xarray as xr
 from tests.runs import paper_robot
 
 import flexapod as fx
-from flexapod.results.asked import Asked
+from flexapod.analysis.results.lazy_arrays import Asked
 
 SHORT = {"fidelity": "lumped", "duration": 0.02}
 

@@ -19,8 +19,8 @@ from benchmarks.side_by_side import Family, chosen
 from benchmarks.timing import Spread, interleaved
 from benchmarks.tolerances import at_error
 
+from flexapod.analysis.results.causes import cause_names
 from flexapod.model import load, loads, preset
-from flexapod.results.causes import cause_names
 from flexapod.solve.time.robot_march import prepare
 
 needs_cpp = pytest.mark.skipif(shutil.which("c++") is None, reason="there is no C++ compiler")
@@ -144,7 +144,7 @@ def test_compiled_code_counts_itself(tmp_path, monkeypatch):
 
 @needs_cpp
 def test_counted_residual_is_what_casadi_lists():
-    from flexapod.mechanics.assembly import leg_functions
+    from flexapod.mechanics.leg.kernel_functions import leg_functions
     from flexapod.solve.time.robot_march import prepare
 
     listed = leg_functions(prepare(fixed(5e-4, 0.9)).system.kernel.shapes)[0]

@@ -9,6 +9,8 @@ from tests.runs import FIELDS, paper_robot, run_robot, with_legs
 
 import flexapod as fx
 from flexapod import kinematics
+from flexapod.common.tables.csv_tables import WRENCH as COLUMNS
+from flexapod.common.tables.csv_tables import read_table
 from flexapod.kinematics import Breaks
 from flexapod.model import (
     ActuatorMotion,
@@ -21,9 +23,7 @@ from flexapod.model import (
     WaypointMotion,
     override,
 )
-from flexapod.schema.csv_tables import WRENCH as COLUMNS
-from flexapod.schema.csv_tables import read_table
-from flexapod.solve.time.stops import Stop, Stops
+from flexapod.solve.time.time_events import Stop, Stops
 
 WRENCH = np.array([60.0, -40.0, 30.0, 5.0, 4.0, -3.0])
 

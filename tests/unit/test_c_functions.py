@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 import scipy.special
 
-from flexapod.symbolic import c_source, compiler, elementary
-from flexapod.symbolic.c_functions import constant_text, without_text
-from flexapod.symbolic.compiler import CompiledFunction, compiled_library
-from flexapod.symbolic.functions import Interpreted, NamedFunction
-from flexapod.symbolic.vocabulary import gradient, symbol, vertcat
+from flexapod.mechanics.symbolic import c_source, compiler, elementary
+from flexapod.mechanics.symbolic.c_functions import constant_text, without_text
+from flexapod.mechanics.symbolic.compiler import CompiledFunction, compiled_library
+from flexapod.mechanics.symbolic.functions import Interpreted, NamedFunction
+from flexapod.mechanics.symbolic.vocabulary import gradient, symbol, vertcat
 
 pytestmark = [pytest.mark.optimised, pytest.mark.skipif(compiler.compiler() is None, reason="there is no C compiler")]
 

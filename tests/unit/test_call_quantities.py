@@ -11,9 +11,9 @@ import xarray as xr
 
 import flexapod as fx
 from flexapod import control
+from flexapod.commissioning.feedforward import drive_loads, least_time
+from flexapod.common.errors import InputError
 from flexapod.control import IFF, PID
-from flexapod.errors import InputError
-from flexapod.feedforward import drive_loads, least_time
 
 ROBOT = fx.preset("paper-robot").replace(simulation={"fidelity": "lumped", "step": 1e-3, "duration": 0.02})
 SCREWS = fx.preset("machine-hexapod")

@@ -4,7 +4,7 @@ import pytest
 
 import flexapod as fx
 from flexapod import model
-from flexapod.results.attributes import KEPT, attributes, robot_of, study_of
+from flexapod.analysis.results.attributes import KEPT, attributes, robot_of, study_of
 
 
 @pytest.fixture

@@ -9,11 +9,11 @@ import pytest
 from tests.paper_parts import study_parts
 
 from flexapod import model
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 from flexapod.model import preset, to_toml
-from flexapod.paper import claims_actuator, claims_rigid, claims_robot, claims_variants, readings
-from flexapod.paper import variants as statics
-from flexapod.paper.claim import (
+from flexapod.verification.paper import claims_actuator, claims_rigid, claims_robot, claims_variants, readings
+from flexapod.verification.paper import variants as statics
+from flexapod.verification.paper.claim import (
     BREAKS,
     DONE,
     HERE,
@@ -34,10 +34,10 @@ from flexapod.paper.claim import (
     size,
     up,
 )
-from flexapod.paper.claim import times as times_in_words
-from flexapod.paper.claims import by_whose, claims, counted
-from flexapod.paper.study import PaperStudy
-from flexapod.paper.variants import with_half_angle
+from flexapod.verification.paper.claim import times as times_in_words
+from flexapod.verification.paper.claims import by_whose, claims, counted
+from flexapod.verification.paper.study import PaperStudy
+from flexapod.verification.paper.variants import with_half_angle
 
 pytestmark = pytest.mark.xdist_group("claims")  # one process computes the parts
 ANGLES = (10.0, 29.0)
@@ -379,7 +379,7 @@ def test_singular_pose_is_where_the_determinant_changes_sign(near_hexagons):
 
 def test_equilibrium_is_followed_to_its_fold(near_hexagons, monkeypatch):
     """Beyond the fold other equilibria exist near the rigid pose (at 24 deg, say), not continuing that of home."""
-    from flexapod.study import modes
+    from flexapod.analysis import modes
 
     found = statics.at_rest(near_hexagons)
     monkeypatch.setattr(statics, "POSES", 31)

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from tests.paper_parts import part, study_parts, whole_study
 
-from flexapod.paper import claims_actuator
-from flexapod.paper.claim import BREAKS, HOLDS, IN_PART, MISSES, NOT, OPEN
-from flexapod.paper.claims import claims, markdown
-from flexapod.paper.study import STEPS, PaperStudy
+from flexapod.verification.paper import claims_actuator
+from flexapod.verification.paper.claim import BREAKS, HOLDS, IN_PART, MISSES, NOT, OPEN
+from flexapod.verification.paper.claims import claims, markdown
+from flexapod.verification.paper.study import STEPS, PaperStudy
 
 pytestmark = pytest.mark.xdist_group("claims")  # one process computes the parts
 PAGE, README = (Path(__file__).parents[2] / name for name in ("docs/paper.md", "README.md"))

@@ -5,10 +5,10 @@ import pytest
 from tests.runs import paper_robot
 
 import flexapod as fx
+from flexapod.analysis.checks import checks, plausibility
+from flexapod.analysis.results import bodies
+from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.model import AxisMotion
-from flexapod.results import bodies
-from flexapod.results.path import RigidPath
-from flexapod.review import checks, plausibility
 
 SHORT = {"fidelity": "lumped", "duration": 0.02}
 

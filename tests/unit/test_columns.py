@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from flexapod.words import column, text
+from flexapod.common.quantities import column, text
 
 
 @pytest.mark.parametrize(
@@ -40,8 +40,8 @@ def test_tables_of_a_run_and_of_modes(capsys):
     """Peaks of 4.33 µm, 12 mm and 900 nm once stood in one column, each with a unit of its own."""
     from types import SimpleNamespace
 
-    from flexapod.document.run import axes_table
-    from flexapod.document.terminal import show
+    from flexapod.output.text.answers import axes_table
+    from flexapod.output.text.terminal import show
 
     axes = [
         SimpleNamespace(axis=a, peak=peak, time=1.0, rms=peak / 3, excursion=0.1, per_cent=None)

@@ -13,16 +13,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from flexapod.errors import ComputationError, InputError
+from flexapod.common.errors import ComputationError, InputError
 from flexapod.kinematics.robot import home_pose
+from flexapod.mechanics.symbolic import cache, compiler
+from flexapod.mechanics.symbolic.compiler import CompiledFunction, compiled_library, written_library
+from flexapod.mechanics.symbolic.functions import NamedFunction
+from flexapod.mechanics.symbolic.vocabulary import symbol
 from flexapod.model import preset
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.robot_system import robot_system
-from flexapod.solve.statics.locked import _at_rest
-from flexapod.symbolic import cache, compiler
-from flexapod.symbolic.compiler import CompiledFunction, compiled_library, written_library
-from flexapod.symbolic.functions import NamedFunction
-from flexapod.symbolic.vocabulary import symbol
+from flexapod.solve.statics.locked_robot import _at_rest
 
 pytestmark = [pytest.mark.optimised, pytest.mark.skipif(compiler.compiler() is None, reason="there is no C compiler")]
 

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from tests.unit.test_compile_cache import Compile
 
-from flexapod.errors import ComputationError
-from flexapod.symbolic import compiler
+from flexapod.common.errors import ComputationError
+from flexapod.mechanics.symbolic import compiler
 
 pytestmark = [pytest.mark.optimised, pytest.mark.skipif(sys.platform == "win32", reason="scripts as programs")]
 

@@ -5,7 +5,7 @@ import pytest
 
 import flexapod.control as fc
 from flexapod import plot
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 
 HZ = np.geomspace(0.1, 100, 200)
 

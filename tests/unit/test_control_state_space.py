@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.control import StateSpace, frequency
-from flexapod.errors import ComputationError, InputError
+from flexapod.common.errors import ComputationError, InputError
+from flexapod.control import StateSpace, frequency_response
 
 M, K, C = 2.0, 800.0, 1.2  # one mode: kg, N/m, N s/m
 
@@ -198,10 +198,12 @@ def test_a_sampled_system_is_evaluated_on_the_circle():
 def test_of_many_frequencies_few_are_solved_for(monkeypatch):
     """A solution at a frequency costs as much as poles and residues at a hundred: some twenty check the others."""
     system, solved_for = random_robot(np.random.default_rng(1)), []
-    solving = frequency._solved
-    monkeypatch.setattr(frequency, "_solved", lambda A, B, C, s: solved_for.append(s.size) or solving(A, B, C, s))
+    solving = frequency_response._solved
+    monkeypatch.setattr(
+        frequency_response, "_solved", lambda A, B, C, s: solved_for.append(s.size) or solving(A, B, C, s)
+    )
     system.at(np.geomspace(1, 1e4, 1000))
-    assert 0 < sum(solved_for) <= 2 * frequency.CHECKED
+    assert 0 < sum(solved_for) <= 2 * frequency_response.CHECKED
 
 
 def test_channels_are_chosen_by_name_and_by_group():
@@ -252,8 +254,8 @@ def test_responses_over_all_frequencies_of_a_robot_are_those_of_solving(monkeypa
     Channels that are 0 by symmetry hold rounding of the others."""
     plant = fx.linearize(fx.preset("nano-hexapod"), inputs="drive", outputs=["force-sensor:drive", "stroke"])
     hz, solved = np.geomspace(0.01, 2e5, 2000), []
-    solving = frequency._solved
-    monkeypatch.setattr(frequency, "_solved", lambda *a: (solved.append(a[3].size), solving(*a))[1])
+    solving = frequency_response._solved
+    monkeypatch.setattr(frequency_response, "_solved", lambda *a: (solved.append(a[3].size), solving(*a))[1])
     found = plant.at(hz)
     assert sum(solved) < 600  # the rest by residues
     for k in range(0, 2000, 40):

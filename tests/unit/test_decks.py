@@ -7,12 +7,12 @@ import pytest
 from tests.mechanisms import ROBOTS
 
 from flexapod import InputError
-from flexapod.exchange.decks import Deck, Tie, cross_matrix, solved
-from flexapod.exchange.decks_legs import legs_at_pose
-from flexapod.exchange.decks_robot import point_masses
-from flexapod.exchange.export import abaqus_deck, left_out
 from flexapod.kinematics import home_pose
 from flexapod.model import ConstantWrench, Cylinder, ForceDrive, Joint, Load, ServoDrive, Study, preset
+from flexapod.output.exchange.decks import Deck, Tie, cross_matrix, solved
+from flexapod.output.exchange.decks_legs import legs_at_pose
+from flexapod.output.exchange.decks_robot import point_masses
+from flexapod.output.exchange.export import abaqus_deck, left_out
 
 SHARED = {
     "HEADING", "NODE", "ELEMENT", "MASS", "MATERIAL", "ELASTIC", "DENSITY", "SOLID SECTION", "SPRING", "BOUNDARY",

@@ -7,8 +7,9 @@ import pytest
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
-from flexapod.description.leg import _stress
-from flexapod.description.robot import describe
+from flexapod.analysis.description.leg_description import _stress
+from flexapod.analysis.description.robot_description import describe
+from flexapod.analysis.results.idealizations import held
 from flexapod.model import (
     AxisMotion,
     ConstantLaw,
@@ -21,7 +22,6 @@ from flexapod.model import (
     Tube,
     override,
 )
-from flexapod.results.ideal import held
 
 
 def rolling(duration, amplitude=0.4643, profile="quintic", hold=0.25, **settings):
@@ -99,7 +99,7 @@ def test_bending_stress_is_that_of_a_simulation():
 
 
 def _curvature(data):
-    from flexapod.bases import lateral_basis
+    from flexapod.mechanics.shapes import lateral_basis
 
     values = lateral_basis("tip-load", 5).values(np.linspace(0, 1, 21), 2)
     free = data.leg_stroke.values - 0.31518

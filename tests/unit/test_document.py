@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from flexapod.document import html
-from flexapod.document.parts import Bullets, Chapter, Lines, Remarks, Text, TextTable
-from flexapod.document.terminal import show, tell
-from flexapod.words import columns, sentence
+from flexapod.common.quantities import columns, sentence
+from flexapod.output.text import html
+from flexapod.output.text.parts import Bullets, Chapter, Lines, Remarks, Text, TextTable
+from flexapod.output.text.terminal import show, tell
 
 LEGS = TextTable(["force [N]", "kind"], [["1", "2.50", "strut"], ["10", "12.00", "<piston>"]], left=(0, 2), of="leg")
 

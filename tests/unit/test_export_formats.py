@@ -3,10 +3,10 @@
 import pytest
 
 import flexapod as fx
-from flexapod.errors import InputError
-from flexapod.exchange import formats
-from flexapod.exchange.export import abaqus_deck
-from flexapod.exchange.formats import FORMATS
+from flexapod.common.errors import InputError
+from flexapod.output.exchange import formats
+from flexapod.output.exchange.export import abaqus_deck
+from flexapod.output.exchange.formats import FORMATS
 
 ROBOT = fx.preset("paper-robot")
 

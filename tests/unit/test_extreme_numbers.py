@@ -8,12 +8,12 @@ import pytest
 
 import flexapod as fx
 from flexapod import model
-from flexapod.bases.eigen import eigh
-from flexapod.errors import ComputationError, FlexapodError, InputError
+from flexapod.common.errors import ComputationError, FlexapodError, InputError
+from flexapod.common.tables.section import Section
+from flexapod.mechanics.shapes.eigen import eigh
 from flexapod.model import preset_text
-from flexapod.model.files import read_study
-from flexapod.schema.section import Section
-from flexapod.solve.saddle import saddle_solve
+from flexapod.model.file.files import read_study
+from flexapod.solve.saddle_point import saddle_solve
 
 EXTREMES = (1e-300, 1e160)
 

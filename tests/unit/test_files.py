@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 
 from flexapod import model
-from flexapod.errors import InputError
+from flexapod.common import files
+from flexapod.common.errors import InputError
+from flexapod.common.files import read_bytes, read_text, replacing, whole
+from flexapod.common.tables import csv_tables
+from flexapod.design.sweeps.plan import read_plan
+from flexapod.mechanics.symbolic import cache
 from flexapod.model import preset_text
-from flexapod.runtime import files
-from flexapod.runtime.files import read_bytes, read_text, replacing, whole
-from flexapod.schema import csv_tables
-from flexapod.surveys.sweeps.plan import read_plan
-from flexapod.symbolic import cache
 
 resource = pytest.importorskip("resource")  # and pipes: neither is on Windows
 

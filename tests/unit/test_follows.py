@@ -9,7 +9,7 @@ import pytest
 from tests.machines import machine, study
 
 import flexapod as fx
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 from flexapod.model import (
     MATERIALS,
     Actuator,
@@ -22,10 +22,10 @@ from flexapod.model import (
     Strut,
     Tube,
 )  # fmt: skip
-from flexapod.model.cylinder import Mounted
-from flexapod.model.disturbance import Disturbance, Floor
-from flexapod.model.joint import Joint
-from flexapod.model.sections import PistonSection
+from flexapod.model.leg.cylinder import Mounted
+from flexapod.model.leg.joint import Joint
+from flexapod.model.leg.sections import PistonSection
+from flexapod.model.study.disturbance import Disturbance, Floor
 
 STEEL = MATERIALS["steel"]
 BY_HAND = Piston(length=0.6, EA=3e8, EI=1e5, rhoA=12.0, diameter=0.06)

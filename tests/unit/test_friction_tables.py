@@ -5,7 +5,7 @@ import pytest
 from tests.unit.test_real_parts import STUDY
 
 import flexapod as fx
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 from flexapod.model import JointFriction, ScrewFriction, StrokeFriction, to_toml
 
 PLACES = {

@@ -8,11 +8,11 @@ import matplotlib
 import matplotlib.pyplot as plt
 import pytest
 
-from flexapod.cli.examples import titles
+from flexapod.app.cli.examples import titles
 
 matplotlib.use("Agg")
-FOLDER = Path(__file__).parents[2] / "src" / "flexapod" / "_examples"
-NOTEBOOKS = FOLDER.parent / "_notebooks"
+FOLDER = Path(__file__).parents[2] / "src" / "flexapod" / "examples/gallery"
+NOTEBOOKS = FOLDER.parent / "notebooks"
 EXAMPLES = sorted(FOLDER.glob("*.py"))
 
 

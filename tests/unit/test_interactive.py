@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from flexapod.report.curves import MOST_POINTS, packed, thinned
-from flexapod.report.interactive import interactive
+from flexapod.output.report.curves import MOST_POINTS, packed, thinned
+from flexapod.output.report.plotly_export import interactive
 
 
 def unpacked(value):

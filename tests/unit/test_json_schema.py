@@ -10,11 +10,11 @@ from tests.damaged import WHOLE
 from tests.property.test_written import respelled
 from typer.testing import CliRunner
 
-from flexapod.cli.cli import app
+from flexapod.app.cli.cli import app
+from flexapod.common.tables.reference import reference
 from flexapod.model import PRESETS, preset_text
-from flexapod.model.json_schema import json_schema
-from flexapod.model.page import study_data
-from flexapod.schema.reference import reference
+from flexapod.model.file.json_schema import json_schema
+from flexapod.model.file.page import study_data
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 STUDIES = {name: preset_text(name) for name in PRESETS}

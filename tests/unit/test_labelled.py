@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from flexapod.labelled import composed
+from flexapod.common.datasets import composed
 
 WORDS = np.array(["", "it fell"], dtype=object)
 PARTS = {
@@ -62,6 +62,6 @@ def test_lengths_that_differ_are_refused():
 
 
 def test_dask_is_not_loaded():
-    code = "import sys; from flexapod.labelled import composed; composed({'a': ('n', [1.0])}, {'n': ['x']}); "
+    code = "import sys; from flexapod.common.datasets import composed; composed({'a': ('n', [1.0])}, {'n': ['x']}); "
     code += "print('dask.array' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "False\n"

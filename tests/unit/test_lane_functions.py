@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from flexapod.symbolic import c_source, compiler
-from flexapod.symbolic.compiler import CompiledFunction, compiled_library
-from flexapod.symbolic.functions import NamedFunction
-from flexapod.symbolic.vocabulary import SX, cos, dot, exp, sin, sqrt, symbol, vertcat
+from flexapod.mechanics.symbolic import c_source, compiler
+from flexapod.mechanics.symbolic.compiler import CompiledFunction, compiled_library
+from flexapod.mechanics.symbolic.functions import NamedFunction
+from flexapod.mechanics.symbolic.vocabulary import SX, cos, dot, exp, sin, sqrt, symbol, vertcat
 
 pytestmark = [pytest.mark.optimised, pytest.mark.skipif(compiler.compiler() is None, reason="there is no C compiler")]
 

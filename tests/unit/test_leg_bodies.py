@@ -9,18 +9,18 @@ from typer.testing import CliRunner
 
 import flexapod as fx
 from flexapod import kinematics
-from flexapod.cli.cli import app
-from flexapod.description.bodies import stroke_ends
-from flexapod.description.robot import describe
-from flexapod.errors import InputError
+from flexapod.analysis.description.clearance import stroke_ends
+from flexapod.analysis.description.robot_description import describe
+from flexapod.analysis.results.bodies import CYLINDER, bodies_words, clearance, pairs_of_legs, turns
+from flexapod.analysis.results.rigid_path import RigidPath
+from flexapod.app.cli.cli import app
+from flexapod.common.errors import InputError
+from flexapod.common.ranking import first_least
 from flexapod.kinematics import bodies
 from flexapod.kinematics.rotations import exponential
 from flexapod.model import Home, to_toml
-from flexapod.model.joint import Joint
-from flexapod.model.leg import Stroke
-from flexapod.results.bodies import CYLINDER, bodies_words, clearance, pairs_of_legs, turns
-from flexapod.results.path import RigidPath
-from flexapod.ties import first_least
+from flexapod.model.leg.joint import Joint
+from flexapod.model.leg.leg import Stroke
 
 LIMITED = {"base_joint": Joint(max_angle=0.2), "platform_joint": Joint(max_angle=0.1)}
 

@@ -3,8 +3,8 @@
 import pytest
 from tests.layouts import layout
 
-from flexapod.bases import axial_basis, lateral_basis
-from flexapod.mechanics.layout import LEG_PARAMETERS, leg_parameters
+from flexapod.mechanics.leg.layout import LEG_PARAMETERS, leg_parameters
+from flexapod.mechanics.shapes import axial_basis, lateral_basis
 
 
 def shapes(**switches):

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.errors import InputError
-from flexapod.review import room
+from flexapod.analysis.checks import resource_limits
+from flexapod.common.errors import InputError
 
 
 def test_maps_beyond_the_memory_are_refused(monkeypatch):
-    monkeypatch.setattr(room, "available_memory", lambda: 2e8)
+    monkeypatch.setattr(resource_limits, "available_memory", lambda: 2e8)
     volume = {name: np.linspace(-0.01, 0.01, 100) for name in ("surge", "sway", "heave")}
     with pytest.raises(InputError, match=r"axes.*GB of memory, where 0.2 GB is free.*fewer points"):
         fx.workspace_map(fx.preset("paper-robot"), volume)
@@ -20,4 +20,4 @@ def test_the_estimate_is_the_size_of_a_map():
     count = 20
     data = fx.workspace_map(fx.preset("paper-robot"), {"surge": np.linspace(-0.01, 0.01, count)})
     held = sum(data[name].nbytes for name in data.data_vars)
-    assert 8 * count * (room.POSE + data.sizes["mode"]) == pytest.approx(held, rel=0.1)
+    assert 8 * count * (resource_limits.POSE + data.sizes["mode"]) == pytest.approx(held, rel=0.1)

@@ -5,10 +5,10 @@ import pytest
 from tests.mechanisms import ROBOTS, THREE, built, leg, ring, sliders, tangents
 
 import flexapod as fx
+from flexapod.analysis.checks.checks import check_geometry
+from flexapod.analysis.checks.reachability import REASONS, rigid_codes
+from flexapod.design.maps.grid import usual_axes
 from flexapod.model.motion import AxisMotion
-from flexapod.review.checks import check_geometry
-from flexapod.review.reach import REASONS, rigid_codes
-from flexapod.surveys.workspace.grid import usual_axes
 
 
 def codes(robot, **values):

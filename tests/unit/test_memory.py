@@ -6,13 +6,13 @@ import sys
 
 import pytest
 
-from flexapod.runtime.memory import _glibc
+from flexapod.common.memory import _glibc
 
 #: Twice eight arrays of 2 MB each, and pages that the system had to give for the second eight.
 ROUNDS = """
 import resource
 import numpy as np
-from flexapod.runtime.memory import keep_freed
+from flexapod.common.memory import keep_freed
 
 def eight():
     return [np.ones(1 << 18) for _ in range(8)]
@@ -36,7 +36,7 @@ def test_what_a_run_frees_is_kept_for_the_next():
 #: Things in circles that live while a module is asked for that is there already: how many of 200000 are there at last.
 CIRCLES = """
 import weakref
-from flexapod.runtime.loading import loaded
+from flexapod.common.lazy_imports import loaded
 
 class Thing:
     pass
@@ -45,7 +45,7 @@ def round():
     things = [Thing() for _ in range(1000)]
     for thing in things:
         thing.itself = thing
-    loaded("flexapod.words")
+    loaded("flexapod.common.quantities")
     return [weakref.ref(thing) for thing in things]
 
 there = [reference for _ in range(200) for reference in round()]

@@ -5,7 +5,8 @@ import pytest
 from tests import machines, mechanisms
 
 from flexapod import accuracy, loads
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
+from flexapod.common.quantities import text as text_of
 from flexapod.model import (
     Expansion,
     Geometry,
@@ -18,7 +19,6 @@ from flexapod.model import (
     preset_text,
     to_toml,
 )
-from flexapod.words import text as text_of
 
 TEXT = preset_text("paper-robot")
 
@@ -142,7 +142,7 @@ def test_what_a_robot_does_not_have_has_neither_errors_nor_heat():
 
 
 def test_a_check_says_how_far_the_machine_as_built_is_off():
-    from flexapod.pose_errors.at_home import accuracy_words
+    from flexapod.analysis.pose_errors.accuracy_text import accuracy_words
 
     assert accuracy_words(study("")) == ()
     text = '\n[geometry]\nleg_offset = "10 um"\n[heat]\npiston = 25\n[tolerances]\nleg_offset = "20 um"\n'
@@ -152,7 +152,7 @@ def test_a_check_says_how_far_the_machine_as_built_is_off():
 
 
 def test_what_check_says_of_temperatures_over_time(tmp_path):
-    from flexapod.pose_errors.at_home import accuracy_words
+    from flexapod.analysis.pose_errors.accuracy_text import accuracy_words
 
     (tmp_path / "heat.csv").write_text("time [s], piston [degC]\n0, 20\n600, 26\n1200, 24\n")
     more = '[heat]\nfile = "heat.csv"\nexpansion = { piston = 1.2e-5 }\n'

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from flexapod import model
-from flexapod.errors import ComputationError, InputError
+from flexapod.common.errors import ComputationError, InputError
 
 STUDIES = {name: model.preset(name) for name in model.PRESETS}
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from flexapod import model
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 
 ROBOT = model.preset_text("paper-robot")
 ACTUATOR = model.preset_text("paper-actuator")

@@ -8,8 +8,8 @@ import pytest
 from tests.texts import replaced
 
 from flexapod import model
-from flexapod.errors import InputError
-from flexapod.model.chain import chain_of, chains_of
+from flexapod.common.errors import InputError
+from flexapod.model.leg.chain import chain_of, chains_of
 
 FOLDER = Path(__file__).parents[2] / "examples" / "mechanisms"
 SAMPLES = {path.stem: path.read_text(encoding="utf-8") for path in sorted(FOLDER.glob("*.toml"))}
@@ -340,7 +340,7 @@ def test_what_only_python_can_give():
 
 
 def test_the_help_of_new_names_every_preset():
-    text = (Path(__file__).parents[2] / "src/flexapod/cli/commands_study.py").read_text(encoding="utf-8")
+    text = (Path(__file__).parents[2] / "src/flexapod/app/cli/commands_study.py").read_text(encoding="utf-8")
     assert all(name in text for name in model.PRESETS)
 
 

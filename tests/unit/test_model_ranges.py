@@ -7,9 +7,9 @@ import pytest
 from annotated_types import Ge, Le, Lt
 
 from flexapod import model
-from flexapod.errors import InputError
-from flexapod.schema.base import Frozen, Quantity
-from flexapod.units import DIMENSIONS
+from flexapod.common.errors import InputError
+from flexapod.common.tables.base import Frozen, Quantity
+from flexapod.common.units import DIMENSIONS
 
 
 def classes(base=Frozen):

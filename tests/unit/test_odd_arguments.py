@@ -6,7 +6,7 @@ from tests.runs import paper_robot
 import flexapod as fx
 from flexapod import model
 from flexapod.model import preset_text
-from flexapod.model.remarks import robot_remarks
+from flexapod.model.study.remarks import robot_remarks
 
 
 @pytest.mark.parametrize("load", ["x", [1, 2], [[1] * 6], [0, 0, float("nan"), 0, 0, 0]])

@@ -199,7 +199,9 @@ def test_least_time_of_a_linear_system_has_its_own_arguments(double, given, key)
 def test_commands_ahead_are_refused_before_anything_is_computed(call, given, key, monkeypatch):
     study = fx.preset("machine-hexapod")
     for place in ("shaping.check_path", "compensation.check_path", "least_time.StraightWay"):
-        monkeypatch.setattr(f"flexapod.feedforward.{place}", lambda *_: pytest.fail("something is computed"))
+        monkeypatch.setattr(
+            f"flexapod.commissioning.feedforward.{place}", lambda *_: pytest.fail("something is computed")
+        )
     refused(lambda: call(study, **given), key)
 
 

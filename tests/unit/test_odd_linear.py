@@ -8,7 +8,7 @@ from tests.odd import NAN, refused, swinging
 
 import flexapod as fx
 from flexapod import control
-from flexapod.exchange.uff import uff
+from flexapod.output.exchange.uff import uff
 
 MECHANISMS = Path(__file__).parents[2] / "examples" / "mechanisms"
 
@@ -250,6 +250,6 @@ def test_what_is_refused_is_so_before_anything_is_computed(robot, call, key, mon
     def computed(*given, **named):
         raise AssertionError("computed first")
 
-    for name in ("solve.modal.at_poses.lock", "study.simulation.simulated", "review.checks.check_path"):
+    for name in ("solve.modal.at_poses.lock", "analysis.simulation.simulated", "analysis.checks.checks.check_path"):
         monkeypatch.setattr(f"flexapod.{name}", computed)
     refused(lambda: call(robot), key)

@@ -10,10 +10,10 @@ import xarray as xr
 
 import flexapod as fx
 from flexapod import kinematics
-from flexapod.description import rest
-from flexapod.description.robot import describe
+from flexapod.analysis.description import residual_vibration
+from flexapod.analysis.description.robot_description import describe
+from flexapod.analysis.results.variables import COORDINATES, VARIABLES, dataset
 from flexapod.kinematics import robot as of_robot
-from flexapod.results.names import COORDINATES, VARIABLES, dataset
 
 
 def test_home_frames_are_computed_once_for_equal_robots(monkeypatch):
@@ -67,12 +67,13 @@ def test_a_study_without_other_settings_is_itself_and_results_say_whose_they_are
 
 
 def test_a_study_is_described_with_each_pose_solved_once_and_no_time_integration(monkeypatch):
-    poses, plain = [], rest.the_modes
-    monkeypatch.setattr(rest, "the_modes", lambda locked: poses.append(locked) or plain(locked))
+    poses, plain = [], residual_vibration.the_modes
+    monkeypatch.setattr(residual_vibration, "the_modes", lambda locked: poses.append(locked) or plain(locked))
     assert describe(fx.preset("paper-robot")).vibration is not None
     assert len(poses) == 2  # the start and the end, whose modes the vibration takes
     code = (
-        "import sys, flexapod.description.robot; print([x for x in sys.modules if x.startswith('flexapod.solve.time')])"
+        "import sys, flexapod.analysis.description.robot_description; "
+        "print([x for x in sys.modules if x.startswith('flexapod.solve.time')])"
     )
     assert (
         subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.strip() == "[]"
@@ -103,7 +104,7 @@ def test_a_first_dataset_needs_neither_units_nor_clusters():
     """Loading pint and dask took a third of the time from a cold start to a finished simulation."""
     code = (
         "import sys, numpy as np, flexapod as fx; fx.preset('paper-robot'); fx.simulate; "
-        "from flexapod.results.names import dataset; "
+        "from flexapod.analysis.results.variables import dataset; "
         "dataset({'com_position': np.zeros((2, 3))}, {'time': np.arange(2.0)}); "
         "print([m for m in ('pint', 'dask', 'scipy.optimize', 'matplotlib', 'casadi', 'skfem') if m in sys.modules])"
     )

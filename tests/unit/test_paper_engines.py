@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from flexapod import model, plot
-from flexapod.errors import ComputationError, InputError
-from flexapod.paper import engines
-from flexapod.paper import study as paper
-from flexapod.paper.engines import agreements, exudyn_flexible, exudyn_rigid, rigid_same_step, undamped
-from flexapod.scene.robot import robot_study
-from flexapod.verify.engines.engine import EXUDYN
-from flexapod.verify.engines.exudyn_robot import RobotResult
-from flexapod.words import text as words
+from flexapod.analysis.results.attributes import robot_study
+from flexapod.common.errors import ComputationError, InputError
+from flexapod.common.quantities import text as words
+from flexapod.verification.engines.engine import EXUDYN
+from flexapod.verification.engines.exudyn_robot import RobotResult
+from flexapod.verification.paper import engines
+from flexapod.verification.paper import study as paper
+from flexapod.verification.paper.engines import agreements, exudyn_flexible, exudyn_rigid, rigid_same_step, undamped
 
 
 def quick():

@@ -11,11 +11,11 @@ from mpl_toolkits.mplot3d import proj3d
 
 import flexapod as fx
 from flexapod import model, plot
-from flexapod.paper import figures, printed, solid_figure, variant_figures, welded_figure
-from flexapod.paper.light import PISTONS
-from flexapod.paper.readings import tripod
-from flexapod.paper.welded import ARMS, COLUMNS, READINGS, ROLLS
-from flexapod.plot.robot3d import beside
+from flexapod.output.figures.robot3d import beside
+from flexapod.verification.paper import figures, printed_figures, solid_figure, variant_figures, welded_figure
+from flexapod.verification.paper.clamped_legs import ARMS, COLUMNS, READINGS, ROLLS
+from flexapod.verification.paper.light_pistons import PISTONS
+from flexapod.verification.paper.readings import tripod
 
 MARKER = 3.0  # points: radius of a joint, and its edge
 
@@ -183,7 +183,7 @@ def test_no_mode_is_shown_twice(monkeypatch, robot):
 
 def test_spikes_of_the_forces_have_a_word():
     data = fx.simulate(model.preset("paper-robot"), fidelity="rigid", step=5e-4)
-    figure = printed.forces_rigid(data)
+    figure = printed_figures.forces_rigid(data)
     words = [text.get_text() for axes in figure.axes for text in axes.texts if "elsewhere" in text.get_text()]
     assert len(words) == 6 and set(words) == {
         "elsewhere at\nmost 20 mN"

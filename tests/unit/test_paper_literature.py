@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import flexapod as fx
-from flexapod.paper.literature import GIVEN, HERE, IN_PART, NOT_YET, TOPICS, markdown
+from flexapod.verification.paper.literature import GIVEN, HERE, IN_PART, NOT_YET, TOPICS, markdown
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")

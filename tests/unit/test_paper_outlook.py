@@ -6,7 +6,7 @@ from scipy.linalg import eigh
 from tests.paper_parts import part
 
 from flexapod import model
-from flexapod.paper import outlook
+from flexapod.verification.paper import outlook
 
 pytestmark = pytest.mark.xdist_group("claims")  # one process computes the parts
 ROBOT = model.preset("paper-robot").robot

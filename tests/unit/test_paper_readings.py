@@ -7,7 +7,7 @@ from tests.paper_parts import part
 from flexapod import model
 from flexapod.kinematics import dynamics
 from flexapod.kinematics.inverse import JointTurn
-from flexapod.paper import cost, readings, trials
+from flexapod.verification.paper import computing_time, readings, trials
 
 pytestmark = pytest.mark.xdist_group("claims")  # one process computes the parts
 
@@ -128,7 +128,7 @@ def test_what_is_counted_is_the_same_force_both_ways():
     p |= {"EI": 1.0, "EA": 1.0, "mouth": 0.4}
     (alpha, beta, length), v, v_dot, g = (numbers(rng, 3) for _ in range(4))
     flat = [*p.values(), *g, *np.zeros(3), *np.eye(3).ravel(), 0.0, 0.0]
-    r = np.asarray(cost.lagrange_leg().build()([alpha, beta, length], v, v_dot, flat)).ravel()
+    r = np.asarray(computing_time.lagrange_leg().build()([alpha, beta, length], v, v_dot, flat)).ravel()
     upright = {
         "cylinder_mass": p["m"], "cylinder_com": p["c"], "cylinder_inertia": p["I"], "cylinder_axial": 0.0,
         "piston_mass": p["rhoA"] * p["Lp"], "piston_length": p["Lp"], "piston_axial": 0.0,
@@ -148,10 +148,10 @@ def test_what_is_counted_is_the_same_force_both_ways():
 
 def test_operations_are_counted_one_each():
     tally = [0]
-    a, b = cost._numbers((2,), tally), np.array([2.0, 3.0])
+    a, b = computing_time._numbers((2,), tally), np.array([2.0, 3.0])
     found = np.cos(a * b + b) / a[::-1] - 1.0 * a**2 + np.sin(-a)
     # times, plus, cosine, divided, squared, times one, minus, sine, plus: nine, twice; the sign is free.
     assert tally == [18]
     assert found[0].value == pytest.approx(np.cos(4.0) - 1 - np.sin(1.0))
-    operations = cost.inverse_dynamics_cost(model.preset("paper-robot")).operations
+    operations = computing_time.inverse_dynamics_cost(model.preset("paper-robot")).operations
     assert operations.sel(formulation="Newton-Euler") < operations.sel(formulation="Lagrange")

@@ -10,8 +10,8 @@ from flexapod import kinematics
 from flexapod.kinematics.laws import PROFILES
 from flexapod.model import CombinedMotion, CsvMotion, Load, Simulation, Waypoint, WaypointMotion
 from flexapod.solve.robot_system import robot_system
-from flexapod.solve.time.pieces import ENOUGH, NODES, Pieces
-from flexapod.solve.time.tables import robot_law
+from flexapod.solve.time.command_tables import robot_law
+from flexapod.solve.time.piecewise_chebyshev import ENOUGH, NODES, Pieces
 
 
 class Counted:

@@ -5,7 +5,7 @@ import re
 import pytest
 
 import flexapod as fx
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 from flexapod.model import PRESETS, preset_text, to_toml
 
 MACHINE = preset_text("machine-hexapod")

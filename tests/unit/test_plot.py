@@ -17,22 +17,23 @@ from matplotlib.legend import Legend
 from matplotlib.text import Text
 
 from flexapod import plot
-from flexapod.errors import InputError
+from flexapod.analysis import modes, simulate, simulate_actuator
+from flexapod.analysis.results.attributes import motion_end, robot_study
+from flexapod.app.browser.charts import charts
+from flexapod.common.errors import InputError
+from flexapod.design.maps import workspace_map
 from flexapod.model import load, preset
-from flexapod.page.charts import charts
-from flexapod.plot import style
-from flexapod.plot.narrow import narrowed
-from flexapod.plot.panel import Panel, _Plain
-from flexapod.plot.settings import settings
-from flexapod.plot.style import figure as page_figure
-from flexapod.plot.style import ink
-from flexapod.report.figures import draw
-from flexapod.report.interactive import interactive
-from flexapod.report.page import write_report
-from flexapod.scene.colours import ENERGIES
-from flexapod.scene.robot import mode_scene, motion_end, robot_study, scene
-from flexapod.study import modes, simulate, simulate_actuator
-from flexapod.surveys.workspace import workspace_map
+from flexapod.output.figures import style
+from flexapod.output.figures.column_width import narrowed
+from flexapod.output.figures.fast_axes import Panel, _Plain
+from flexapod.output.figures.settings import settings
+from flexapod.output.figures.style import figure as page_figure
+from flexapod.output.figures.style import ink
+from flexapod.output.report.figures import draw
+from flexapod.output.report.plotly_export import interactive
+from flexapod.output.report.report import write_report
+from flexapod.output.scene.colours import ENERGIES
+from flexapod.output.scene.robot_scene import mode_scene, scene
 
 SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 

@@ -10,7 +10,7 @@ from multiprocessing import active_children
 import pytest
 from tests.started import none_left, started_by
 
-from flexapod.runtime.processes import call, started
+from flexapod.common.processes import call, started
 
 
 def slow_square(x):
@@ -111,7 +111,7 @@ def test_a_copy_that_ends_by_itself_puts_its_files_away(tmp_path):
 
 AT_ONCE = """
 import signal
-from flexapod.runtime.processes import started
+from flexapod.common.processes import started
 for kind in (signal.SIGTERM, signal.SIGINT):
     signal.signal(kind, signal.default_int_handler)  # as in commands
 for _ in range(300):
@@ -140,7 +140,7 @@ KILLED = {
 @pytest.mark.parametrize("what", KILLED)
 def test_nothing_is_left_of_a_process_that_is_killed(what, tmp_path):
     """Copies slept for ever in the pipe that they held open themselves; compilers went on to their end."""
-    script = "import sys, time\nfrom pathlib import Path\nfrom flexapod.runtime.processes import call, started\n"
+    script = "import sys, time\nfrom pathlib import Path\nfrom flexapod.common.processes import call, started\n"
     script += f"def told(): print('begun', flush=True)\n{KILLED[what]}\n"
     with started_by([sys.executable, "-c", script, str(tmp_path)]) as (process, others):
         assert process.stdout.readline() == b"begun\n"

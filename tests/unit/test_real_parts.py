@@ -9,11 +9,11 @@ from typer.testing import CliRunner
 
 import flexapod as fx
 from flexapod import kinematics
-from flexapod.cli.cli import app
-from flexapod.elements.springs import in_series, softening, springs_along
-from flexapod.error_budget.rows import names_of_rows
-from flexapod.errors import InputError
-from flexapod.exchange.decks_legs import legs_at_pose
+from flexapod.analysis.error_budget.rows import names_of_rows
+from flexapod.analysis.results.causes import cause_names
+from flexapod.app.cli.cli import app
+from flexapod.common.errors import InputError
+from flexapod.mechanics.elements.springs import in_series, softening, springs_along
 from flexapod.model import (
     MATERIALS,
     AxialSpring,
@@ -25,12 +25,12 @@ from flexapod.model import (
     ScrewFriction,
     to_toml,
 )
-from flexapod.model.cylinder import Cylinder
-from flexapod.model.guide import Guide
 from flexapod.model.heat import HEAT_PARTS
-from flexapod.model.material import Tube
-from flexapod.model.mount import Mount
-from flexapod.results.causes import cause_names
+from flexapod.model.leg.cylinder import Cylinder
+from flexapod.model.leg.guide import Guide
+from flexapod.model.leg.material import Tube
+from flexapod.model.study.mount import Mount
+from flexapod.output.exchange.decks_legs import legs_at_pose
 from flexapod.solve.statics.parts import part_stiffness
 
 UM = 1e6  # N/m

@@ -10,9 +10,9 @@ import matplotlib.pyplot as plt
 import pytest
 from typer.testing import CliRunner
 
-from flexapod.cli.cli import app
+from flexapod.app.cli.cli import app
 from flexapod.model import preset_text
-from flexapod.model.fields import listened
+from flexapod.model.file.fields import listened
 
 matplotlib.use("Agg")
 RECIPES = sorted((Path(__file__).parents[2] / "docs" / "how-to").glob("*.md"))

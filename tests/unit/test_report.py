@@ -9,20 +9,20 @@ import numpy as np
 import pytest
 from tests.texts import replaced
 
-from flexapod.description.robot import describe
-from flexapod.document import html
-from flexapod.document.html import replay as replay_figure
-from flexapod.document.parts import Lines
-from flexapod.document.run import axes_table, distances_table, run_items
-from flexapod.document.study import modes_section, study_items
-from flexapod.document.terminal import show
+from flexapod.analysis import simulate, simulate_actuator
+from flexapod.analysis.description.robot_description import describe
+from flexapod.analysis.results.summary import summary
 from flexapod.kinematics.rotations import exponential, matrix
 from flexapod.model import loads, preset, preset_text
-from flexapod.report.curves import MOST_POINTS
-from flexapod.report.page import robot_report, write_report
-from flexapod.report.replay import FRAMES, locked_modes, replay
-from flexapod.results.summary import summary
-from flexapod.study import simulate, simulate_actuator
+from flexapod.output.report.curves import MOST_POINTS
+from flexapod.output.report.replay import FRAMES, locked_modes, replay
+from flexapod.output.report.report import robot_report, write_report
+from flexapod.output.text import html
+from flexapod.output.text.answers import axes_table, distances_table, run_items
+from flexapod.output.text.html import replay as replay_figure
+from flexapod.output.text.parts import Lines
+from flexapod.output.text.study import modes_section, study_items
+from flexapod.output.text.terminal import show
 
 POINTS = 6 + 6 * 9 + 2 * 6 + 4 + 2  # of a frame: bases, pistons, platforms, centres, tools
 PRESCRIBED = 'drive = { type = "prescribed" }'

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 
 NAMES = ["tool:z/drive:1", "acc:1/impact:1", "feedback:1/shaker:1", "radial:1/hammer:1", "phase meter:2/image:1",
          "imag/real", "geophone:tool[2 Hz, 0.7, 28.8]:x/force:(0,0,1):z", "dB/rad", "a b/c d"]  # fmt: skip

@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 from tests.oracles.stewart_cases import base_circle, platform_circle
 
-from flexapod.errors import ComputationError, InputError
+from flexapod.common.errors import ComputationError, InputError
 from flexapod.kinematics.forward import all_postures, newton, newton_path
 from flexapod.kinematics.homotopy import Platform, quadrics
 from flexapod.kinematics.inverse import leg_lengths

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.oracles.stewart_cases import base_circle, central_difference, platform_circle
 
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 from flexapod.kinematics.inverse import joint_angles, leg_frames, leg_lengths, leg_rotations, leg_state
 from flexapod.kinematics.laws import Law
 from flexapod.kinematics.trajectory import Poses, poses_from_coordinates

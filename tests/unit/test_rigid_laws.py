@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.oracles.stewart_cases import central_difference
 
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 from flexapod.kinematics import laws
 
 KNOTS = {"s-curve": np.cumsum((0, *laws.S_CURVE_FRACTIONS)), "trapezoid": np.cumsum((0, *laws.TRAPEZOID_FRACTIONS))}

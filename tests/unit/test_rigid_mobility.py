@@ -7,8 +7,8 @@ import pytest
 from tests.mechanisms import LOWER, ROBOTS, THREE, built, hexapod, leg, ring, tangents
 
 from flexapod import kinematics
-from flexapod.errors import InputError
-from flexapod.kinematics.limbs import FREE, HELD, limbs
+from flexapod.common.errors import InputError
+from flexapod.kinematics.leg_geometry import FREE, HELD, limbs
 from flexapod.model.motion import AxisMotion, CombinedMotion
 
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 from tests.oracles.stewart_cases import central_difference
 
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 from flexapod.kinematics.laws import PROFILES
 from flexapod.kinematics.trajectory import Poses, coordinates, rotation_matrix, sample
 from flexapod.model import PROFILES as MODEL_PROFILES

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.oracles.stewart_cases import base_circle, platform_circle
 
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 from flexapod.kinematics import workspace
 from flexapod.kinematics.workspace import piston_excess, reachable, reachable_map, stroke_excess
 

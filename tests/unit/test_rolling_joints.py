@@ -7,10 +7,11 @@ import pytest
 from tests.machines import machine, study
 
 import flexapod as fx
-from flexapod.description.robot import describe
-from flexapod.errors import InputError
-from flexapod.model import RollingLaw, rolling, to_toml
-from flexapod.model.joint import Joint
+from flexapod.analysis.description.robot_description import describe
+from flexapod.common.errors import InputError
+from flexapod.model import RollingLaw, to_toml
+from flexapod.model.leg import rolling
+from flexapod.model.leg.joint import Joint
 
 UM = 1e6
 

@@ -8,10 +8,10 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod import plot
-from flexapod.page.charts import Chart, _readout, charts
-from flexapod.results.summary import summary
-from flexapod.review.estimates import buckling_load
-from flexapod.words import length, rounded_up
+from flexapod.analysis.checks.estimates import buckling_load
+from flexapod.analysis.results.summary import summary
+from flexapod.app.browser.charts import Chart, _readout, charts
+from flexapod.common.quantities import length, rounded_up
 
 
 @pytest.fixture(scope="module")

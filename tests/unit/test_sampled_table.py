@@ -8,13 +8,13 @@ import pytest
 import scipy.io
 
 import flexapod as fx
-from flexapod.errors import InputError
+from flexapod.analysis.controller_settings import sampled_controller
+from flexapod.common.errors import InputError
+from flexapod.design.sweeps.plan import read_plan
+from flexapod.design.sweeps.samples import Points
+from flexapod.mechanics.symbolic.compiler import compiler
 from flexapod.model import preset_text
-from flexapod.model.study import to_toml
-from flexapod.study.controlled import sampled_controller
-from flexapod.surveys.sweeps.plan import read_plan
-from flexapod.surveys.sweeps.points import Points
-from flexapod.symbolic.compiler import compiler
+from flexapod.model.study.study import to_toml
 
 DRIVES = [f"drive:{i}" for i in range(1, 7)]
 IFF = """

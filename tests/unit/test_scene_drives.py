@@ -6,8 +6,8 @@ from tests.mechanisms import ROBOTS
 
 import flexapod as fx
 from flexapod import model, plot
-from flexapod.page import charts, legend
-from flexapod.scene.drives import drives
+from flexapod.app.browser import charts, legend
+from flexapod.output.scene.style import drives
 
 KINDS = {
     "6-RUS": ("torque", "N m", "angle of the cranks", 6),

@@ -7,13 +7,14 @@ import pytest
 from tests.mechanisms import ROBOTS
 
 import flexapod as fx
-from flexapod import bases, kinematics, model
+from flexapod import kinematics, model
+from flexapod.app.browser import charts as view_charts
+from flexapod.app.browser import legend
+from flexapod.mechanics import shapes
 from flexapod.model import CombinedMotion, Guide, Piston, PistonSection, preset
-from flexapod.page import charts as view_charts
-from flexapod.page import legend
-from flexapod.scene import geometry, skeleton
-from flexapod.scene.colours import LEG_COLORS, colors_of_legs
-from flexapod.scene.skeleton import STATIONS, Skeleton
+from flexapod.output.scene import geometry, skeleton
+from flexapod.output.scene.colours import LEG_COLORS, colors_of_legs
+from flexapod.output.scene.skeleton import STATIONS, Skeleton
 
 
 @cache
@@ -65,7 +66,7 @@ def test_the_drawn_centre_line_is_the_bent_piston(settings):
     drawn = geometry.RobotMotion(study, data).at(float(data.time[i]), 1.0).flexible.piston
     at, robot, zeta = data.isel(time=i), study.robot, np.linspace(0, 1, STATIONS)
     simulation = study.simulation
-    phi = bases.lateral_basis(simulation.lateral_basis, simulation.lateral_shapes).values(zeta)
+    phi = shapes.lateral_basis(simulation.lateral_basis, simulation.lateral_shapes).values(zeta)
     frames = kinematics.home_frames(robot)
     largest = float(np.abs(at.tip_deflection).max())
     for leg in range(6):

@@ -5,16 +5,7 @@ import pytest
 from tests.texts import replaced
 
 from flexapod import model
-from flexapod.description.robot import describe
-from flexapod.description.screw import back_words, describe_screw, describe_screws, screw_remarks
-from flexapod.document import html
-from flexapod.document.check import check_items
-from flexapod.document.study import study_items
-from flexapod.document.terminal import show
-from flexapod.errors import InputError
-from flexapod.model import MATERIALS, Bearing, Nut, ScrewDrive
-from flexapod.results.path import RigidPath
-from flexapod.review.screws import (
+from flexapod.analysis.checks.screws import (
     back_efficiency,
     buckling_thrust,
     critical_speed,
@@ -24,6 +15,15 @@ from flexapod.review.screws import (
     motor_torque,
     turns_of_life,
 )
+from flexapod.analysis.description.robot_description import describe
+from flexapod.analysis.description.screw_description import back_words, describe_screw, describe_screws, screw_remarks
+from flexapod.analysis.results.rigid_path import RigidPath
+from flexapod.common.errors import InputError
+from flexapod.model import MATERIALS, Bearing, Nut, ScrewDrive
+from flexapod.output.text import html
+from flexapod.output.text.check import check_items
+from flexapod.output.text.study import study_items
+from flexapod.output.text.terminal import show
 
 STEEL = MATERIALS["steel"].replace(E=206e9, density=7850.0)  # of THK's catalogue
 NUT = 'rigidity = "1130 N/um", preload = "1540 N", dynamic_load = "30.8 kN"'

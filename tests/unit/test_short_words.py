@@ -8,15 +8,15 @@ import pytest
 from typer.testing import CliRunner
 
 import flexapod as fx
-from flexapod.cli.cli import app
-from flexapod.description.robot import describe
-from flexapod.document import html
-from flexapod.error_budget.counted import budget_counts, run_counts
+from flexapod.analysis.description.robot_description import describe
+from flexapod.analysis.error_budget.counted import budget_counts, run_counts
+from flexapod.analysis.results.idealizations import MACHINES, ideal_words
+from flexapod.app.cli.cli import app
+from flexapod.common.quantities import along_axes, brief
 from flexapod.model import ActuatorStudy, override
-from flexapod.report.page import warnings_section
-from flexapod.results.ideal import MACHINES, ideal_words
+from flexapod.output.report.report import warnings_section
+from flexapod.output.text import html
 from flexapod.solve.statics.parts import part_stiffness
-from flexapod.words import along_axes, brief
 
 RUN = CliRunner()
 KINDS = {"joints": ("base_joint", "platform_joint"), "plates": ("base_plate", "top_plate")}

@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.errors import ComputationError, InputError
-from flexapod.fem.frequencies import banded_solver, frequencies
-from flexapod.fem.hexahedra import integrals, mass, stiffness
-from flexapod.fem.mesh import SolidMesh, beam_mesh
-from flexapod.fem.reduction import reduced_beam
-from flexapod.fem.section_mesh import section_averages, section_mesh
-from flexapod.fem.sliding import HubMotion, SlidingBeam, slide
+from flexapod.analysis.results.time_history import Interrupted
+from flexapod.analysis.results.vibration import local_vibration
+from flexapod.analysis.solid import simulate_solid
+from flexapod.common.errors import ComputationError, InputError
 from flexapod.model import Rectangle, Tube
-from flexapod.plot.elements import solid_comparison, solid_meshes
-from flexapod.results.record import Interrupted
-from flexapod.results.vibration import local_vibration
-from flexapod.study.solid import simulate_solid
+from flexapod.output.figures.elements import solid_comparison, solid_meshes
+from flexapod.solve.fem.frequencies import banded_solver, frequencies
+from flexapod.solve.fem.hexahedra import integrals, mass, stiffness
+from flexapod.solve.fem.mesh import SolidMesh, beam_mesh
+from flexapod.solve.fem.reduction import reduced_beam
+from flexapod.solve.fem.section_mesh import section_averages, section_mesh
+from flexapod.solve.fem.sliding import HubMotion, SlidingBeam, slide
 
 FLAT = Rectangle(width=0.1524, height=0.0095)
 SECTIONS = [FLAT, Tube(diameter=0.027), Tube(diameter=0.03, inner_diameter=0.02)]

@@ -5,10 +5,10 @@ import pytest
 from scipy.linalg import eigh, expm
 from scipy.optimize import brentq
 
-from flexapod.bases import lateral_basis
-from flexapod.errors import InputError
-from flexapod.fem.leg_shapes import solid_leg_shapes
+from flexapod.common.errors import InputError
+from flexapod.mechanics.shapes import lateral_basis
 from flexapod.model import Rectangle, Tube
+from flexapod.solve.fem.leg_shapes import solid_leg_shapes
 
 PISTON = Tube(diameter=0.027)
 

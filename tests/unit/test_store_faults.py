@@ -8,11 +8,10 @@ import xarray as xr
 from tests.sweeps import quick
 
 import flexapod as fx
-from flexapod.description.robot import describe
-from flexapod.errors import InputError
-from flexapod.results import netcdf
-from flexapod.review import room
-from flexapod.study import open_results, save, store
+from flexapod.analysis import netcdf, open_results, save, store
+from flexapod.analysis.checks import resource_limits as room
+from flexapod.analysis.description.robot_description import describe
+from flexapod.common.errors import InputError
 
 resource = pytest.importorskip("resource")
 

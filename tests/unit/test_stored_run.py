@@ -6,8 +6,8 @@ import pytest
 import xarray as xr
 
 import flexapod as fx
-from flexapod.page.opening import open_source
-from flexapod.study import open_results, save
+from flexapod.analysis import open_results, save
+from flexapod.app.browser.opening import open_source
 
 
 @pytest.fixture(scope="module")

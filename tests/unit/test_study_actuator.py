@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.bases import lateral_basis
+from flexapod.mechanics.shapes import lateral_basis
 
 STUDY = fx.preset("paper-actuator")
 

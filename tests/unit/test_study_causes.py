@@ -7,11 +7,11 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod import model
+from flexapod.analysis.results.causes import Errors, L, deviation_by_cause, errors_of
+from flexapod.analysis.results.rigid_path import RigidPath
+from flexapod.analysis.simulation import simulated
 from flexapod.kinematics import COORDINATES
 from flexapod.model import AxisMotion, ForceDrive, Payload, ServoDrive
-from flexapod.results.causes import Errors, L, deviation_by_cause, errors_of
-from flexapod.results.path import RigidPath
-from flexapod.study.simulation import simulated
 
 STILL = AxisMotion(type="roll", amplitude=0.0, duration=1.0)
 SHORT = {"duration": 0.1, "step": 1e-3}

@@ -7,9 +7,9 @@ import pytest
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
+from flexapod.analysis.checks.checks import check_path
+from flexapod.analysis.results.rigid_path import path_instants
 from flexapod.model import AxisMotion, ForceDrive, base_circle, loads, platform_circle
-from flexapod.results.path import path_instants
-from flexapod.review.checks import check_path
 
 SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 

@@ -9,17 +9,17 @@ import pytest
 from tests.runs import paper_robot
 
 import flexapod as fx
+from flexapod.analysis import open_results, save
+from flexapod.design.convergence import ConvergenceStopped, Trials, converge, plan
+from flexapod.design.convergence import search as choice
+from flexapod.design.convergence import search as halving
+from flexapod.design.convergence.family import Family, finest_error, observed_order, relative_difference, shape_factor
+from flexapod.design.convergence.ladder import RUNGS, ladder
+from flexapod.design.convergence.search import Candidate, Discretisation, StepChoice, candidates
+from flexapod.design.convergence.table import save_table
+from flexapod.design.convergence.trials import Setting, Trial, setting_of
 from flexapod.model import ActuatorInitial, ActuatorMotion, override
-from flexapod.plot.convergence import convergence
-from flexapod.study import open_results, save
-from flexapod.surveys.convergence import ConvergenceStopped, Trials, converge, plan
-from flexapod.surveys.convergence import search as choice
-from flexapod.surveys.convergence import search as halving
-from flexapod.surveys.convergence.family import Family, finest_error, observed_order, relative_difference, shape_factor
-from flexapod.surveys.convergence.ladder import RUNGS, ladder
-from flexapod.surveys.convergence.search import Candidate, Discretisation, StepChoice, candidates
-from flexapod.surveys.convergence.table import save_table
-from flexapod.surveys.convergence.trials import Setting, Trial, setting_of
+from flexapod.output.figures.convergence import convergence
 
 TIME = np.linspace(0.0, 1.0, 11)
 BASE = Setting(fidelity="assumed-modes", basis="tip-load", modes=3, step=1e-3, output_step=1e-3)
@@ -231,8 +231,8 @@ def test_the_ladder_of_a_beam(beam):
 
 
 def test_a_solid_study_is_compared_with_solids_only():
+    from flexapod.design.convergence.plan import base_setting, discretisations, largest
     from flexapod.model import override, preset
-    from flexapod.surveys.convergence.plan import base_setting, discretisations, largest
 
     study = override(preset("paper-robot"), fidelity="solid-fem")
     base = base_setting(study)

@@ -12,18 +12,18 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod import kinematics
-from flexapod.bases import lateral_basis
-from flexapod.description.rest import RestingRobot, vibration_to_expect
-from flexapod.mechanics.layout import LEG_PARAMETERS, columns
-from flexapod.model import AxisMotion, Feedback, ForceDrive, Payload, ServoDrive, Simulation, Study
-from flexapod.results.path import RigidPath
-from flexapod.review.estimates import (
+from flexapod.analysis.checks.estimates import (
     VibrationEstimate,
     _rung_on,
     bending_moments,
     buckling_load,
     residual_vibration,
 )
+from flexapod.analysis.description.residual_vibration import RestingRobot, vibration_to_expect
+from flexapod.analysis.results.rigid_path import RigidPath
+from flexapod.mechanics.leg.layout import LEG_PARAMETERS, columns
+from flexapod.mechanics.shapes import lateral_basis
+from flexapod.model import AxisMotion, Feedback, ForceDrive, Payload, ServoDrive, Simulation, Study
 from flexapod.solve.kernel import kernel
 from flexapod.solve.modal.at_poses import robot_modes
 from flexapod.solve.robot_system import robot_system

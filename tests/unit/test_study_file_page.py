@@ -7,17 +7,17 @@ import pytest
 from tests.texts import replaced
 from tests.unit.test_model_ranges import classes
 
-from flexapod.elements.element import registered
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
+from flexapod.common.tables.reference import example_line, plain_path, reference
+from flexapod.common.tables.toml import toml_value
+from flexapod.mechanics.elements.element import registered
 from flexapod.model import AXES, FIDELITIES, PROFILES, loads, preset_text
-from flexapod.model.fields import listened
-from flexapod.model.page import listed, markdown, study_data, words_of
-from flexapod.schema.reference import example_line, plain_path, reference
-from flexapod.schema.toml import toml_value
+from flexapod.model.file.fields import listened
+from flexapod.model.file.page import listed, markdown, study_data, words_of
 
 PAGE = Path(__file__).parents[2] / "docs" / "study-file.md"
 ENTRIES = reference().entries
-KEYS = "src/flexapod/schema/keys.toml"
+KEYS = "src/flexapod/common/tables/keys.toml"
 # Classes and fields that no study file fills by itself: whole studies, and what follows from the other keys.
 DERIVED = {
     "Study", "ActuatorStudy", "Robot", "Load", "ActuatorMotion", "ActuatorLoad",

@@ -5,10 +5,10 @@ import pytest
 from tests.sweeps import quick, quick_text
 
 import flexapod as fx
+from flexapod.design.convergence import converge
+from flexapod.design.convergence.ladder import ladder
+from flexapod.design.convergence.plan import checked_trials
 from flexapod.model import preset_text
-from flexapod.surveys.convergence import converge
-from flexapod.surveys.convergence.ladder import ladder
-from flexapod.surveys.convergence.plan import checked_trials
 
 BEAM = preset_text("paper-actuator").replace('duration = "10 s"', 'duration = "10 ms"')
 

@@ -7,7 +7,7 @@ from tests.mechanisms import ROBOTS
 from tests.runs import paper_robot
 
 import flexapod as fx
-from flexapod.errors import InputError
+from flexapod.common.errors import InputError
 from flexapod.model import CombinedMotion
 
 MOTION = CombinedMotion(amplitudes={"sway": 0.03, "heave": 0.02, "roll": 0.2}, duration=0.5, hold=0.1)

@@ -9,9 +9,9 @@ import pytest
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
+from flexapod.analysis import Interrupted
 from flexapod.model import ActuatorLoad, ForceDrive, override
 from flexapod.solve.time import robot_march
-from flexapod.study import Interrupted
 
 
 def falling():

@@ -10,13 +10,13 @@ from tests.stepped import STEEL, leg_of, section
 
 import flexapod as fx
 from flexapod import kinematics
-from flexapod.bases import lateral_basis
-from flexapod.description.leg import _stress
+from flexapod.analysis.checks.estimates import STATIONS, buckling_load
+from flexapod.analysis.checks.plausibility import leg_stress
+from flexapod.analysis.description.leg_description import _stress
+from flexapod.analysis.results.bodies import flexible_axes
+from flexapod.mechanics.shapes import lateral_basis
 from flexapod.model import AxisMotion, Rectangle, Tube
-from flexapod.model.material import MATERIALS
-from flexapod.results.bodies import flexible_axes
-from flexapod.review.estimates import STATIONS, buckling_load
-from flexapod.review.plausibility import leg_stress
+from flexapod.model.leg.material import MATERIALS
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.sections import leg_values
 

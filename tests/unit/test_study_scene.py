@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import flexapod as fx
+from flexapod.analysis.results.attributes import motion_coordinates
 from flexapod.model import preset, preset_text
-from flexapod.scene.robot import mode_scene, motion_coordinates, scene
+from flexapod.output.scene.robot_scene import mode_scene, scene
 
 
 def test_a_result_whose_motion_table_is_gone_is_still_drawn(tmp_path):

@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
-from flexapod.errors import ComputationError
+from flexapod.common.errors import ComputationError
 from flexapod.model import AxisMotion, ForceDrive, ServoDrive
 
 POSE = {"sway": 0.03, "heave": 0.02, "roll": 0.2}

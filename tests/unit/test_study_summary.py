@@ -7,9 +7,9 @@ import pytest
 from tests.runs import paper_robot
 
 import flexapod as fx
-from flexapod.errors import InputError
-from flexapod.study import open_results, save, summary
-from flexapod.study.store import save_csv
+from flexapod.analysis import open_results, save, summary
+from flexapod.analysis.store import save_csv
+from flexapod.common.errors import InputError
 
 
 @pytest.fixture(scope="module")
@@ -122,7 +122,7 @@ def test_results_are_replaced_whole_or_not_at_all(data, tmp_path, monkeypatch):
     def full(*args, **kwargs):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("flexapod.results.netcdf.write", full)
+    monkeypatch.setattr("flexapod.analysis.netcdf.write", full)
     with pytest.raises(fx.InputError, match="No space left"):
         save(data, path)
     assert path.read_bytes() == before

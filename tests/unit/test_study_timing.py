@@ -5,9 +5,9 @@ import pytest
 from tests.runs import paper_robot
 
 import flexapod as fx
+from flexapod.analysis import check_path
 from flexapod.model import AxisMotion
 from flexapod.solve.time.robot_march import prepare
-from flexapod.study import check_path
 
 QUICK = {"fidelity": "lumped", "step": 1e-3}
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from tests.sweeps import KEY, diameters, quick
 
-from flexapod.errors import InputError
-from flexapod.surveys.sweeps.kept import kept
-from flexapod.surveys.sweeps.plan import read_plan
-from flexapod.surveys.sweeps.points import Points
+from flexapod.common.errors import InputError
+from flexapod.design.sweeps.outputs import kept
+from flexapod.design.sweeps.plan import read_plan
+from flexapod.design.sweeps.samples import Points
 
 
 def refused(sweep):

@@ -5,8 +5,8 @@ import pytest
 from tests.sweeps import diameters, quick
 
 import flexapod as fx
-from flexapod.errors import InputError
-from flexapod.plot.sweep import sweep as draw
+from flexapod.common.errors import InputError
+from flexapod.output.figures.sweep import sweep as draw
 
 PROFILES = {"key": "motion.profile", "values": ["quintic", "cycloidal"]}
 DRAWS = {"count": 12, "tolerance": [{"key": "payload.mass", "normal": "1 %"}]}

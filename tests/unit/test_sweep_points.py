@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from tests.sweeps import KEY, diameters, quick
 
-from flexapod.errors import InputError
+from flexapod.analysis.checks import resource_limits
+from flexapod.common.errors import InputError
+from flexapod.design.sweeps.plan import read_plan
+from flexapod.design.sweeps.samples import Points
 from flexapod.model import loads, preset_text
-from flexapod.review import room
 from flexapod.solve.kernel import kernel
-from flexapod.surveys.sweeps.plan import read_plan
-from flexapod.surveys.sweeps.points import Points
 
 MECHANISMS = Path(__file__).parents[2] / "examples" / "mechanisms"
 
@@ -198,7 +198,7 @@ def test_tables_are_read_beside_the_study(tmp_path):
 
 def test_draws_beyond_the_memory_are_refused_before_they_are_made(monkeypatch):
     """All random numbers are made at once: 1e7 draws of six diameters take gigabytes."""
-    monkeypatch.setattr(room, "available_memory", lambda: 1e9)
+    monkeypatch.setattr(resource_limits, "available_memory", lambda: 1e9)
     with pytest.raises(InputError, match=r"random.count.*2.96 GB of memory, where 1 GB is free.*Give fewer points"):
         Points(quick(), read_plan(draws(10_000_000, (KEY, {"normal": "0.1 mm"}))))
     cube = {"count": 10_000_000, "seed": 3, "ranges": {KEY: ["25 mm", "30 mm"]}}

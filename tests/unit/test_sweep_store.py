@@ -13,15 +13,15 @@ import xarray as xr
 from tests.sweeps import KEY, diameters, quick, quick_text, start
 
 import flexapod as fx
-from flexapod import version
-from flexapod.errors import ComputationError, InputError
+from flexapod.common import version
+from flexapod.common.errors import ComputationError, InputError
+from flexapod.common.tables import csv_tables
+from flexapod.design.sweeps import SweepStopped, open_sweep, run, store, unstacked, worker, writer
+from flexapod.design.sweeps.plan import read_plan
+from flexapod.design.sweeps.samples import Points
+from flexapod.design.sweeps.store import Known, StoredArray, SweepStore
+from flexapod.design.sweeps.worker import compute_batch
 from flexapod.model import loads
-from flexapod.schema import csv_tables
-from flexapod.surveys.sweeps import SweepStopped, batch, open_sweep, run, store, unstacked, writer
-from flexapod.surveys.sweeps.batch import compute_batch
-from flexapod.surveys.sweeps.plan import read_plan
-from flexapod.surveys.sweeps.points import Points
-from flexapod.surveys.sweeps.store import Known, StoredArray, SweepStore
 
 
 @pytest.fixture
@@ -41,7 +41,7 @@ def counted(monkeypatch):
         seen.extend(points)
         return compute_batch(version, kept, points, studies)
 
-    monkeypatch.setattr(batch, "compute_batch", compute)
+    monkeypatch.setattr(worker, "compute_batch", compute)
     return seen
 
 
@@ -53,7 +53,7 @@ def stopping(monkeypatch, point, error):
             raise error
         return compute_batch(version, kept, points, studies)
 
-    monkeypatch.setattr(batch, "compute_batch", compute)
+    monkeypatch.setattr(worker, "compute_batch", compute)
 
 
 def test_what_is_stored(path):
@@ -122,8 +122,8 @@ def test_failed_points_keep_their_message(path, monkeypatch):
 
 
 def test_a_number_that_is_none_is_a_failure(monkeypatch):
-    nothing = batch.ROBOT_SCALARS["com_deviation_peak"]._replace(value=lambda run: np.nan)
-    monkeypatch.setitem(batch.ROBOT_SCALARS, "com_deviation_peak", nothing)
+    nothing = worker.ROBOT_SCALARS["com_deviation_peak"]._replace(value=lambda run: np.nan)
+    monkeypatch.setitem(worker.ROBOT_SCALARS, "com_deviation_peak", nothing)
     made = sweep(None, 2)
     assert made.message.values.tolist() == ["com_deviation_peak is not finite"] * 2
 
@@ -132,7 +132,7 @@ def test_a_fault_is_the_failure_of_a_point(monkeypatch):
     def fault(*_):
         raise ZeroDivisionError("by zero")
 
-    monkeypatch.setattr(batch, "check_path", fault)
+    monkeypatch.setattr(worker, "check_path", fault)
     assert "unexpected ZeroDivisionError: by zero (a fault of flexapod)" in sweep(None, 2).message.values[0]
 
 
@@ -183,7 +183,7 @@ def test_what_is_no_store_is_refused_and_left_alone(tmp_path):
 @pytest.mark.skipif(sys.platform == "win32", reason="SIGKILL")
 def test_two_sweeps_on_one_store(path):
     """The second is refused; the lock of a process that was killed is no hindrance."""
-    code = "import sys, pathlib; from flexapod.surveys.sweeps.store import locked\n"
+    code = "import sys, pathlib; from flexapod.design.sweeps.store import locked\n"
     code += "with locked(pathlib.Path(sys.argv[1])): print('held', flush=True); sys.stdin.read()"
     holder = start("-c", code, path, stdin=-1)
     assert holder.stdout.readline() == "held\n"
@@ -262,7 +262,7 @@ WRITING = """
 import sys
 from pathlib import Path
 import numpy as np
-from flexapod.surveys.sweeps.store import StoredPoint, SweepStore
+from flexapod.design.sweeps.store import StoredPoint, SweepStore
 
 with SweepStore.open(Path(sys.argv[1])) as store:
     for turn in range(int(sys.argv[2]), 10**9):

@@ -10,8 +10,8 @@ import zarr
 from tests.sweeps import diameters, quick
 
 import flexapod as fx
-from flexapod.errors import InputError
-from flexapod.surveys.sweeps import open_sweep, save_zarr, zarr_folder
+from flexapod.common.errors import InputError
+from flexapod.design.sweeps import open_sweep, save_zarr, zarr_folder
 
 KEPT = {"scalars": ["com_deviation_peak", "com_deviation_peak_by_axis"], "records": ["com_deviation"]}
 STROKES = {"vary": [{"key": "leg.stroke.max", "values": ["1.05 m", "0.8 m", "1.06 m"]}], "keep": KEPT}

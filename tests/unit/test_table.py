@@ -8,13 +8,13 @@ from typing import Annotated, Literal
 import numpy as np
 import pytest
 
-from flexapod.errors import InputError, Malformed
-from flexapod.schema.base import Key, Quantity, Series, Vec3
-from flexapod.schema.columns import columns_of
-from flexapod.schema.notes import Notes
-from flexapod.schema.section import Section
-from flexapod.schema.table import Table, plain
-from flexapod.schema.toml import parsed, toml_text
+from flexapod.common.errors import InputError, Malformed
+from flexapod.common.tables.base import Key, Quantity, Series, Vec3
+from flexapod.common.tables.columns import columns_of
+from flexapod.common.tables.field_help import Notes
+from flexapod.common.tables.section import Section
+from flexapod.common.tables.table import Table, plain
+from flexapod.common.tables.toml import parsed, toml_text
 
 
 class Pad(Table):

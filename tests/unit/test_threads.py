@@ -7,7 +7,7 @@ from threading import Thread
 
 import pytest
 
-from flexapod.runtime.threads import one_thread
+from flexapod.common.resources import one_thread
 
 SIMULATIONS = """
 import time

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from flexapod.ties import EQUALS, alike, first_largest, first_least, most, ranked
+from flexapod.common.ranking import EQUALS, alike, first_largest, first_least, most, ranked
 
 VALUES = np.array([1.0, 3.0, 2.0, 3.0, np.nan, 1.0, 3.0, -4.0, -4.0])
 

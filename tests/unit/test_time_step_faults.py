@@ -7,8 +7,8 @@ import pytest
 from tests.runs import paper_robot
 
 import flexapod as fx
-from flexapod.mechanics.layout import LEG_PARAMETERS, columns
-from flexapod.solve.saddle import saddle_solve
+from flexapod.mechanics.leg.layout import LEG_PARAMETERS, columns
+from flexapod.solve.saddle_point import saddle_solve
 from flexapod.solve.time import native
 from flexapod.solve.time.robot_march import prepare
 

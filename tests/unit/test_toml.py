@@ -6,8 +6,8 @@ import tomllib
 import pytest
 
 from flexapod import model
-from flexapod.errors import InputError
-from flexapod.schema.toml import DEEPEST, parsed
+from flexapod.common.errors import InputError
+from flexapod.common.tables.toml import DEEPEST, parsed
 
 TEXT = model.preset_text("paper-robot")
 LONG = {

@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from flexapod import units
-from flexapod.errors import InputError
-from flexapod.units import COMMON_UNITS, DIMENSIONS, to_si
+from flexapod.common import units
+from flexapod.common.errors import InputError
+from flexapod.common.units import COMMON_UNITS, DIMENSIONS, to_si
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,9 @@
 """The tab of the error budget as HTML: sentences, a bar for each part, the table."""
 
 from flexapod import model
-from flexapod.error_budget.sentences import Bar
-from flexapod.page.budget_panel import budget_html, chart_html
-from flexapod.scene.colours import ERRORS
+from flexapod.analysis.error_budget.text import Bar
+from flexapod.app.browser.budget_panel import budget_html, chart_html
+from flexapod.output.scene.colours import ERRORS
 
 
 def test_bars_are_as_long_as_the_errors_and_names_are_not_live():

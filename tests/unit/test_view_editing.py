@@ -4,11 +4,11 @@ import tomllib
 
 import pytest
 
-from flexapod.errors import InputError
+from flexapod.app.browser.document import Document, TypedQuantity, chosen, edited, first_value, quantity, read
+from flexapod.app.browser.uploads import LARGEST, read_upload, store_table
+from flexapod.common.errors import InputError
 from flexapod.model import PRESETS, preset_text
-from flexapod.model.fields import read_fields
-from flexapod.page.document import Document, TypedQuantity, chosen, edited, first_value, quantity, read
-from flexapod.page.uploads import LARGEST, read_upload, store_table
+from flexapod.model.file.fields import read_fields
 
 TEXT = preset_text("paper-robot")
 

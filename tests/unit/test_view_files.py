@@ -9,15 +9,15 @@ import viser
 from viser._messages import FileTransferPart, FileTransferStartUpload
 
 from flexapod import model
-from flexapod.errors import InputError
-from flexapod.page import files_panel, uploads
-from flexapod.page.background import Threads
-from flexapod.page.document import Document
-from flexapod.page.files_panel import FilesPanel
-from flexapod.page.network import is_expected
-from flexapod.page.study_panel import StudyPanel
-from flexapod.page.typed import LEFT
-from flexapod.page.uploads import LARGEST, MOST_TABLES, Sent, read_upload, store_table
+from flexapod.app.browser import files_panel, uploads
+from flexapod.app.browser.background import Threads
+from flexapod.app.browser.document import Document
+from flexapod.app.browser.files_panel import FilesPanel
+from flexapod.app.browser.network import is_expected
+from flexapod.app.browser.study_panel import StudyPanel
+from flexapod.app.browser.text_fields import LEFT
+from flexapod.app.browser.uploads import LARGEST, MOST_TABLES, Sent, read_upload, store_table
+from flexapod.common.errors import InputError
 
 TEXT = model.preset_text("paper-robot")
 THREADS = Threads(lambda error: None)
@@ -322,5 +322,7 @@ def test_the_slider_turns_what_a_user_turns(client):
     ],
 )
 def test_a_page_is_asked_for_under_a_name_of_this_machine(monkeypatch, asked, host, ours):
-    monkeypatch.setattr("flexapod.page.network._own_names", lambda: ("robot", "robot.local", "robot.lab.example"))
+    monkeypatch.setattr(
+        "flexapod.app.browser.network._own_names", lambda: ("robot", "robot.local", "robot.lab.example")
+    )
     assert is_expected(asked, host) is ours

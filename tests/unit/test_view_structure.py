@@ -4,10 +4,10 @@ import tomllib
 
 import pytest
 
-from flexapod.errors import InputError
+from flexapod.app.browser.document import Document, read
+from flexapod.app.browser.structure import offers
+from flexapod.common.errors import InputError
 from flexapod.model import PRESETS, preset_text
-from flexapod.page.document import Document, read
-from flexapod.page.structure import offers
 
 TEXT = preset_text("paper-robot")
 HEAD = TEXT.split("[motion]")[0]

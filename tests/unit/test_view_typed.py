@@ -7,12 +7,12 @@ import pytest
 import viser
 
 from flexapod import model
-from flexapod.errors import InputError
+from flexapod.app.browser.background import Threads
+from flexapod.app.browser.document import Document
+from flexapod.app.browser.study_panel import StudyPanel
+from flexapod.app.browser.text_fields import LEFT, Dial, in_unit, plain, written
+from flexapod.common.errors import InputError
 from flexapod.model import loads
-from flexapod.page.background import Threads
-from flexapod.page.document import Document
-from flexapod.page.study_panel import StudyPanel
-from flexapod.page.typed import LEFT, Dial, in_unit, plain, written
 
 TEXT = model.preset_text("paper-robot")
 THREADS = Threads(lambda error: None)

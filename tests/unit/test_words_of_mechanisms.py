@@ -4,13 +4,13 @@ import xarray as xr
 from tests.mechanisms import ROBOTS
 
 import flexapod as fx
-from flexapod.description.robot import Singularity, describe_legs
-from flexapod.document import html
-from flexapod.document.study import _path
+from flexapod.analysis.description.robot_description import Singularity, describe_legs
+from flexapod.analysis.results.cause_labels import cause_words
+from flexapod.analysis.results.rigid_path import RigidPath
+from flexapod.design.sweeps.outputs import _records, _robot_scalars
 from flexapod.model import AxisMotion, Study
-from flexapod.results.cause_words import cause_words
-from flexapod.results.path import RigidPath
-from flexapod.surveys.sweeps.kept import _records, _robot_scalars
+from flexapod.output.text import html
+from flexapod.output.text.study import _path
 
 
 def study(name):

@@ -6,13 +6,13 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod import kinematics
+from flexapod.analysis.checks.reachability import REASONS, rigid_codes
+from flexapod.analysis.results.poses import coordinates_of, from_home
+from flexapod.design.maps.findings import GRID_VARIABLES, SCALARS, axis_words, map_findings
+from flexapod.design.maps.grid import Range, grid
 from flexapod.kinematics.inverse import BETA_LIMIT
 from flexapod.kinematics.workspace import LONGEST, NO_FREE_LENGTH, PULLED_OUT, SHORTEST
 from flexapod.model.motion import Waypoint, WaypointMotion
-from flexapod.results.poses import coordinates_of, from_home
-from flexapod.review.reach import REASONS, rigid_codes
-from flexapod.surveys.workspace.findings import GRID_VARIABLES, SCALARS, axis_words, map_findings
-from flexapod.surveys.workspace.grid import Range, grid
 
 FLAG = [reason.flag for reason in REASONS]
 AT = {"sway": 0.02, "pitch": 0.05}

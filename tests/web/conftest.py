@@ -12,14 +12,18 @@ from tests.texts import replaced
 from tests.web.guests import until
 from xarray import Dataset
 
-from flexapod.cli.commands_proof import _write
+from flexapod.analysis import modes, run
+from flexapod.app.browser.document import Document
+from flexapod.app.browser.network import free_port
+from flexapod.app.browser.opening import StudySource, open_source
+from flexapod.app.browser.server import GONE, View
+from flexapod.app.browser.session import Session
+from flexapod.app.cli.commands_proof import _write
 from flexapod.model import Study, loads, preset_text
-from flexapod.page.document import Document
-from flexapod.page.network import free_port
-from flexapod.page.opening import StudySource, open_source
-from flexapod.page.server import GONE, View
-from flexapod.page.session import Session
-from flexapod.paper.claim import (
+from flexapod.output.report.figures import draw
+from flexapod.output.report.report import robot_report
+from flexapod.verification.pack import verify
+from flexapod.verification.paper.claim import (
     BREAKS,
     DONE,
     HOLDS,
@@ -36,12 +40,8 @@ from flexapod.paper.claim import (
     VARIANT,
     Claim,
 )
-from flexapod.paper.report import paper_page
-from flexapod.paper.study import PaperStudy
-from flexapod.report.figures import draw
-from flexapod.report.page import robot_report
-from flexapod.study import modes, run
-from flexapod.verify.pack import verify
+from flexapod.verification.paper.report import paper_page
+from flexapod.verification.paper.study import PaperStudy
 
 HOST = "127.0.0.1"
 # Where software stands in for a graphics card it draws what WebGL asks for, not the rest of a page as well: that took

@@ -10,10 +10,10 @@ from tests.web.conftest import LONG, SHORT, study_text
 from tests.web.guests import guest, said, until
 
 import flexapod as fx
-from flexapod.page import running
-from flexapod.page.document import Document
-from flexapod.page.opening import StudySource
-from flexapod.page.running import Cores, Turn
+from flexapod.app.browser import running
+from flexapod.app.browser.document import Document
+from flexapod.app.browser.opening import StudySource
+from flexapod.app.browser.running import Cores, Turn
 
 
 def test_long_simulations_take_turns_and_short_ones_pass(monkeypatch):

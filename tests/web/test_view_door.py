@@ -17,12 +17,12 @@ from tests.web.guests import CAMERA, guest, said, until
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
+from flexapod.app.browser import access, client_limits, logs
+from flexapod.app.browser.document import Document
+from flexapod.app.browser.network import has_place, is_expected, is_same_site, whose
+from flexapod.app.browser.opening import StudySource
+from flexapod.app.browser.server import View
 from flexapod.model import loads
-from flexapod.page import door, logs, visitor
-from flexapod.page.document import Document
-from flexapod.page.network import has_place, is_expected, is_same_site, whose
-from flexapod.page.opening import StudySource
-from flexapod.page.server import View
 
 VERSIONS = [f"viser-v{viser.__version__}"]
 HANDSHAKE = (
@@ -203,13 +203,13 @@ def test_pieces_without_end_are_not_gathered(server):
 
 
 def test_who_does_not_say_that_a_page_is_there_does_not_stay(server, monkeypatch):
-    assert visitor.FIRST_MESSAGE == 10
-    monkeypatch.setattr(visitor, "FIRST_MESSAGE", 0.3)
+    assert client_limits.FIRST_MESSAGE == 10
+    monkeypatch.setattr(client_limits, "FIRST_MESSAGE", 0.3)
     assert ended(server, packed(type="GuiUpdateMessage", uuid="none", updates={})) == 1008
 
 
 def test_who_has_said_so_may_be_silent(server, monkeypatch):
-    monkeypatch.setattr(visitor, "FIRST_MESSAGE", 2.0)
+    monkeypatch.setattr(client_limits, "FIRST_MESSAGE", 2.0)
     with guest(server) as client:
         session = until(lambda: server.sessions)[0]
         until(lambda: session.data is not None)
@@ -273,7 +273,7 @@ def refused(server, address, **headers) -> bytes:
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="127.0.0.2 is this machine on Linux")
 def test_one_address_does_not_keep_all_others_out(server, monkeypatch):
     """32 pages of one were all that there were."""
-    monkeypatch.setattr(door, "MOST_VISITORS", 6)
+    monkeypatch.setattr(access, "MOST_VISITORS", 6)
     with ExitStack() as pages:
         for _ in range(3):  # as many as are still free
             pages.enter_context(page_from(server, "127.0.0.1"))
@@ -295,7 +295,7 @@ def test_who_comes_through_a_proxy_is_counted_by_the_address_that_it_tells(monke
     """A proxy on this machine that `--name` speaks of; nobody else is believed."""
     text = study_text(*SHORT)
     source = StudySource(document=Document(text, None), study=loads(text))
-    monkeypatch.setattr(door, "MOST_VISITORS", 4)
+    monkeypatch.setattr(access, "MOST_VISITORS", 4)
     for name in ("robots.example", None):
         server = View(source, "127.0.0.1", 0, name)
         with ExitStack() as pages:
@@ -344,7 +344,7 @@ def test_whoever_is_new_finds_a_place(greedy):
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="127.0.0.2 is this machine on Linux")
 def test_connections_that_say_nothing_are_counted(server, monkeypatch):
     """As many of one address as are still free."""
-    monkeypatch.setattr(visitor, "MOST_CONNECTIONS", 6)
+    monkeypatch.setattr(client_limits, "MOST_CONNECTIONS", 6)
     silent = [socket.create_connection(("127.0.0.1", server.port), timeout=300) for _ in range(3)]
     try:
         with socket.create_connection(("127.0.0.1", server.port), timeout=300) as line:

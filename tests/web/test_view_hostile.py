@@ -14,12 +14,12 @@ from tests.web.conftest import SHORT, study_text
 from tests.web.guests import CAMERA, guest, said, until
 from viser import GuiButtonHandle, GuiSliderHandle, GuiTextHandle
 
+from flexapod.app.browser import logs
+from flexapod.app.browser.document import Document
+from flexapod.app.browser.opening import StudySource
+from flexapod.app.browser.server import View
+from flexapod.common import memory
 from flexapod.model import loads
-from flexapod.page import logs
-from flexapod.page.document import Document
-from flexapod.page.opening import StudySource
-from flexapod.page.server import View
-from flexapod.runtime import memory
 
 NO_NUMBERS = (math.nan, math.inf, -math.inf)
 HUGE = (1e308, -1e308, 1e-320, 2**63 - 1, -(2**63), 0, -1, 0.5)
@@ -284,10 +284,10 @@ def test_of_hostile_visitors_nothing_stays(server):
 
 POOLS = """
 import ctypes, sys, threading
-from flexapod.page import server
-from flexapod.runtime import memory
-from flexapod.page.document import Document
-from flexapod.page.opening import StudySource
+from flexapod.app.browser import server
+from flexapod.common import memory
+from flexapod.app.browser.document import Document
+from flexapod.app.browser.opening import StudySource
 from flexapod.model import loads, preset_text
 
 if sys.argv[1] == "as before":

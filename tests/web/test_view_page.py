@@ -7,7 +7,7 @@ import pytest
 from tests.web.conftest import SHORT, study_text
 from tests.web.guests import until
 
-from flexapod.page.typed import SETTLED
+from flexapod.app.browser.text_fields import SETTLED
 
 ANSWER = "misses its rigid path by up to"
 PICTURE = "canvas[data-engine]"

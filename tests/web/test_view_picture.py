@@ -10,15 +10,15 @@ from tests.web.guests import guest, said, until
 
 import flexapod as fx
 from flexapod import model
-from flexapod.errors import InputError
+from flexapod.analysis.results.summary import summary
+from flexapod.analysis.store import save
+from flexapod.app.browser import preview
+from flexapod.app.browser import session as sessions
+from flexapod.app.browser.document import Document
+from flexapod.app.browser.opening import StudySource, open_source
+from flexapod.app.browser.running import Turn
+from flexapod.common.errors import InputError
 from flexapod.model import preset
-from flexapod.page import quick
-from flexapod.page import session as sessions
-from flexapod.page.document import Document
-from flexapod.page.opening import StudySource, open_source
-from flexapod.page.running import Turn
-from flexapod.results.summary import summary
-from flexapod.study.store import save
 
 TOOL = ('com = [0, "373 mm", 0] ', 'tool = [0, 0, "300 mm"]\ncom = [0, "373 mm", 0] ')
 
@@ -103,7 +103,7 @@ def test_an_edit_is_answered_by_a_preview_within_seconds(visit):
         session.study_panel._changed("payload.mass", mass)
         until(lambda: "Preview" in said(session))
         took.append(time.process_time() - begin)
-        assert session.data.attrs["tolerance"] == quick.TOLERANCE
+        assert session.data.attrs["tolerance"] == preview.TOLERANCE
         assert "Preview, right to about 1 %" in said(session) and "the study asks for tolerance 0.0001" in said(session)
     print(f"edit to preview: {took[0]:.2f} s, {took[1]:.2f} s")
     assert min(took) < 2.0  # 0.2 s of the processor
@@ -120,18 +120,18 @@ def test_an_edit_is_answered_by_a_preview_within_seconds(visit):
 @pytest.mark.parametrize("name", model.PRESETS)
 def test_which_studies_are_quick_depends_on_the_study_alone(name):
     study = fx.preset(name)
-    assert quick.is_quick(study)
-    assert quick.coarse(study).simulation.tolerance == quick.TOLERANCE
-    assert not quick.is_quick(model.override(study, duration=1000.0))
+    assert preview.is_quick(study)
+    assert preview.coarse(study).simulation.tolerance == preview.TOLERANCE
+    assert not preview.is_quick(model.override(study, duration=1000.0))
     rough = model.override(study, tolerance=0.05)
-    assert quick.coarse(rough) is rough
+    assert preview.coarse(rough) is rough
     fixed = model.override(study, step=5e-4)
-    assert quick.coarse(fixed).simulation.step is None
+    assert preview.coarse(fixed).simulation.step is None
 
 
 def test_a_long_study_waits_for_simulate(visit, monkeypatch):
     session = visit(study_text(*SHORT))
-    monkeypatch.setattr(quick, "MOST", 10)
+    monkeypatch.setattr(preview, "MOST", 10)
     session.study_panel._changed("payload.mass", "90 kg")
     until(lambda: "press Simulate" in said(session))
     assert session.data is None and not session.busy
@@ -263,7 +263,7 @@ def test_results_that_were_opened_are_no_preview(tmp_path):
     study = fx.loads(study_text(*SHORT))
     save(fx.simulate(study, tolerance=0.02), tmp_path / "results.nc")
     source = open_source(tmp_path / "results.nc")
-    assert quick.preview_words(source.study, source.data) == ""
+    assert preview.preview_words(source.study, source.data) == ""
 
 
 def test_the_page_says_how_modes_are_drawn_and_sliders_fit_the_robot(visit):

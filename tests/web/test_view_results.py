@@ -11,8 +11,8 @@ from tests.web.conftest import SHORT, study_text
 from tests.web.guests import guest, said, until
 from xarray import Dataset
 
-from flexapod.page import kept_results
-from flexapod.page.kept_results import KeptResults
+from flexapod.app.browser import kept_results
+from flexapod.app.browser.kept_results import KeptResults
 
 FINE = (
     *SHORT,

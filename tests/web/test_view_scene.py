@@ -9,7 +9,7 @@ from tests.web.conftest import SHORT, SPACE, study_text
 from tests.web.guests import until
 
 import flexapod as fx
-from flexapod.page.scene import PARTS
+from flexapod.app.browser.scene import PARTS
 
 PIXELS = 60  # that must differ before two pictures count as different: more than the noise of a blinking edge
 

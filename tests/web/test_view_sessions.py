@@ -17,15 +17,15 @@ from viser import _messages
 
 import flexapod as fx
 from flexapod import study as studies
-from flexapod.elements import springs
-from flexapod.page import files_panel, player, running, time_panel
-from flexapod.page import server as pages
-from flexapod.page.document import Document, read
-from flexapod.page.opening import StudySource
-from flexapod.page.running import Cores, Turn
-from flexapod.page.structure import offers
-from flexapod.scene import robot as robots
-from flexapod.schema.written import Written
+from flexapod.app.browser import files_panel, player, running, time_panel
+from flexapod.app.browser import server as pages
+from flexapod.app.browser.document import Document, read
+from flexapod.app.browser.opening import StudySource
+from flexapod.app.browser.running import Cores, Turn
+from flexapod.app.browser.structure import offers
+from flexapod.common.tables.source_text import Written
+from flexapod.mechanics.elements import springs
+from flexapod.output.scene import robot_scene as robots
 
 BEAM = study_text(('duration = "10 s"', 'duration = "0.5 s"'), preset="paper-actuator")
 
@@ -129,7 +129,9 @@ def test_a_session_begins_when_what_it_needs_is_loaded(view, monkeypatch):
 
     monkeypatch.setattr(pages, "_load", slowly)
     begun = []
-    monkeypatch.setattr("flexapod.page.session.Session.start", lambda session: begun.append("dask.base" in sys.modules))
+    monkeypatch.setattr(
+        "flexapod.app.browser.session.Session.start", lambda session: begun.append("dask.base" in sys.modules)
+    )
     server = view(study_text(*SHORT))
     with guest(server):
         assert loading.wait(300)

@@ -10,13 +10,13 @@ from tests.web.conftest import LONG, SHORT, study_text
 from tests.web.guests import until
 
 import flexapod as fx
-from flexapod.document.refusal import lines_of, parts_of
-from flexapod.errors import InputError
-from flexapod.page import files_panel
-from flexapod.page.running import Turn
-from flexapod.page.uploads import LARGEST
-from flexapod.report import figures
-from flexapod.study import open_results, summary
+from flexapod.analysis import open_results, summary
+from flexapod.app.browser import files_panel
+from flexapod.app.browser.running import Turn
+from flexapod.app.browser.uploads import LARGEST
+from flexapod.common.errors import InputError
+from flexapod.output.report import figures
+from flexapod.output.text.refusal import lines_of, parts_of
 
 ANSWER = "misses its rigid path by up to"
 POINTS = """[motion]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flexapod.runtime.loading import later
+from flexapod.common.lazy_imports import later
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,9 +23,7 @@ if TYPE_CHECKING:
         centre_of_stiffness,
         robot_jacobian,
     )
-    from flexapod.control.function import Function
-    from flexapod.control.impedances import impedance
-    from flexapod.control.laws import (
+    from flexapod.control.filters import (
         ControlLaw,
         complementary,
         gain,
@@ -38,10 +36,12 @@ if TYPE_CHECKING:
         positive_feedback,
         rate,
     )
-    from flexapod.control.limits import margins
+    from flexapod.control.function import Function
+    from flexapod.control.gain_scheduling import Scheduled
+    from flexapod.control.impedances import impedance
+    from flexapod.control.loop_stability import margins
     from flexapod.control.loops import best_gain, root_locus
     from flexapod.control.ring_down import ring_down
-    from flexapod.control.scheduled import Scheduled
     from flexapod.control.state_space import StateSpace
 
 _HOMES = {
@@ -55,14 +55,14 @@ _HOMES = {
     ),
     "flexapod.control.function": ("Function",),
     "flexapod.control.impedances": ("impedance",),
-    "flexapod.control.laws": (
+    "flexapod.control.filters": (
         "ControlLaw", "complementary", "gain", "high_pass", "integrator", "lead", "low_pass", "notch", "pid",
         "positive_feedback", "rate",
     ),
-    "flexapod.control.limits": ("margins",),
+    "flexapod.control.loop_stability": ("margins",),
     "flexapod.control.loops": ("best_gain", "root_locus"),
     "flexapod.control.ring_down": ("ring_down",),
-    "flexapod.control.scheduled": ("Scheduled",),
+    "flexapod.control.gain_scheduling": ("Scheduled",),
     "flexapod.control.state_space": ("StateSpace",),
 }  # fmt: skip
 

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.control.arguments import number
+from flexapod.common.arguments import number
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError
 from flexapod.control.channels import Names
 from flexapod.control.controllers import pairs
+from flexapod.control.discretization import LATEST, period_of
 from flexapod.control.function import Function
-from flexapod.control.sampling import LATEST, period_of
-from flexapod.errors import InputError
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace

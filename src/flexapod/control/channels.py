@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from flexapod.errors import InputError, closest, names_of
+from flexapod.common.errors import InputError, closest, names_of
 
 __all__ = ["NOISE", "RATE", "Names", "chosen", "groups"]
 

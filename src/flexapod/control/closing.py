@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flexapod.control.arguments import frequencies
+from flexapod.common.arguments import frequencies
+from flexapod.common.errors import InputError
+from flexapod.common.units import quantity
 from flexapod.control.channels import NOISE, RATE, chosen
-from flexapod.control.interconnect import CONTROL, closed, law_of, noise_names, units_with
-from flexapod.control.sampling import held, period_of
-from flexapod.errors import InputError
-from flexapod.units import quantity
+from flexapod.control.discretization import held, period_of
+from flexapod.control.feedback import CONTROL, closed, law_of, noise_names, units_with
 
 if TYPE_CHECKING:
     from xarray import Dataset

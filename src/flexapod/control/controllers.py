@@ -9,15 +9,15 @@ from dataclasses import KW_ONLY, dataclass
 import numpy as np
 from scipy.linalg import block_diag
 
-from flexapod.arrays import Array
-from flexapod.control import laws
-from flexapod.control.arguments import matrix
+from flexapod.common.arguments import matrix
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError
+from flexapod.common.units import quantity
+from flexapod.control import filters
 from flexapod.control.channels import RATE, Names, chosen
-from flexapod.control.interconnect import law_of
-from flexapod.control.laws import ControlLaw, Number
+from flexapod.control.feedback import law_of
+from flexapod.control.filters import ControlLaw, Number
 from flexapod.control.state_space import StateSpace
-from flexapod.errors import InputError
-from flexapod.units import quantity
 
 __all__ = ["DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together", "pairs"]
 
@@ -91,7 +91,7 @@ class Decentralised(Controller):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
-        laws.a_law(self.law)
+        filters.a_law(self.law)
         sensors, actuators = pairs(self.sensor, self.actuator, outputs, inputs)
         each = np.eye(len(sensors))
         return assembled([self.law * -1.0] * len(sensors), each, each, sensors, actuators, units)
@@ -125,7 +125,7 @@ class IFF(Controller):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
-        law = laws.integrator(-quantity(self.gain, "number", key="gain"), self.high_pass)
+        law = filters.integrator(-quantity(self.gain, "number", key="gain"), self.high_pass)
         sensors, actuators = pairs(self.sensor, self.actuator, outputs, inputs)
         each = np.eye(len(sensors))
         stiffness = quantity(self.parallel_stiffness, "stiffness", key="parallel_stiffness")
@@ -148,7 +148,7 @@ class DVF(Controller):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
-        law = laws.rate(self.gain, self.low_pass)
+        law = filters.rate(self.gain, self.low_pass)
         return Decentralised(law, sensor=self.sensor, actuator=self.actuator).on(outputs, inputs, units)
 
 
@@ -166,7 +166,7 @@ class PID(Controller):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
-        law = laws.pid(self.proportional, self.integral, self.derivative, self.low_pass)
+        law = filters.pid(self.proportional, self.integral, self.derivative, self.low_pass)
         return Decentralised(law, sensor=self.sensor, actuator=self.actuator).on(outputs, inputs, units)
 
 
@@ -184,8 +184,8 @@ class Fused(Controller):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
-        laws.a_law(self.law)
-        below, above = laws.complementary(self.corner, self.order)
+        filters.a_law(self.law)
+        below, above = filters.complementary(self.corner, self.order)
         low, actuators = pairs(self.low, self.actuator, outputs, inputs)
         high, _ = pairs(self.high, self.actuator, outputs, inputs)
         each = np.eye(len(low))
@@ -225,7 +225,7 @@ class Decoupled(Controller):
             if isinstance(self.law, ControlLaw) or not isinstance(self.law, Sequence)
             else self.law
         )
-        given = [laws.a_law(law) for law in each]
+        given = [filters.a_law(law) for law in each]
         shapes = {"into": (into, (len(given), len(sensors))), "out": (out, (len(actuators), len(given)))}
         for key, (found, shape) in shapes.items():
             if found.shape != shape:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flexapod.arrays import Array
-from flexapod.control.arguments import frequencies
+from flexapod.common.arguments import frequencies
+from flexapod.common.arrays import Array
+from flexapod.common.datasets import composed
 from flexapod.control.poles import swings_of
-from flexapod.labelled import composed
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.arrays import Array
-from flexapod.control.arguments import matrix, number, numbers, whole
+from flexapod.common.arguments import matrix, number, numbers, whole
+from flexapod.common.arrays import Array
+from flexapod.common.errors import ComputationError, InputError
 from flexapod.control.channels import Names
 from flexapod.control.controllers import Decoupled
-from flexapod.control.laws import ControlLaw
+from flexapod.control.filters import ControlLaw
 from flexapod.control.state_space import a_system
-from flexapod.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace

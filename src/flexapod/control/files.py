@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexapod.errors import ComputationError, InputError
-from flexapod.runtime.files import path_of, replacing
-from flexapod.runtime.loading import loaded
+from flexapod.common.errors import ComputationError, InputError
+from flexapod.common.files import path_of, replacing
+from flexapod.common.lazy_imports import loaded
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace

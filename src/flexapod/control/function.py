@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from flexapod.arrays import Array
-from flexapod.errors import InputError, names_of
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError, names_of
 
 __all__ = ["Function"]
 

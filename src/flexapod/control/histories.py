@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.arrays import Array
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError
+from flexapod.common.units import quantity
+from flexapod.control.discretization import held
 from flexapod.control.poles import damping_of
-from flexapod.control.sampling import held
-from flexapod.errors import InputError
-from flexapod.units import quantity
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace

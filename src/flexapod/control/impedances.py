@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.control.arguments import frequencies
+from flexapod.common.arguments import frequencies
+from flexapod.common.errors import InputError
 from flexapod.control.state_space import a_system
-from flexapod.errors import InputError
 
 if TYPE_CHECKING:
     from xarray import Dataset

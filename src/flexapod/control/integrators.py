@@ -9,7 +9,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from flexapod.arrays import Array, Mask
+from flexapod.common.arrays import Array, Mask
 
 __all__ = ["Integrated", "integrators", "moved_and_shown", "reached", "without_integrators"]
 

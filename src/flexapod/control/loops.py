@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linear_sum_assignment, minimize_scalar
 
-from flexapod.control.arguments import number, numbers
-from flexapod.control.interconnect import closed, opened
+from flexapod.common.arguments import number, numbers
+from flexapod.common.errors import InputError
+from flexapod.common.units import quantity
+from flexapod.control.discretization import law_beside
+from flexapod.control.feedback import closed, opened
 from flexapod.control.poles import damping_of
-from flexapod.control.sampling import law_beside
 from flexapod.control.state_space import a_system
 from flexapod.control.zeros import zeros_of
-from flexapod.errors import InputError
-from flexapod.units import quantity
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -93,7 +93,7 @@ def best_gain(
     ratios = np.array([_least_ratio(system, law, factor, edge)[0] for factor in factors])
     at = int(ratios.argmax())
     low, high = (np.log(factors[max(at - 1, 0)]), np.log(factors[min(at + 1, len(factors) - 1)]))
-    found = minimize_scalar(
+    found: Any = minimize_scalar(
         lambda x: -_least_ratio(system, law, np.exp(x), edge)[0],
         bounds=(low, high), method="bounded", options={"xatol": FINEST},
     )  # fmt: skip

@@ -8,11 +8,11 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from flexapod.arrays import Array, Mask
+from flexapod.common.arrays import Array, Mask
+from flexapod.common.errors import ComputationError
 from flexapod.control.integrators import Integrated, integrators, moved_and_shown, reached, without_integrators
 from flexapod.control.poles import INTEGRATES, swings_of
 from flexapod.control.reduction import Subsystem, apart
-from flexapod.errors import ComputationError
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace

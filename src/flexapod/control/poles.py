@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.arrays import Array
+from flexapod.common.arrays import Array
 
 __all__ = ["INTEGRATES", "SWINGS", "damping_of", "middle_rate", "poles_of", "swings_of"]
 

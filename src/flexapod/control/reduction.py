@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import scipy.linalg
 
-from flexapod.arrays import Array
-from flexapod.control.arguments import flag, number
+from flexapod.common.arguments import flag, number
+from flexapod.common.arrays import Array
+from flexapod.common.errors import ComputationError, InputError
 from flexapod.control.poles import damping_of
-from flexapod.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace

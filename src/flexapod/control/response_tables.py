@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.arrays import Array
-from flexapod.errors import InputError
-from flexapod.schema.csv_tables import table_lines
-from flexapod.units import COMMON_UNITS, to_si
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError
+from flexapod.common.tables.csv_tables import table_lines
+from flexapod.common.units import COMMON_UNITS, to_si
 
 __all__ = ["Response", "table_responses"]
 

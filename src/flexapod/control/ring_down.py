@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flexapod.arrays import floats
-from flexapod.control.arguments import whole
-from flexapod.control.sampling import period_of
-from flexapod.errors import InputError
+from flexapod.common.arguments import whole
+from flexapod.common.arrays import floats
+from flexapod.common.errors import InputError
+from flexapod.control.discretization import period_of
 
 __all__ = ["ring_down"]
 

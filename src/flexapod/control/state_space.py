@@ -10,23 +10,23 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flexapod.arrays import Array, floats
-from flexapod.control.arguments import frequencies, number
+from flexapod.common.arguments import frequencies, number
+from flexapod.common.arrays import Array, floats
+from flexapod.common.errors import InputError, names_of
+from flexapod.common.units import quantity
 from flexapod.control.channels import Names, chosen, groups
-from flexapod.control.frequency import response
+from flexapod.control.frequency_response import response
 from flexapod.control.histories import histories, instants
 from flexapod.control.norms import h2_norms, hinf_norm, relative_gains
 from flexapod.control.poles import damping_of, poles_of
 from flexapod.control.zeros import zeros_of
-from flexapod.errors import InputError, names_of
-from flexapod.units import quantity
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
     from flexapod.control.closing import DelayedLoop
     from flexapod.control.controllers import Controller
-    from flexapod.control.spectra import Sources
+    from flexapod.control.random_response import Sources
 
 __all__ = ["StateSpace", "a_system"]
 
@@ -119,7 +119,7 @@ class StateSpace:
 
         Rates of inputs are their last differences, Eq. (T21.19).
         """
-        from flexapod.control.sampling import held, period_of
+        from flexapod.control.discretization import held, period_of
 
         if self.sample is not None:
             raise InputError("is sampled already", key="sample", value=self.sample, allowed="a continuous system")
@@ -235,7 +235,7 @@ class StateSpace:
             `psd` and `cumulative_rms` (spectrum_frequency, output), `rms` (output), `covariance`.
         """
         from flexapod.control.datasets import vibration_dataset
-        from flexapod.control.spectra import shaken
+        from flexapod.control.random_response import shaken
 
         part = self.select(outputs=outputs)
         return vibration_dataset(part, *shaken(part, sources))
@@ -243,7 +243,7 @@ class StateSpace:
     def by_source(self, sources: Sources, outputs: Names = None) -> Dataset:
         """`rms_by_source` (source, output) as of `psd`; squares add up to those of `rms`."""
         from flexapod.control.datasets import source_dataset
-        from flexapod.control.spectra import shaken
+        from flexapod.control.random_response import shaken
 
         part = self.select(outputs=outputs)
         return source_dataset(part, *shaken(part, sources))

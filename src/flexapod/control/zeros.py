@@ -9,9 +9,9 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from flexapod.arrays import Array
+from flexapod.common.arrays import Array
+from flexapod.common.resources import one_thread
 from flexapod.control.poles import middle_rate
-from flexapod.runtime.threads import one_thread
 
 __all__ = ["zeros_of"]
 

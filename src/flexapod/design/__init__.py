@@ -1,6 +1,1 @@
-"""A first robot from a few numbers: parts that fit each other, as a commented study file."""
-
-from flexapod.design.design import first_robot
-from flexapod.design.sizes import IDEAL, Request, parse_request
-
-__all__ = ["IDEAL", "Request", "first_robot", "parse_request"]
+"""Many runs of one study: variants (`sweeps`), poses (`workspace`), steps and shapes (`convergence`)."""

@@ -1,8 +1,6 @@
 """Closed-form mathematics of the rigid robot: NumPy, vectorised over time."""
 
-from flexapod.kinematics.bodies import Nearest, nearest_legs, turned_by
-from flexapod.kinematics.breaks import Breaks, actuator_breaks, path_knots, robot_breaks
-from flexapod.kinematics.built import (
+from flexapod.kinematics.as_built import (
     BuiltPart,
     added,
     added_by_all,
@@ -15,14 +13,16 @@ from flexapod.kinematics.built import (
     plate_grows,
     shifts,
 )
+from flexapod.kinematics.bodies import Nearest, nearest_legs, turned_by
 from flexapod.kinematics.closures import TAKEN
+from flexapod.kinematics.discontinuities import Breaks, actuator_breaks, path_knots, robot_breaks
 from flexapod.kinematics.dynamics import RigidForces
 from flexapod.kinematics.forward import Postures
 from flexapod.kinematics.frames import Placed, base_law, base_placed, placed
 from flexapod.kinematics.inverse import LegState, joint_angles, leg_frames, leg_lengths, leg_rotations
 from flexapod.kinematics.jacobian import NearestSingularity, SingularityPath, length_jacobian
 from flexapod.kinematics.laws import Law
-from flexapod.kinematics.limbs import ABSENT, COORDINATES, DRIVEN, FREE, HELD, Limbs, limbs
+from flexapod.kinematics.leg_geometry import ABSENT, COORDINATES, DRIVEN, FREE, HELD, Limbs, limbs
 from flexapod.kinematics.mechanism import Reach, lost_words
 from flexapod.kinematics.mobility import Mobility, Posture, displaced, mobility
 from flexapod.kinematics.motions import independent_axes, mobility_words, motion_names, refuse_loose

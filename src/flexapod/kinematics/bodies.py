@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.arrays import Array, Mask
+from flexapod.common.arrays import Array, Mask
 from flexapod.kinematics.vectors import blocks, dot
 
 __all__ = ["Nearest", "nearest_legs", "turned_by"]

@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.arrays import Array, Mask
+from flexapod.common.arrays import Array, Mask
 from flexapod.kinematics.laws import Law
-from flexapod.kinematics.limbs import COORDINATES, Limbs
+from flexapod.kinematics.leg_geometry import COORDINATES, Limbs
 from flexapod.kinematics.rotations import exponential, quaternion, rotation_vector
 from flexapod.kinematics.screws import Screws, screws
 from flexapod.kinematics.trajectory import Poses, poses_from_coordinates, turning_axes

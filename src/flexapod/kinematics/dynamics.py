@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.errors import ComputationError
+from flexapod.common.arrays import Array
+from flexapod.common.errors import ComputationError
 from flexapod.kinematics.inverse import JointTurn, LegState, leg_rotations
 from flexapod.kinematics.trajectory import Poses
 from flexapod.kinematics.vectors import Vector, blocks, cross, time_first, time_last, turned

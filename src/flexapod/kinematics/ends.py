@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.errors import InputError
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError
 from flexapod.kinematics.inverse import leg_frame
 
 _ALONG = 1e-9  # sine of the angle below which an axis counts as parallel to the leg

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.arrays import Array
-from flexapod.errors import ComputationError, InputError
+from flexapod.common.arrays import Array
+from flexapod.common.errors import ComputationError, InputError
 from flexapod.kinematics.homotopy import Complex, Platform, complex_postures
 from flexapod.kinematics.inverse import leg_lengths
 from flexapod.kinematics.jacobian import length_jacobian

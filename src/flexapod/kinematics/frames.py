@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flexapod.arrays import Array
+from flexapod.common.arrays import Array
 from flexapod.kinematics.laws import Law, spline, spline_law
 from flexapod.kinematics.trajectory import rotation_matrix
 from flexapod.model import Robot
-from flexapod.model.mount import BaseMotion
+from flexapod.model.study.mount import BaseMotion
 
 __all__ = ["Placed", "base_law", "base_placed", "placed"]
 

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.errors import ComputationError
+from flexapod.common.errors import ComputationError
 
 GENERIC_POSTURES = 40  # complex solutions of a generic platform, Raghavan 1993; Ronga & Vust 1995
 

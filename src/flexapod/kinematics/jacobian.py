@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.arrays import Array
+from flexapod.common.arrays import Array
 from flexapod.kinematics.trajectory import Poses
 from flexapod.kinematics.vectors import cross, dot, time_first, time_last
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flexapod.errors import check_known
+from flexapod.common.errors import check_known
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline

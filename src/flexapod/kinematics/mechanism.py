@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.arrays import Array, Mask
-from flexapod.errors import ComputationError, InputError
+from flexapod.common.arrays import Array, Mask
+from flexapod.common.errors import ComputationError, InputError
 from flexapod.kinematics.closures import Closed, ClosureMotion, Task, close, move
 from flexapod.kinematics.inverse import BETA_LIMIT, NO_LENGTH, LegState
 from flexapod.kinematics.laws import Law
-from flexapod.kinematics.limbs import ABSENT, COORDINATES, DRIVEN, FREE, Limbs
+from flexapod.kinematics.leg_geometry import ABSENT, COORDINATES, DRIVEN, FREE, Limbs
 from flexapod.kinematics.screws import screws
 from flexapod.kinematics.trajectory import Poses, places, poses_from_coordinates
 

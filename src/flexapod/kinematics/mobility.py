@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flexapod.arrays import Array, Mask
+from flexapod.common.arrays import Array, Mask
 from flexapod.kinematics.closures import gaps
-from flexapod.kinematics.limbs import COORDINATES, DRIVEN, FREE, HELD, Limbs
+from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN, FREE, HELD, Limbs
 from flexapod.kinematics.rotations import exponential
 from flexapod.kinematics.screws import screws
 from flexapod.kinematics.trajectory import Poses

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexapod.arrays import Array, Mask
-from flexapod.errors import InputError
-from flexapod.kinematics.limbs import DRIVEN, Limbs
+from flexapod.common.arrays import Array, Mask
+from flexapod.common.errors import InputError
+from flexapod.kinematics.leg_geometry import DRIVEN, Limbs
 from flexapod.kinematics.mobility import Mobility, Posture, displaced, mobility, nearly_redundant
-from flexapod.model.chain import chain_of
+from flexapod.model.leg.chain import chain_of
 from flexapod.model.motion import AXES, CsvMotion, Motion, WaypointMotion
 
 PURE = 1e-6  # share of other coordinates, in units of L_c and radians, below which a motion has one name

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, TypeVar, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flexapod.arrays import Array, Mask
-from flexapod.errors import InputError
+from flexapod.common.arrays import Array, Mask
+from flexapod.common.errors import InputError
 from flexapod.kinematics import dynamics, forward, inverse, jacobian, mechanism, motions, trajectory, workspace
 from flexapod.kinematics.dynamics import LegBodies, PayloadBody, RigidForces
 from flexapod.kinematics.inverse import LegState
 from flexapod.kinematics.laws import Law
-from flexapod.kinematics.limbs import COORDINATES, DRIVEN, Limbs, limbs
+from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN, Limbs, limbs
 from flexapod.kinematics.mechanism import Reach
 from flexapod.kinematics.mobility import Mobility, Posture, holding, mobility
 from flexapod.kinematics.mobility import drive_jacobian as rates_of_drives

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexapod.arrays import Array
+from flexapod.common.arrays import Array
 
 
 def canonical(e: Array) -> Array:

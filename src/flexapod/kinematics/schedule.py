@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.arrays import Array
+from flexapod.common.arrays import Array
 from flexapod.kinematics.laws import Law, constant_rate, rest_to_rest, spin_up, spline, spline_law
 from flexapod.model import (
     ActuatorLoad,

@@ -10,8 +10,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flexapod.arrays import Array
-from flexapod.errors import InputError
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError
 from flexapod.kinematics.laws import Law, rest_to_rest, spline, spline_law
 from flexapod.kinematics.vectors import cross, time_first, time_last
 from flexapod.model import CsvMotion, Motion, WaypointMotion

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from flexapod.arrays import Array
+from flexapod.common.arrays import Array
 
 Vector = Sequence[Array] | Array
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.arrays import Array
-from flexapod.errors import InputError
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError
 from flexapod.kinematics.inverse import leg_lengths
 
 ROUNDING = 1e-14  # of a length; a leg as long as its limit is within it

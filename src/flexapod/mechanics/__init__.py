@@ -1,1 +1,1 @@
-"""The equations: one file for each chapter part of docs/theory."""
+"""A leg as energies, and as C: symbolic, shapes, elements, leg."""

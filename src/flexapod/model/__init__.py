@@ -1,14 +1,6 @@
 """WHAT is analysed: frozen descriptions in SI units, read from text files with units."""
 
-from flexapod.model.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
-from flexapod.model.chain import Chain, chain_of, chains_of
-from flexapod.model.circle import base_circle, platform_circle
-from flexapod.model.control import Control, DampedControl, FileControl, ForceControl, StrokeControl, ToolControl
-from flexapod.model.cylinder import Cylinder, Mounted
-from flexapod.model.damping import Damping, damping_parts
-from flexapod.model.disturbance import CURVES, Disturbance, Floor, Spectrum
-from flexapod.model.drive import Feedback, ForceDrive, PrescribedDrive, ServoDrive
-from flexapod.model.files import (
+from flexapod.model.file.files import (
     PAPER_PRESETS,
     PRESETS,
     OpenValue,
@@ -19,13 +11,7 @@ from flexapod.model.files import (
     preset,
     preset_text,
 )
-from flexapod.model.friction import JointFriction, ScrewFriction, StrokeFriction
-from flexapod.model.geometry import Geometry
-from flexapod.model.guide import Guide
 from flexapod.model.heat import Expansion, Gradient, Heat
-from flexapod.model.home import Home
-from flexapod.model.hydraulic import HydraulicDrive, HydraulicLimits
-from flexapod.model.joint import Carriage, Joint, Travel
 from flexapod.model.laws import (
     ConstantLaw,
     ConstantWrench,
@@ -43,8 +29,24 @@ from flexapod.model.laws import (
     StepWrench,
     Wrench,
 )
-from flexapod.model.leg import Leg, Stroke
-from flexapod.model.material import MATERIALS, Material, Rectangle, Tube
+from flexapod.model.leg.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
+from flexapod.model.leg.chain import Chain, chain_of, chains_of
+from flexapod.model.leg.circle import base_circle, platform_circle
+from flexapod.model.leg.cylinder import Cylinder, Mounted
+from flexapod.model.leg.damping import Damping, damping_parts
+from flexapod.model.leg.drive import Feedback, ForceDrive, PrescribedDrive, ServoDrive
+from flexapod.model.leg.friction import JointFriction, ScrewFriction, StrokeFriction
+from flexapod.model.leg.geometry import Geometry
+from flexapod.model.leg.guide import Guide
+from flexapod.model.leg.hydraulic import HydraulicDrive, HydraulicLimits
+from flexapod.model.leg.joint import Carriage, Joint, Travel
+from flexapod.model.leg.leg import Leg, Stroke
+from flexapod.model.leg.material import MATERIALS, Material, Rectangle, Tube
+from flexapod.model.leg.piston import Piston, Strut
+from flexapod.model.leg.rolling import RollingLaw
+from flexapod.model.leg.screw import Bearing, Brake, Drive, Encoder, Limits, Loop, Motor, Nut, Ripple, Rotor, ScrewDrive
+from flexapod.model.leg.sections import PistonSection
+from flexapod.model.leg.spring import AxialSpring
 from flexapod.model.motion import (
     AXES,
     PROFILES,
@@ -55,16 +57,14 @@ from flexapod.model.motion import (
     Waypoint,
     WaypointMotion,
 )
-from flexapod.model.payload import Payload
-from flexapod.model.piston import Piston, Strut
-from flexapod.model.robot import Robot
-from flexapod.model.rolling import RollingLaw
-from flexapod.model.screw import Bearing, Brake, Drive, Encoder, Limits, Loop, Motor, Nut, Ripple, Rotor, ScrewDrive
-from flexapod.model.sections import PistonSection
-from flexapod.model.simulation import DEFAULT_TOLERANCE, FIDELITIES, Initial, Simulation
-from flexapod.model.spring import AxialSpring
-from flexapod.model.study import DRIVEN_BY, ActuatorStudy, Study, override, to_toml
-from flexapod.model.tolerances import LengthSpread, RatioSpread, Spread, Tolerances
+from flexapod.model.study.control import Control, DampedControl, FileControl, ForceControl, StrokeControl, ToolControl
+from flexapod.model.study.disturbance import CURVES, Disturbance, Floor, Spectrum
+from flexapod.model.study.home import Home
+from flexapod.model.study.payload import Payload
+from flexapod.model.study.robot import Robot
+from flexapod.model.study.simulation import DEFAULT_TOLERANCE, FIDELITIES, Initial, Simulation
+from flexapod.model.study.study import DRIVEN_BY, ActuatorStudy, Study, override, to_toml
+from flexapod.model.study.tolerances import LengthSpread, RatioSpread, Spread, Tolerances
 
 __all__ = [
     "AXES",

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import numpy as np
 from pydantic import PlainSerializer, PlainValidator, model_validator
 
-from flexapod.arrays import Array
-from flexapod.errors import InputError
-from flexapod.model.geometry import PerLeg, check_legs, one_for_all, read_each
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError
+from flexapod.common.tables.base import FileKey, Key, Quantity, Series, array_of
+from flexapod.common.tables.named_files import Content, columns_of_table
+from flexapod.common.tables.table import Place, Table
+from flexapod.model.leg.geometry import PerLeg, check_legs, one_for_all, read_each
 from flexapod.model.motion import check_times
-from flexapod.schema.base import FileKey, Key, Quantity, Series, array_of
-from flexapod.schema.named_files import Content, columns_of_table
-from flexapod.schema.table import Place, Table
 
 if TYPE_CHECKING:
-    from flexapod.schema.section import Section
+    from flexapod.common.tables.section import Section
 
 __all__ = ["HEAT_PARTS", "LEG_PARTS", "Expansion", "Gradient", "Heat"]
 

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
+from flexapod.common.tables.base import FileKey, Key, Quantity, Series, Series6, Vec6
+from flexapod.common.tables.csv_tables import WRENCH, beside
+from flexapod.common.tables.named_files import Content, columns_of_table
+from flexapod.common.tables.table import Place, Table
 from flexapod.model.motion import Profile, check_times
-from flexapod.schema.base import FileKey, Key, Quantity, Series, Series6, Vec6
-from flexapod.schema.csv_tables import WRENCH, beside
-from flexapod.schema.named_files import Content, columns_of_table
-from flexapod.schema.table import Place, Table
 
 if TYPE_CHECKING:
-    from flexapod.schema.section import Section
+    from flexapod.common.tables.section import Section
 
 _MEASURED = {  # by a law of a single actuator, under its key
     "": "number",

@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args
 import numpy as np
 from pydantic import AfterValidator, Field, model_validator
 
-from flexapod.arrays import Array
-from flexapod.errors import InputError
-from flexapod.schema.base import FileKey, Key, Quantity, Series, Series6, Vec3
-from flexapod.schema.csv_tables import POSE, beside, wrong_instant
-from flexapod.schema.named_files import Content, columns_of_table
-from flexapod.schema.table import Place, Table
-from flexapod.units import DIMENSIONS, quantities
-from flexapod.words import number, text
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError
+from flexapod.common.quantities import number, text
+from flexapod.common.tables.base import FileKey, Key, Quantity, Series, Series6, Vec3
+from flexapod.common.tables.csv_tables import POSE, beside, wrong_instant
+from flexapod.common.tables.named_files import Content, columns_of_table
+from flexapod.common.tables.table import Place, Table
+from flexapod.common.units import DIMENSIONS, quantities
 
 if TYPE_CHECKING:
-    from flexapod.schema.section import Section
+    from flexapod.common.tables.section import Section
 
 Axis = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
 Profile = Literal["quintic", "cycloidal", "s-curve", "trapezoid", "smooth", "linear"]

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.errors import InputError
-from flexapod.model.joint import Carriage, Joint, arm_of
-from flexapod.model.leg import Leg
-from flexapod.schema.axes import NO_PLACE, axis_of, normal_of
-from flexapod.schema.base import array_of
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError
+from flexapod.common.tables.axes import NO_PLACE, axis_of, normal_of
+from flexapod.common.tables.base import array_of
+from flexapod.model.leg.joint import Carriage, Joint, arm_of
+from flexapod.model.leg.leg import Leg
 
 __all__ = ["moved_legs"]
 

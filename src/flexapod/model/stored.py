@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from flexapod.model.leg import Leg
-from flexapod.model.robot import Robot
-from flexapod.model.study import ActuatorStudy, Study
-from flexapod.schema.columns import columns_of
-from flexapod.schema.named_files import NamedFiles, Stored
-from flexapod.schema.table import Place, Table
+from flexapod.common.tables.columns import columns_of
+from flexapod.common.tables.named_files import NamedFiles, Stored
+from flexapod.common.tables.table import Place, Table
+from flexapod.model.leg.leg import Leg
+from flexapod.model.study.robot import Robot
+from flexapod.model.study.study import ActuatorStudy, Study
 
 __all__ = ["files_of", "stored_tables"]
 

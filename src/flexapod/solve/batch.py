@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from flexapod.arrays import Array
+from flexapod.common.arrays import Array
 from flexapod.kinematics.rotations import turned
 from flexapod.solve.kernel import evaluate
 from flexapod.solve.system import Index, State, System

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.arrays import Array
+from flexapod.common.arrays import Array
 from flexapod.kinematics.rotations import matrix
-from flexapod.mechanics.layout import FRAMES
+from flexapod.mechanics.leg.layout import FRAMES
 from flexapod.model import Robot
 from flexapod.solve.system import System
 

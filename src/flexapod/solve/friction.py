@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.mechanics.layout import columns, leg_parameters
+from flexapod.common.arrays import Array
+from flexapod.mechanics.leg.layout import columns, leg_parameters
 from flexapod.solve.batch import RestMatrices, RestStates
 from flexapod.solve.kernel import evaluate
 from flexapod.solve.system import System

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexapod import elements, mechanics, symbolic
-from flexapod.arrays import Array
-from flexapod.elements.element import source_of
-from flexapod.mechanics.layout import Shapes, leg_parameters
-from flexapod.symbolic.compiler import CompiledFunction, compiled_library, compiler
+from flexapod.common.arrays import Array
+from flexapod.mechanics import elements, leg, symbolic
+from flexapod.mechanics.elements.element import source_of
+from flexapod.mechanics.leg.layout import Shapes, leg_parameters
+from flexapod.mechanics.symbolic.compiler import CompiledFunction, compiled_library, compiler
 
 if TYPE_CHECKING:
-    from flexapod.symbolic.functions import NamedFunction
+    from flexapod.mechanics.symbolic.functions import NamedFunction
 
 Function = Callable[..., tuple[Array, ...]]
 #: Functions that the time loops call, in the order of ``native/system.h``.
@@ -85,7 +85,7 @@ def _warn_interpreted() -> None:
 
 def interpreted_kernel(shapes: Shapes) -> Kernel:
     """Kernel evaluated by casadi, without a C compiler."""
-    from flexapod.symbolic.functions import Interpreted
+    from flexapod.mechanics.symbolic.functions import Interpreted
 
     functions: dict[str, Any] = {f.name: Interpreted(f) for f in _functions(shapes)}
     return Kernel(shapes=shapes, library=None, **functions)
@@ -131,21 +131,21 @@ def loaded_kernel(
 
 def generated_text(shapes: Shapes) -> dict[str, str]:
     """C text of each function of the equations, by name."""
-    from flexapod.symbolic.c_source import c_source
+    from flexapod.mechanics.symbolic.c_source import c_source
 
     return {function.name: c_source(function) for function in _functions(shapes)}
 
 
 def text_of_one_unit(shapes: Shapes) -> str:
     """C text of all functions that time loops call, for one unit with these."""
-    from flexapod.symbolic.c_source import of_one_unit
+    from flexapod.mechanics.symbolic.c_source import of_one_unit
 
     return "\n".join(of_one_unit(function) for function in _functions(shapes) if function.name in FOR_LOOPS)
 
 
 def _functions(shapes: Shapes) -> "list[NamedFunction]":
-    from flexapod.mechanics.assembly import joint_functions, leg_functions, payload_functions
-    from flexapod.mechanics.sliding import friction_functions
+    from flexapod.mechanics.leg.kernel_functions import joint_functions, leg_functions, payload_functions
+    from flexapod.mechanics.leg.sliding import friction_functions
 
     return [*leg_functions(shapes), *friction_functions(shapes), *joint_functions(), *payload_functions(shapes)]
 
@@ -154,7 +154,7 @@ def fingerprint(shapes: Shapes) -> list[object]:
     """Everything the generated code depends on: the text of the equations and the numbers of the bases."""
     texts = [
         path.read_bytes()
-        for package in (elements, mechanics, symbolic)
+        for package in (elements, leg, symbolic)
         for path in sorted(Path(str(package.__file__)).parent.glob("*.py"))
     ]
     numbers = [getattr(basis, field.name) for basis in shapes.beam.bases for field in fields(basis)]

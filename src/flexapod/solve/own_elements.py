@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.arrays import Array
-from flexapod.elements.slot import Slot
-from flexapod.elements.trial import refused
+from flexapod.common.arrays import Array
+from flexapod.mechanics.elements.slot import Slot
+from flexapod.mechanics.elements.trial import refused
 from flexapod.model import Robot
 from flexapod.solve.batch import Rates, matrices_at_rest, residual
 from flexapod.solve.rigid_motion import rigid_rest
@@ -48,7 +48,7 @@ def try_elements(robot: Robot, system: System) -> None:
 
 def _without_number(system: System, *values: Array) -> Iterator[tuple[Slot, list[str]]]:
     """Elements from outside with parts that are no number for coordinates, rates and parameters of a leg."""
-    from flexapod.mechanics.assembly import parts_of_elements
+    from flexapod.mechanics.leg.kernel_functions import parts_of_elements
 
     for slot, parts in parts_of_elements(system.kernel.shapes, values).items():
         if parts:

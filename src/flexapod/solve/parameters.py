@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.elements.element import Standing
-from flexapod.elements.mount import plate_mass
-from flexapod.elements.springs import viscous
-from flexapod.elements.trial import refuse_numbers
-from flexapod.kinematics.limbs import COORDINATES, FREE, Limbs
-from flexapod.mechanics import layout
-from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
+from flexapod.common.arrays import Array
+from flexapod.kinematics.leg_geometry import COORDINATES, FREE, Limbs
+from flexapod.mechanics.elements.element import Standing
+from flexapod.mechanics.elements.mount import plate_mass
+from flexapod.mechanics.elements.springs import viscous
+from flexapod.mechanics.elements.trial import refuse_numbers
+from flexapod.mechanics.leg import layout
+from flexapod.mechanics.leg.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes
 from flexapod.model import Actuator, ForceDrive, Leg, Mounted, Robot, ServoDrive, damping_parts
 from flexapod.solve.sections import section_parameters
 

@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.arrays import Array
-from flexapod.kinematics.limbs import COORDINATES, HELD, Limbs
+from flexapod.common.arrays import Array
+from flexapod.kinematics.leg_geometry import COORDINATES, HELD, Limbs
 from flexapod.kinematics.mechanism import leg_state
 from flexapod.kinematics.robot import once
 from flexapod.kinematics.rotations import quaternion
 from flexapod.kinematics.screws import screws
 from flexapod.kinematics.vectors import cross
-from flexapod.mechanics.layout import Shapes
+from flexapod.mechanics.leg.layout import Shapes
 from flexapod.model import Robot
 from flexapod.solve.batch import Rates, RestStates
 from flexapod.solve.system import Index, State, System

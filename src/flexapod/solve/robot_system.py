@@ -6,14 +6,14 @@ from dataclasses import replace
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.arrays import Mask
-from flexapod.elements.element import Standing
-from flexapod.elements.known import kinds_of
-from flexapod.elements.springs import springs_along
-from flexapod.errors import InputError
-from flexapod.kinematics.limbs import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
-from flexapod.mechanics.layout import Shapes, columns
-from flexapod.mechanics.layout import leg_parameters as leg_layout
+from flexapod.common.arrays import Mask
+from flexapod.common.errors import InputError
+from flexapod.kinematics.leg_geometry import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
+from flexapod.mechanics.elements.element import Standing
+from flexapod.mechanics.elements.registry import kinds_of
+from flexapod.mechanics.elements.springs import springs_along
+from flexapod.mechanics.leg.layout import Shapes, columns
+from flexapod.mechanics.leg.layout import leg_parameters as leg_layout
 from flexapod.model import Robot, Simulation, Study
 from flexapod.solve.kernel import kernel
 from flexapod.solve.own_elements import try_elements

@@ -8,16 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.bases import LateralBasis
-from flexapod.bases.beam_functions import gauss_unit
-from flexapod.bases.lateral import proportional_damping
-from flexapod.elements.chains import chain, is_chain
-from flexapod.elements.steps import Piece, StepNodes, Uniform, held, law, nodes, on_pieces, pieces, sheared
-from flexapod.mechanics.layout import Shapes
-from flexapod.mechanics.leg_beam import POWERS, LegBeam
+from flexapod.common.arrays import Array
+from flexapod.mechanics.elements.chains import chain, is_chain
+from flexapod.mechanics.elements.steps import Piece, StepNodes, Uniform, held, law, nodes, on_pieces, pieces, sheared
+from flexapod.mechanics.leg.layout import Shapes
+from flexapod.mechanics.leg.leg_beam import POWERS, LegBeam
+from flexapod.mechanics.shapes import LateralBasis
+from flexapod.mechanics.shapes.beam_functions import gauss_unit
+from flexapod.mechanics.shapes.lateral import proportional_damping
 from flexapod.model import Leg, damping_parts
-from flexapod.model.sections import SHARES, PistonStep
+from flexapod.model.leg.sections import SHARES, PistonStep
 
 _GLAND = 0.01  # of the piston's length: within which the mouth takes a cut up
 _MORE = 7  # points on a section more than shapes; kernels have fewer

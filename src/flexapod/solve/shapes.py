@@ -7,18 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from flexapod import bases, kinematics
-from flexapod.arrays import Array
-from flexapod.bases.lateral import LateralBasis
-from flexapod.elements.element import Physics
-from flexapod.elements.known import elements_of
-from flexapod.elements.slot import Slot
-from flexapod.elements.tip_body import PlanarTipBody, TipBody
-from flexapod.elements.torsion import Torsion
-from flexapod.kinematics.limbs import ABSENT, COORDINATES, FREE, HELD, Limbs
-from flexapod.mechanics.layout import Shapes, columns
-from flexapod.mechanics.leg_beam import LegBeam
-from flexapod.mechanics.leg_chain import LegChain
+from flexapod import kinematics
+from flexapod.common.arrays import Array
+from flexapod.kinematics.leg_geometry import ABSENT, COORDINATES, FREE, HELD, Limbs
+from flexapod.mechanics import shapes as bases
+from flexapod.mechanics.elements.element import Physics
+from flexapod.mechanics.elements.registry import elements_of
+from flexapod.mechanics.elements.slot import Slot
+from flexapod.mechanics.elements.tip_body import PlanarTipBody, TipBody
+from flexapod.mechanics.elements.torsion import Torsion
+from flexapod.mechanics.leg.layout import Shapes, columns
+from flexapod.mechanics.leg.leg_beam import LegBeam
+from flexapod.mechanics.leg.leg_chain import LegChain
+from flexapod.mechanics.shapes.lateral import LateralBasis
 from flexapod.model import Actuator, Rectangle, Robot, Simulation, Tube
 
 __all__ = [
@@ -157,7 +158,7 @@ def _ratios(actuator: Actuator, basis: str, rate: float) -> tuple[float, ...]:
 @lru_cache(maxsize=16)
 def _solid(section: Tube | Rectangle, length: float, count: int, moment: bool = False) -> LateralBasis:
     """Without lateral contraction, as a beam: no study file gives Poisson's ratio."""
-    from flexapod.fem.leg_shapes import solid_leg_shapes  # scikit-fem loads on use
+    from flexapod.solve.fem.leg_shapes import solid_leg_shapes  # scikit-fem loads on use
 
     return solid_leg_shapes(section, length, count, moment=moment)
 

@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.arrays import Array, Mask
+from flexapod.common.arrays import Array, Mask
 from flexapod.kinematics.rotations import turned
-from flexapod.mechanics.layout import LOAD_SIZE, columns, leg_parameters
+from flexapod.mechanics.leg.layout import LOAD_SIZE, columns, leg_parameters
 from flexapod.solve.kernel import Kernel, evaluate
 
 __all__ = ["COLUMNS", "Flow", "Friction", "Index", "Matrices", "State", "System"]

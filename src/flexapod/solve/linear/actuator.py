@@ -7,9 +7,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.errors import ComputationError, InputError, closest, names_of
-from flexapod.mechanics.layout import Shapes
+from flexapod.common.arrays import Array
+from flexapod.common.errors import ComputationError, InputError, closest, names_of
+from flexapod.mechanics.leg.layout import Shapes
 from flexapod.model import Actuator, Simulation
 from flexapod.solve.kernel import Function
 from flexapod.solve.linear.first_order import FirstOrder, first_order, with_mass
@@ -155,8 +155,8 @@ def _matrices(actuator: Actuator, shapes: Shapes, rate: float) -> tuple[Array, A
 
 @lru_cache(maxsize=16)
 def _tip(shapes: Shapes) -> Function:
-    from flexapod.mechanics.assembly import leg_tip
-    from flexapod.symbolic.functions import Interpreted
+    from flexapod.mechanics.leg.kernel_functions import leg_tip
+    from flexapod.mechanics.symbolic.functions import Interpreted
 
     return Interpreted(leg_tip(shapes))
 

@@ -7,13 +7,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.elements.element import Physics
-from flexapod.elements.motor_loop import MotorLoop
-from flexapod.mechanics.layout import Shapes
+from flexapod.common.arrays import Array
+from flexapod.mechanics.elements.element import Physics
+from flexapod.mechanics.elements.motor_loop import MotorLoop
+from flexapod.mechanics.leg.layout import Shapes
+from flexapod.mechanics.symbolic.compiler import CompiledFunction, compiled_library, compiler
 from flexapod.solve.kernel import Function, fingerprint
 from flexapod.solve.system import System
-from flexapod.symbolic.compiler import CompiledFunction, compiled_library, compiler
 
 __all__ = ["carried", "lines", "pushes"]
 
@@ -59,13 +59,13 @@ def _each(function: Function | None, q: Array, system: System, shapes: Sequence[
 @lru_cache(maxsize=32)
 def _function(shapes: Shapes, name: str) -> Function:
     """One of `assembly`, compiled where there is a compiler."""
-    from flexapod.mechanics import assembly
+    from flexapod.mechanics.leg import kernel_functions
 
     if command := compiler():
         library, signatures = compiled_library(
-            [name, *fingerprint(shapes)], lambda: [getattr(assembly, name)(shapes)], command
+            [name, *fingerprint(shapes)], lambda: [getattr(kernel_functions, name)(shapes)], command
         )
         return CompiledFunction(library, name, signatures[name])
-    from flexapod.symbolic.functions import Interpreted
+    from flexapod.mechanics.symbolic.functions import Interpreted
 
-    return Interpreted(getattr(assembly, name)(shapes))
+    return Interpreted(getattr(kernel_functions, name)(shapes))

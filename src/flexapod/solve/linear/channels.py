@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.errors import InputError, closest, names_of
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError, closest, names_of
+from flexapod.common.units import quantity
 from flexapod.model import Robot
 from flexapod.solve.linear.motions import COMPONENTS
-from flexapod.units import quantity
 
 __all__ = ["INPUTS", "OUTPUTS", "Geophone", "PlantChannel", "asked"]
 

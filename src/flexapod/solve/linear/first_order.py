@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, qr, solve_triangular
 
-from flexapod.arrays import Array
-from flexapod.errors import ComputationError
-from flexapod.solve.modal.frequencies import LIGHTEST
+from flexapod.common.arrays import Array
+from flexapod.common.errors import ComputationError
+from flexapod.solve.modal.eigenproblem import LIGHTEST
 from flexapod.solve.system import Index
 
 __all__ = ["FirstOrder", "first_order", "with_mass"]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexapod.arrays import Array
+from flexapod.common.arrays import Array
 from flexapod.kinematics.rotations import matrix
 from flexapod.model import Robot, Simulation
-from flexapod.model.mount import BaseMotion
+from flexapod.model.study.mount import BaseMotion
 from flexapod.solve.linear.beside import carried
 from flexapod.solve.linear.motions import flat_forces
 from flexapod.solve.linear.plant import Plant

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
+from flexapod.common.arrays import Array
+from flexapod.mechanics.leg.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
 from flexapod.solve.batch import RestStates, residual
 from flexapod.solve.system import System
 

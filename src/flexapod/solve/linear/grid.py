@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.errors import InputError
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError
 from flexapod.solve.linear.channels import PlantChannel
 from flexapod.solve.linear.plant import Plant
 from flexapod.solve.linear.second_order import SecondOrder, second_order

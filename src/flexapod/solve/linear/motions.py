@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.errors import InputError
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError
 from flexapod.solve.batch import RestMatrices
-from flexapod.solve.saddle import solve_each
+from flexapod.solve.saddle_point import solve_each
 from flexapod.solve.statics.elimination import leg_bases
 from flexapod.solve.statics.reduction import border_rows, expanded, flat_columns, hub_motion
 from flexapod.solve.system import System

@@ -8,10 +8,10 @@ from functools import cached_property
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.errors import InputError
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError
 from flexapod.kinematics.rotations import exponential, matrix
-from flexapod.mechanics.layout import columns, leg_parameters
+from flexapod.mechanics.leg.layout import columns, leg_parameters
 from flexapod.solve.batch import matrices_at_rest
 from flexapod.solve.kernel import evaluate
 from flexapod.solve.linear.beside import lines

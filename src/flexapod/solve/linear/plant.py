@@ -10,9 +10,9 @@ from typing import Literal, cast
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.arrays import Array, Mask
-from flexapod.errors import ComputationError, InputError
-from flexapod.mechanics.layout import columns, leg_parameters
+from flexapod.common.arrays import Array, Mask
+from flexapod.common.errors import ComputationError, InputError
+from flexapod.mechanics.leg.layout import columns, leg_parameters
 from flexapod.model import Drive, Encoder, ForceDrive, Load, PrescribedDrive, Robot, ScrewDrive, Simulation
 from flexapod.solve.batch import RestMatrices, RestStates, matrices_at_rest
 from flexapod.solve.friction import with_friction
@@ -23,7 +23,7 @@ from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.robot_system import robot_system, smooth
 from flexapod.solve.statics.drive_forces import push_ports
 from flexapod.solve.statics.equilibrium import FARTHEST
-from flexapod.solve.statics.locked import LockedPoses
+from flexapod.solve.statics.locked_robot import LockedPoses
 from flexapod.solve.statics.reduction import Motions, independent
 from flexapod.solve.statics.substitutes import with_substitutes
 from flexapod.solve.system import Index, System

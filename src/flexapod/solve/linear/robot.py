@@ -8,15 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.arrays import Array
-from flexapod.errors import InputError
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError
 from flexapod.solve.linear.channels import asked
 from flexapod.solve.linear.plant import plant_at_rest
 from flexapod.solve.linear.second_order import input_forces
 from flexapod.solve.modal.damped import poles
 from flexapod.solve.modal.modal_loops import ModalLoops, growth, unstable_words
 from flexapod.solve.modal.modes import loops_of, modal_damping, no_mass, unit_modes
-from flexapod.solve.statics.locked import LockedPoses, the_equilibrium
+from flexapod.solve.statics.locked_robot import LockedPoses, the_equilibrium
 
 __all__ = ["LinearRobot", "linear_robot"]
 

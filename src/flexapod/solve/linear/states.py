@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod.arrays import Array, Mask
+from flexapod.common.arrays import Array, Mask
 from flexapod.model import Robot
 from flexapod.solve.linear.channels import PlantChannel
 from flexapod.solve.linear.first_order import FirstOrder, first_order, with_mass

@@ -5,10 +5,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.bases.eigen import eigh
-from flexapod.errors import ComputationError, InputError
-from flexapod.mechanics.layout import COMMAND_SIZE, LOAD_SIZE, Shapes, columns
+from flexapod.common.arrays import Array
+from flexapod.common.errors import ComputationError, InputError
+from flexapod.mechanics.leg.layout import COMMAND_SIZE, LOAD_SIZE, Shapes, columns
+from flexapod.mechanics.shapes.eigen import eigh
 from flexapod.model import Actuator, Simulation
 from flexapod.solve.kernel import Function
 from flexapod.solve.modal.damped import damping_ratios
@@ -146,8 +146,8 @@ def stretching_lag(actuator: Actuator, simulation: Simulation, rate: float) -> A
 @lru_cache(maxsize=16)
 def functions(shapes: Shapes) -> tuple[Function, Function, Function]:
     """Residual, matrices at rest and tangents in motion of the leg, interpreted: each is called once per analysis."""
-    from flexapod.mechanics.assembly import leg_functions, leg_tangents
-    from flexapod.symbolic.functions import Interpreted
+    from flexapod.mechanics.leg.kernel_functions import leg_functions, leg_tangents
+    from flexapod.mechanics.symbolic.functions import Interpreted
 
     residual, matrices = leg_functions(shapes)[:2]
     return Interpreted(residual), Interpreted(matrices), Interpreted(leg_tangents(shapes))

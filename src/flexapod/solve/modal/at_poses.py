@@ -2,9 +2,9 @@
 
 from flexapod import kinematics
 from flexapod.model import Load, Robot, Simulation
-from flexapod.solve.modal.loss_factor import per_loss
 from flexapod.solve.modal.modes import RobotModes, the_modes
-from flexapod.solve.statics.locked import LockedPoses, lock, the_equilibrium
+from flexapod.solve.modal.structural_damping import per_loss
+from flexapod.solve.statics.locked_robot import LockedPoses, lock, the_equilibrium
 from flexapod.solve.statics.stiffness import PoseStiffness, stiffness_of
 
 __all__ = ["locked_poses", "robot_modes", "robot_stiffness"]

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.arrays import Array
-from flexapod.bases.eigen import finite
+from flexapod.common.arrays import Array
+from flexapod.mechanics.shapes.eigen import finite
 
 __all__ = ["OSCILLATES", "Reacting", "damping_ratios", "poles", "reacting"]
 

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.arrays import Array
-from flexapod.bases.eigen import finite
+from flexapod.common.arrays import Array
+from flexapod.common.quantities import text
+from flexapod.mechanics.shapes.eigen import finite
 from flexapod.model import Robot
 from flexapod.solve.batch import RestStates
 from flexapod.solve.kernel import evaluate
 from flexapod.solve.modal.damped import reacting
 from flexapod.solve.system import System
-from flexapod.words import text
 
 __all__ = ["ModalLoops", "growth", "loops_in_modes", "unstable_words"]
 

@@ -6,16 +6,16 @@ from functools import cached_property
 
 import numpy as np
 
-from flexapod.arrays import Array, Mask
-from flexapod.bases.eigen import finite
-from flexapod.errors import ComputationError, InputError
-from flexapod.mechanics.layout import LEG_PARAMETERS, columns, leg_parameters
+from flexapod.common.arrays import Array, Mask
+from flexapod.common.errors import ComputationError, InputError
+from flexapod.mechanics.leg.layout import LEG_PARAMETERS, columns, leg_parameters
+from flexapod.mechanics.shapes.eigen import finite
 from flexapod.solve.batch import RestMatrices
 from flexapod.solve.modal.damped import OSCILLATES, damping_ratios
-from flexapod.solve.modal.frequencies import count_real, mass_factor, natural
+from flexapod.solve.modal.eigenproblem import count_real, mass_factor, natural
 from flexapod.solve.modal.modal_loops import ModalLoops, growth, loops_in_modes
 from flexapod.solve.statics.equilibrium import Equilibrium
-from flexapod.solve.statics.locked import LockedPoses, the_equilibrium
+from flexapod.solve.statics.locked_robot import LockedPoses, the_equilibrium
 from flexapod.solve.statics.reduction import Motions, hub_motion
 from flexapod.solve.system import System
 

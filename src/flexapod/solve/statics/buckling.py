@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.arrays import Array
-from flexapod.kinematics.limbs import COORDINATES, Limbs
+from flexapod.common.arrays import Array
+from flexapod.kinematics.leg_geometry import COORDINATES, Limbs
 from flexapod.kinematics.rotations import quaternion
-from flexapod.mechanics.layout import columns, leg_parameters
+from flexapod.mechanics.leg.layout import columns, leg_parameters
 from flexapod.model import Robot, Simulation
 from flexapod.solve.kernel import evaluate
 from flexapod.solve.robot_system import robot_system

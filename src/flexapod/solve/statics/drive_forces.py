@@ -3,10 +3,10 @@
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.arrays import Array
-from flexapod.kinematics.limbs import COORDINATES, DRIVEN
+from flexapod.common.arrays import Array
+from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN
 from flexapod.model import Drive, ForceDrive, Robot, ScrewDrive
-from flexapod.solve.statics.released import rigid_forces
+from flexapod.solve.statics.ideal_robot import rigid_forces
 from flexapod.solve.system import Index, System
 
 __all__ = ["feed_forward", "force_ports", "is_turned", "push_ports"]

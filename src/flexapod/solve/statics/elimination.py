@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexapod.arrays import Array, Mask
+from flexapod.common.arrays import Array, Mask
 from flexapod.solve.batch import RestMatrices
-from flexapod.solve.saddle import inverse_each, solve_each
+from flexapod.solve.saddle_point import inverse_each, solve_each
 from flexapod.solve.system import Index, System
 
 __all__ = ["LegBases", "closed", "leg_bases", "of_border"]

@@ -4,13 +4,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexapod.arrays import Array, Mask
-from flexapod.mechanics.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
+from flexapod.common.arrays import Array, Mask
+from flexapod.mechanics.leg.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
 from flexapod.solve.batch import RestMatrices, RestStates, matrices_at_rest, residual_at_rest
-from flexapod.solve.saddle import cholesky_each, solve_each
-from flexapod.solve.statics.arrow import arrow_solve
+from flexapod.solve.saddle_point import cholesky_each, solve_each
+from flexapod.solve.statics.block_arrow import arrow_solve
+from flexapod.solve.statics.minimum_energy_forces import least_energy
 from flexapod.solve.statics.reduction import Motions, independent, reduced
-from flexapod.solve.statics.shared import least_energy
 from flexapod.solve.statics.substitutes import with_substitutes
 from flexapod.solve.system import Index, State, System
 

@@ -6,14 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.elements.known import kinds_of, slots_of
-from flexapod.elements.springs import before_piston, twist_share
+from flexapod.common.arrays import Array
 from flexapod.kinematics.robot import once
+from flexapod.mechanics.elements.registry import kinds_of, slots_of
+from flexapod.mechanics.elements.springs import before_piston, twist_share
 from flexapod.model import ForceDrive, Leg, Robot
 from flexapod.solve.batch import matrices_at_rest
 from flexapod.solve.friction import numbers, sliding
-from flexapod.solve.statics.locked import LockedPoses
+from flexapod.solve.statics.locked_robot import LockedPoses
 from flexapod.solve.statics.stiffness import displacement, tool_motion
 
 __all__ = ["before_friction", "lost_motion", "places_with_friction", "reversal"]

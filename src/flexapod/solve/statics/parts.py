@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.arrays import Array
-from flexapod.elements.springs import Spring, before_piston, of_servo, springs_along
+from flexapod.common.arrays import Array
+from flexapod.mechanics.elements.springs import Spring, before_piston, of_servo, springs_along
 from flexapod.model import ForceDrive, Leg, Robot
 
 __all__ = ["guide_turning", "mount_stiffness", "part_stiffness"]

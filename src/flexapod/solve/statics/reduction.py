@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexapod.arrays import Array
+from flexapod.common.arrays import Array
 from flexapod.solve.batch import RestMatrices
-from flexapod.solve.saddle import solve_each
+from flexapod.solve.saddle_point import solve_each
 from flexapod.solve.statics.elimination import LegBases, closed, leg_bases, of_border
 from flexapod.solve.system import Index, System
 

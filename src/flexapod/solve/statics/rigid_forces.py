@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.errors import ComputationError
+from flexapod.common.arrays import Array
+from flexapod.common.errors import ComputationError
 from flexapod.kinematics.rotations import matrix
 from flexapod.solve.batch import Rates, RestStates, matrices_at_rest, residual
-from flexapod.solve.statics.shared import closure_forces, open_forces
+from flexapod.solve.statics.minimum_energy_forces import closure_forces, open_forces
 from flexapod.solve.system import System
 
 __all__ = ["JointForces", "displacement_by_error", "joint_forces"]

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.arrays import Array
-from flexapod.kinematics.limbs import COORDINATES, DRIVEN, HELD
+from flexapod.common.arrays import Array
+from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN, HELD
 from flexapod.model import Load, Robot
 from flexapod.solve.rigid_motion import leg_coordinates
 from flexapod.solve.statics.drive_forces import feed_forward, force_ports, push_ports

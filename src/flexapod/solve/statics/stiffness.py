@@ -4,14 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.bases.eigen import finite
-from flexapod.errors import InputError
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError
 from flexapod.kinematics.rotations import matrix
+from flexapod.mechanics.shapes.eigen import finite
 from flexapod.model import Robot
-from flexapod.solve.saddle import inverse_each, solve_each
+from flexapod.solve.saddle_point import inverse_each, solve_each
 from flexapod.solve.statics.equilibrium import Equilibrium
-from flexapod.solve.statics.locked import LockedPoses
+from flexapod.solve.statics.locked_robot import LockedPoses
 from flexapod.solve.statics.reduction import reduced_legs
 from flexapod.solve.system import System
 

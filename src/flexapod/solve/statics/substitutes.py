@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexapod.arrays import Array
+from flexapod.common.arrays import Array
+from flexapod.common.ranking import EQUALS, alike, first_largest
 from flexapod.solve.batch import RestStates, matrices_at_rest
 from flexapod.solve.statics.elimination import LegBases, closed, leg_bases
 from flexapod.solve.statics.reduction import border_rows, flat_columns
 from flexapod.solve.system import Index, System
-from flexapod.ties import EQUALS, alike, first_largest
 
 __all__ = ["with_substitutes"]
 

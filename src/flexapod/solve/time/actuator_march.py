@@ -6,22 +6,22 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.arrays import Array
-from flexapod.errors import ComputationError
-from flexapod.integration import GeneralizedAlpha
-from flexapod.mechanics.layout import columns
+from flexapod.common.arrays import Array
+from flexapod.common.errors import ComputationError
+from flexapod.common.generalized_alpha import GeneralizedAlpha
+from flexapod.mechanics.leg.layout import columns
 from flexapod.model import DRIVEN_BY, Actuator, ActuatorStudy, Simulation
 from flexapod.solve.kernel import kernel
 from flexapod.solve.parameters import SPACE, actuator_parameters
 from flexapod.solve.shapes import SPACE_NAMES, actuator_shapes, amplitudes, home, lateral_signs, places
 from flexapod.solve.system import COLUMNS, Flow, State, System
+from flexapod.solve.time.command_tables import Law
 from flexapod.solve.time.march import initial_step, march
 from flexapod.solve.time.problem import Chunk, Problem, Weight
 from flexapod.solve.time.recording import Counters, Recording
 from flexapod.solve.time.robot_march import after_impact
 from flexapod.solve.time.start import consistent_start
-from flexapod.solve.time.stops import Stops
-from flexapod.solve.time.tables import Law
+from flexapod.solve.time.time_events import Stops
 
 SHORT = 0.1  # of the beam: its frequencies are then a hundred times those of the whole
 

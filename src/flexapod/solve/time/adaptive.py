@@ -7,15 +7,15 @@ from itertools import pairwise
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.errors import ComputationError
+from flexapod.common.arrays import Array
+from flexapod.common.errors import ComputationError
 from flexapod.solve.system import Flow
 from flexapod.solve.time import native
 from flexapod.solve.time.chebyshev import Series
 from flexapod.solve.time.problem import CAUSES, Chunk, Problem
 from flexapod.solve.time.radau import MOST, OUT_OF_REACH, SHORTEST, Advanced, Within
 from flexapod.solve.time.recording import Counters, Recording, unpack
-from flexapod.solve.time.stops import NEAR, Stop, after
+from flexapod.solve.time.time_events import NEAR, Stop, after
 
 __all__ = ["adaptive_march"]
 

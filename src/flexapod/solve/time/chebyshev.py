@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexapod.arrays import Array
+from flexapod.common.arrays import Array
 from flexapod.solve.system import COLUMNS
-from flexapod.solve.time.pieces import ENOUGH, instants, series_of
-from flexapod.solve.time.stops import NEAR
-from flexapod.solve.time.tables import Law
+from flexapod.solve.time.command_tables import Law
+from flexapod.solve.time.piecewise_chebyshev import ENOUGH, instants, series_of
+from flexapod.solve.time.time_events import NEAR
 
 __all__ = ["Series"]
 

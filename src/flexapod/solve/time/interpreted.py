@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.errors import ComputationError
-from flexapod.integration import GeneralizedAlpha
+from flexapod.common.arrays import Array
+from flexapod.common.errors import ComputationError
+from flexapod.common.generalized_alpha import GeneralizedAlpha
 from flexapod.kinematics.rotations import turned
 from flexapod.solve.system import Flow, System
 from flexapod.solve.time.native import MAX_ITERATIONS, TOL_CLOSURE, TOL_FORCE, Advance

@@ -6,14 +6,14 @@ from types import ModuleType
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.errors import ComputationError
+from flexapod.common.arrays import Array
+from flexapod.common.errors import ComputationError
 from flexapod.solve.system import Flow, System
 from flexapod.solve.time import interpreted, native
 from flexapod.solve.time.adaptive import adaptive_march
 from flexapod.solve.time.problem import CAUSES, Chunk, Problem
 from flexapod.solve.time.recording import Counters, Recording, unpack
-from flexapod.solve.time.stops import Stop, after, before
+from flexapod.solve.time.time_events import Stop, after, before
 
 CHUNK = 100  # output intervals between looks at the tolerance, or at progress where steps are slow
 CHUNK_STEPS = 2000  # steps in a chunk of several intervals: tables of fine steps must not outgrow the output

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexapod.arrays import Array, Mask
-from flexapod.errors import ComputationError
+from flexapod.common.arrays import Array, Mask
+from flexapod.common.errors import ComputationError
 from flexapod.solve.system import State, System
 from flexapod.solve.time.start import constrained
 

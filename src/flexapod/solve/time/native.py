@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.errors import ComputationError
-from flexapod.integration import GeneralizedAlpha
-from flexapod.runtime.memory import keep_freed
+from flexapod.common.arrays import Array
+from flexapod.common.errors import ComputationError
+from flexapod.common.generalized_alpha import GeneralizedAlpha
+from flexapod.common.memory import keep_freed
+from flexapod.mechanics.symbolic.compiler import lanes, written_library
 from flexapod.solve.kernel import Equations, Kernel
 from flexapod.solve.system import Flow, System
 from flexapod.solve.time.recording import Counters, record_width
-from flexapod.symbolic.compiler import lanes, written_library
 
 if TYPE_CHECKING:
-    from flexapod.solve.time.sampled import SampledLoop
+    from flexapod.solve.time.sampled_control import SampledLoop
 
 NATIVE = Path(__file__).parent / "native"
 SOURCES = tuple(

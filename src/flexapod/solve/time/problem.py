@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.errors import ComputationError
-from flexapod.integration import GeneralizedAlpha
+from flexapod.common.arrays import Array
+from flexapod.common.errors import ComputationError
+from flexapod.common.generalized_alpha import GeneralizedAlpha
 from flexapod.solve.system import Flow, System
+from flexapod.solve.time.command_tables import Law
 from flexapod.solve.time.recording import Recording
-from flexapod.solve.time.stops import Stops
-from flexapod.solve.time.tables import Law
+from flexapod.solve.time.time_events import Stops
 
 if TYPE_CHECKING:
-    from flexapod.solve.time.sampled import SampledLoop
+    from flexapod.solve.time.sampled_control import SampledLoop
 
 __all__ = ["CAUSES", "OF_LOOPS", "Chunk", "Measure", "Problem", "Weight"]
 

@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.integration import GeneralizedAlpha
+from flexapod.common.arrays import Array
+from flexapod.common.generalized_alpha import GeneralizedAlpha
 from flexapod.solve.system import Flow, System
 from flexapod.solve.time.chebyshev import Series
 from flexapod.solve.time.native import Call, address, loops, memory, settings
-from flexapod.solve.time.pieces import NODES
+from flexapod.solve.time.piecewise_chebyshev import NODES
 from flexapod.solve.time.recording import Counters, record_width
 
 if TYPE_CHECKING:
-    from flexapod.solve.time.sampled import SampledLoop
+    from flexapod.solve.time.sampled_control import SampledLoop
 
 __all__ = ["OUT_OF_REACH", "Advanced", "Within", "is_rigid"]
 

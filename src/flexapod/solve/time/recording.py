@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from flexapod.arrays import Array
+from flexapod.common.arrays import Array
 from flexapod.solve.system import System
 
 __all__ = ["Counters", "Recording", "record_places", "record_width", "unpack"]

@@ -7,36 +7,36 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.arrays import Array
-from flexapod.errors import ComputationError, InputError
-from flexapod.integration import GeneralizedAlpha
+from flexapod.common.arrays import Array
+from flexapod.common.errors import ComputationError, InputError
+from flexapod.common.generalized_alpha import GeneralizedAlpha
 from flexapod.kinematics.inverse import BETA_LIMIT
 from flexapod.kinematics.rotations import matrix
-from flexapod.mechanics.layout import columns
+from flexapod.mechanics.leg.layout import columns
 from flexapod.model import ForceDrive, Robot, Study
 from flexapod.solve.batch import RestStates
 from flexapod.solve.frames import floor
-from flexapod.solve.modal.loss_factor import per_loss
+from flexapod.solve.modal.structural_damping import per_loss
 from flexapod.solve.rigid_motion import built_state, rigid_state
 from flexapod.solve.robot_system import refuse_massless, robot_system
-from flexapod.solve.statics.branch import flipped, refuse_fallen, refuse_flipped
+from flexapod.solve.statics.assembly_mode import flipped, refuse_fallen, refuse_flipped
 from flexapod.solve.statics.equilibrium import equilibrium
-from flexapod.solve.statics.locked import refuse_pure_force
+from flexapod.solve.statics.locked_robot import refuse_pure_force
 from flexapod.solve.statics.static_loads import rest_commands, rest_load
 from flexapod.solve.system import Flow, State, System
+from flexapod.solve.time.command_tables import Law, robot_law
 from flexapod.solve.time.march import initial_step, march
 from flexapod.solve.time.motor_lag import settled
-from flexapod.solve.time.pieces import Pieces
+from flexapod.solve.time.overconstrained import independent, shared
+from flexapod.solve.time.piecewise_chebyshev import Pieces
 from flexapod.solve.time.problem import OF_LOOPS, Chunk, Problem, Weight
 from flexapod.solve.time.radau import is_rigid
 from flexapod.solve.time.recording import Counters, Recording
-from flexapod.solve.time.redundant import independent, shared
 from flexapod.solve.time.start import consistent_start
-from flexapod.solve.time.stops import Stops
-from flexapod.solve.time.tables import Law, robot_law
+from flexapod.solve.time.time_events import Stops
 
 if TYPE_CHECKING:
-    from flexapod.solve.time.sampled import Sampled, SampledLoop
+    from flexapod.solve.time.sampled_control import Sampled, SampledLoop
 
 AHEAD = 2000  # outputs whose rigid places are made at once
 ROUNDING = 1e-12  # of the sum of what rounding makes along the legs [m]
@@ -124,7 +124,7 @@ def _around(sampled: "Sampled | None", system: System, study: Study, path: "_Pat
     """A controller around a robot, which compiled equations alone have."""
     if sampled is None:
         return None
-    from flexapod.solve.time.sampled import SampledLoop
+    from flexapod.solve.time.sampled_control import SampledLoop
 
     if system.kernel.library is None:
         raise InputError(

@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from flexapod.arrays import Array
-from flexapod.integration import GeneralizedAlpha
+from flexapod.common.arrays import Array
+from flexapod.common.generalized_alpha import GeneralizedAlpha
 from flexapod.solve.batch import RestStates, matrices_at_rest
-from flexapod.solve.saddle import saddle_solve
+from flexapod.solve.saddle_point import saddle_solve
 from flexapod.solve.system import Flow, Matrices, State, System
-from flexapod.solve.time.tables import Law
+from flexapod.solve.time.command_tables import Law
 
 __all__ = ["accelerations", "consistent_start", "normal_velocity"]
 

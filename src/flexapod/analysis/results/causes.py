@@ -1,0 +1,223 @@
+"""The deviation of the payload by cause, Eqs. (T8.1)-(T8.8)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexapod import kinematics
+from flexapod.analysis.results.cause_labels import CAUSES
+from flexapod.analysis.results.elongations import elongations, frame_names, in_gap, part_names
+from flexapod.analysis.results.inside import tip_moves
+from flexapod.analysis.results.legs import stretch
+from flexapod.analysis.results.rigid_path import RigidPath
+from flexapod.analysis.results.time_history import Record
+from flexapod.common.arrays import Array
+from flexapod.common.errors import ComputationError
+from flexapod.kinematics.closures import Task, close
+from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN, FREE, Limbs
+from flexapod.kinematics.robot import once
+from flexapod.kinematics.screws import screws
+from flexapod.mechanics.elements.flexure import Flexures
+from flexapod.mechanics.elements.springs import Place
+from flexapod.model import Robot
+from flexapod.solve.batch import RestStates
+from flexapod.solve.frames import on_plates
+from flexapod.solve.statics.ideal_robot import is_hexapod, rigid_errors
+from flexapod.solve.statics.lost_motion import before_friction, places_with_friction
+from flexapod.solve.system import System
+
+CHI, L = COORDINATES.index("chi"), COORDINATES.index("l")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Errors:
+    """Errors of the coordinates that drives and joints hold, by cause, each (T, legs, 8) [m, rad]: `COORDINATES`.
+
+    Of a leg UPS that is its length. They add up to what straight legs would need to reach the flexible platform, less
+    what they have on the rigid path, exactly. `by_cause`: in the order of `cause_names`.
+    """
+
+    by_cause: Mapping[str, Array]
+
+    @property
+    def total(self) -> Array:
+        """Their sum, Eq. (T8.5)."""
+        return np.sum(list(self.by_cause.values()), axis=0)
+
+    @property
+    def stacked(self) -> Array:
+        """The causes in their order, (T, causes, legs, 8)."""
+        return np.stack(list(self.by_cause.values()), axis=1)
+
+
+@once
+def cause_names(robot: Robot) -> tuple[str, ...]:
+    """What may be to blame in a robot: its pistons and drives, every part that gives way, what is not as drawn."""
+    rubs = ("friction",) * ("drive" in places_with_friction(robot))
+    built = dict.fromkeys(part.cause for part in kinematics.built_parts(robot))
+    return (*CAUSES, *part_names(robot), *rubs, *frame_names(robot), *built)
+
+
+def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | RestStates) -> Errors:
+    """Errors by cause along a recorded path, or at rest at its instants, Eqs. (T8.2)-(T8.4), (T15.14)."""
+    found, shapes = kinematics.rigid_limbs(robot), system.kernel.shapes
+    q = np.zeros((*record.q.shape[:2], len(COORDINATES)))
+    for k, name in enumerate(COORDINATES):
+        if shapes.has(name):
+            q[..., k] = record.q[..., shapes.index(name)]
+    command = np.stack([path.legs.coordinate(name)[0] for name in COORDINATES], axis=-1)
+    (_, *at), *frames = on_plates(system, robot, record.q, record.pose)
+    before, built = _straight(robot, found, at, q), _built(robot, path, command)
+    more, done = {}, ()
+    for name, *at in frames:  # frame after frame to where the legs have it
+        after = _straight(robot, found, at, q)
+        more[name], before = before - after, after  # (T24.9)
+    for name, (parts, longer) in built.items():  # joint after joint to its real place
+        done, after = (*done, *parts), before
+        if any(part.base.any() or part.platform.any() for part in parts):
+            after = _straight(robot, kinematics.built_limbs(robot, found, done), at, q)
+        more[name], before = before - after + longer, after  # (T16.7)
+    counts, own, axial = found.given, command.copy(), np.zeros_like(q)
+    own[..., (CHI, L)] = q[..., (CHI, L)]
+    axial[..., L] = stretch(shapes, record.q)  # (T8.2)
+    bending, drive = before - (own + axial), own - command  # (T8.3)-(T8.4)
+    for _, longer in built.values():
+        drive = drive - longer
+    causes: dict[str, Array] = dict(zip(CAUSES, (axial, bending, drive), strict=True))
+    behind: tuple[tuple[Sequence[Place], Array], ...] = ((("nut",), drive), (("base", "platform"), bending))
+    inside = {
+        place: np.array([leg.closed_about == place for leg in robot.legs]) for place in ("stroke", "joint-to-joint")
+    }
+    ends = inside["joint-to-joint"]  # (T23.56)
+    played = in_gap(system, record.q)
+    drive[..., L] += axial[..., L] * ends
+    axial[..., L] *= ~ends
+    for places, whole in behind:  # (T15.14)
+        for name, give in elongations(robot, system, record.q, places, played).items():
+            seen = ends if whole is bending else ends | inside["stroke"]
+            if name not in causes:
+                causes[name] = np.zeros(q.shape)
+            causes[name][..., L] += give * ~seen
+            whole[..., L] -= give
+            drive[..., L] += give * seen
+    if "drive" in places_with_friction(robot):
+        _of_friction(robot, system, record, causes)
+    for name, error in _across(robot, found, system, record, q).items():
+        causes[name], bending[:] = causes[name] + error, bending - error
+    return Errors(by_cause={name: np.where(counts, part, 0.0) for name, part in (causes | more).items()})
+
+
+def _of_friction(robot: Robot, system: System, record: Record | RestStates, causes: dict[str, Array]) -> None:
+    """Take what the friction of drives makes the parts before it give from their causes to its own, Eq. (T19.17)."""
+    causes["friction"] = np.zeros_like(causes["drive"])
+    if isinstance(record, RestStates):  # bristles are straight
+        return
+    length = record.q[..., system.kernel.shapes.l_index]
+    for i, leg in enumerate(robot.legs):
+        for name, softness in before_friction(leg, length[:, i]).items():
+            lag = record.friction[:, i, -1] * softness
+            causes[name][:, i, L] += lag
+            causes["friction"][:, i, L] -= lag
+
+
+def _built(robot: Robot, path: RigidPath, command: Array) -> dict[str, tuple[tuple[kinematics.BuiltPart, ...], Array]]:
+    """What differs from the drawing, by cause, and what it adds to the commanded coordinates, (T, legs, 8)."""
+    parts, still, t = kinematics.built_parts(robot), np.zeros_like(command), path.time
+    found = {}
+    for cause in dict.fromkeys(part.cause for part in parts):
+        own = tuple(part for part in parts if part.cause == cause)
+        found[cause] = (
+            own,
+            sum(kinematics.added(part, t, kinematics.Law(command, still, still)).position for part in own),
+        )
+        for part in filter(kinematics.is_plate, own):
+            found[cause][1][..., L] += kinematics.plate_grows(part, t, path.poses, robot).position
+    return found
+
+
+def _across(robot: Robot, found: Limbs, system: System, record: Record | RestStates, q: Array) -> dict[str, Array]:
+    """What parts that give way across the legs do to held coordinates, (T, legs, 8) by part, Eqs. (T15.15), (T25.15).
+
+    Of legs UPS that is of second order, and left to bending.
+    """
+    shapes, errors = system.kernel.shapes, {}
+    moves = tip_moves(robot, system, record.q)
+    for name, end in (("base_joint", "u"), ("platform_joint", "e")):
+        if shapes.has(f"{end}1") and not shapes.holds(Flexures):
+            at = shapes.index(f"{end}1")
+            moves[name] = record.q[..., at : at + 2], np.zeros((*record.q.shape[:-1], 2))
+    if found.plain or not moves:
+        return errors
+    chain, taken = screws(found, q).columns, closing(found)
+    z, y = chain[..., :3, L], chain[..., 3:, COORDINATES.index("beta")]
+    x, spin = np.cross(y, z), q[..., COORDINATES.index("spin"), None]
+    x, y = np.cos(spin) * x + np.sin(spin) * y, np.cos(spin) * y - np.sin(spin) * x
+    for name, (shift, slope) in moves.items():
+        moved = shift[..., :1] * x + shift[..., 1:] * y
+        turned = slope[..., :1] * y - slope[..., 1:] * x
+        error = np.zeros_like(q)
+        for i, own in enumerate(taken):
+            step = np.concatenate([moved[:, i], turned[:, i]], axis=-1)[:, : own.sum(), None]
+            error[:, i, own] = np.linalg.solve(chain[:, i, : own.sum()][..., own], step)[..., 0]
+        if error.any():
+            errors[name] = error
+    return errors
+
+
+def _straight(robot: Robot, found: Limbs, platform: Sequence[Array], q: Array) -> Array:
+    """Coordinates of straight legs that reach a platform, (T, 3) and (T, 3, 3), the carriages where they are."""
+    at = kinematics.Poses.at_rest(*platform)
+    if found.plain:
+        q = q.copy()
+        q[..., L] = kinematics.leg_lengths(found.base, found.platform, at.position, at.rotation)
+        return q
+    needed = close(found, Task(closing(found), np.zeros(6, dtype=bool), np.zeros(3)), q, at).q
+    needed[..., CHI] = q[..., CHI]
+    return needed
+
+
+def closing(found: Limbs) -> NDArray[np.bool_]:
+    """The coordinates that a closure determines, (legs, 8), whether or not something holds them."""
+    taken = np.zeros(found.state.shape, dtype=bool)
+    taken[:, [COORDINATES.index(name) for name in ("alpha", "beta", "l")]] = True
+    taken[found.pose_closure, COORDINATES.index("gamma1") :] = True
+    spins = found.pose_closure & (found.state[:, COORDINATES.index("spin")] == FREE)
+    taken[spins, COORDINATES.index("spin")], taken[spins, COORDINATES.index("gamma3")] = True, False
+    return taken
+
+
+def deviation_by_cause(robot: Robot, path: RigidPath, errors: Errors) -> Array:
+    """Displacement of the payload's centre of mass by cause and leg, to first order, Eqs. (T8.6)-(T8.7).
+
+    Returns
+    -------
+    ndarray, shape (T, causes, legs, 3)
+        Time, cause, leg, world axis [m].
+
+    Raises
+    ------
+    ComputationError
+        If a pose is exactly singular.
+    """
+    return np.einsum("tclk,tlkx->tclx", errors.stacked, _by_error(robot, path))  # (T8.7)
+
+
+def _by_error(robot: Robot, path: RigidPath) -> Array:
+    """Displacement of the centre of mass for unit errors of what is held, (T, legs, 8, 3), Eq. (T8.6)."""
+    found, poses = kinematics.rigid_limbs(robot), path.poses
+    if not is_hexapod(robot):
+        return rigid_errors(robot, poses)[..., :3]
+    moves = np.zeros((len(poses), *found.state.shape, 3))
+    jacobian = kinematics.drive_jacobian(robot, poses, robot.com)
+    try:
+        inverse = np.linalg.solve(jacobian.swapaxes(1, 2), np.eye(6, 3))
+    except np.linalg.LinAlgError:
+        raise ComputationError(
+            "a pose on the path is singular: lengths do not determine it", next_step="See `flexapod check`."
+        ) from None
+    moves[:, found.state == DRIVEN] = inverse
+    return moves

@@ -1,0 +1,117 @@
+"""The rigid robot on its commanded path: computed once, and handed on to checks, estimates and results."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+
+import numpy as np
+
+from flexapod import kinematics
+from flexapod.common.arrays import Array
+from flexapod.model import ActuatorStudy, Robot, Study
+from flexapod.solve.statics.ideal_robot import RobotForces, rigid_forces
+
+FEWEST, MOST = 2000, 50_000  # intervals at which a path is looked at
+SAME = 1e-9  # instants nearer to each other than this part of the step between them are the same
+
+
+def path_instants(study: Study | ActuatorStudy) -> Array:
+    """Instants at which a path is looked at [s]: those of the output, at least 2001, at most 50001."""
+    count = int(np.clip(study.duration / study.simulation.output_step, FEWEST, MOST).round())
+    return np.linspace(0.0, study.duration, count + 1)
+
+
+def open_force_words(forces: RobotForces) -> list[str]:
+    """That rigid statics does not determine all forces, where it does not."""
+    count = forces.open_forces
+    if not count:
+        return []
+    left = f"{count} force{'s' * (count > 1)}"
+    return [f"rigid statics leaves {left} open; shown are those of least strain energy in the legs"]
+
+
+class RigidPath:
+    """The commanded path of a robot's study at T instants; each part is computed when it is asked for, once.
+
+    Parameters
+    ----------
+    study : Study
+    time : ndarray, shape (T,), optional
+        [s]; default: `path_instants`.
+    poses : Poses, optional
+        Of the platform frame at these instants, where they are known.
+    """
+
+    def __init__(self, study: Study, time: Array | None = None, poses: kinematics.Poses | None = None) -> None:
+        self.study: Study = study
+        self.robot: Robot = study.robot
+        self.time: Array = path_instants(study) if time is None else time
+        if poses is not None:
+            self.poses = poses
+
+    @cached_property
+    def poses(self) -> kinematics.Poses:
+        """Poses of the platform frame with rates and accelerations."""
+        return kinematics.poses(self.robot, self.study.motion, self.time)
+
+    @property
+    def first_looks(self) -> Iterator[RigidPath]:
+        """The path at few instants, ever farther from home, where it leads far; none where its poses are known."""
+        looks = () if "poses" in self.__dict__ else kinematics.first_looks(self.robot, self.study.motion, self.time)
+        return (RigidPath(self.study, self.time[at]) for at in looks)
+
+    @cached_property
+    def base(self) -> kinematics.Placed | None:
+        """Where a base that is moved stands; poses are as seen from there, and the rigid robot moves with it."""
+        return kinematics.base_placed(self.robot, self.time)
+
+    def place(self, point: Array) -> Array:
+        """A point (3,) of the platform frame in the world, (T, 3)."""
+        at = self.poses.place(point)
+        return at if self.base is None else self.base.carried(at, self.poses.rotation)[0]
+
+    @cached_property
+    def rotation(self) -> Array:
+        """Platform axes to world axes, (T, 3, 3)."""
+        return self.poses.rotation if self.base is None else self.base.rotation @ self.poses.rotation
+
+    @cached_property
+    def reach(self) -> kinematics.Reach:
+        """What the poses ask of the legs, whether they can take them or not."""
+        return kinematics.reach(self.robot, self.poses)
+
+    @cached_property
+    def legs(self) -> kinematics.LegState:
+        """Legs with rates and accelerations."""
+        return kinematics.inverse_kinematics(self.robot, self.poses)
+
+    @cached_property
+    def nearest(self) -> kinematics.NearestSingularity:
+        """Where the path comes nearest to a singularity."""
+        return kinematics.nearest_singularity(self.robot, self.poses)
+
+    @cached_property
+    def wrench(self) -> Array:
+        """Load at the tool, world axes, (T, 6)."""
+        return kinematics.wrench(self.study.load, self.time)
+
+    @cached_property
+    def forces(self) -> RobotForces:
+        """Forces of drives and joints."""
+        return rigid_forces(self.robot, self.poses, self.wrench, self.legs)
+
+    @cached_property
+    def axes(self) -> Array:
+        """Unit vectors from base to platform joint, (T, legs, 3)."""
+        return kinematics.leg_axes(self.robot, self.poses, self.legs)
+
+    def at(self, t: Array) -> RigidPath:
+        """The path at other instants: this one, or what is known of its poses, where it has them."""
+        count = len(t)
+        known = self.time[:count]
+        if len(known) != count or np.abs(known - t).max() > SAME * (self.time[-1] / len(self.time)):
+            return RigidPath(self.study, t)
+        if count == len(self.time):
+            return self
+        return RigidPath(self.study, t, self.poses.part(slice(0, count)))

@@ -1,0 +1,152 @@
+"""From a recorded time integration of a robot to named results."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexapod.analysis.results.causes import deviation_by_cause, errors_of
+from flexapod.analysis.results.lazy_arrays import Made
+from flexapod.analysis.results.leg_results import leg_labels, leg_results, slides
+from flexapod.analysis.results.legs import bending_basis, has_strokes, per_turn, stroke_forces
+from flexapod.analysis.results.rigid_path import RigidPath
+from flexapod.analysis.results.time_history import Record
+from flexapod.common.arrays import Array
+from flexapod.kinematics.robot import robot_limbs
+from flexapod.kinematics.rotations import canonical, difference, matrix, quaternion
+from flexapod.kinematics.trajectory import coordinates, turning_axes
+from flexapod.model import Robot, Study
+from flexapod.solve.frames import base_on_mount, floor, shared_by_legs
+from flexapod.solve.system import System
+
+
+def robot_results(study: Study, system: System, record: Record, path: RigidPath) -> dict[str, Made]:
+    """All variables of a robot's simulation but the rigid forces, by name; `path` at the recorded instants."""
+    robot = study.robot
+    return {
+        **payload_results(robot, path, record),
+        **leg_results(robot, system, path, record),
+        **cause_results(robot, system, path, record),
+        **energy_results(record, robot.base_motion is not None),
+        **frame_results(robot, system, path, record),
+        **command_results(study, record.time),
+    }
+
+
+def robot_coords(robot: Robot, system: System, record: Record) -> dict[str, ArrayLike]:
+    """Labels of the dimensions whose size depends on the study."""
+    shapes = system.kernel.shapes
+    labels: dict[str, ArrayLike] = {"time": record.time, "leg": np.arange(1, robot.count + 1), **leg_labels(robot)}
+    if count := bending_basis(shapes).count:
+        labels["shape"] = np.arange(1, count + 1)
+    if shapes.bristles:
+        labels["slide"] = slides(system)
+    if shapes.beam.axial.count:
+        labels["axial_shape"] = np.arange(shapes.beam.axial.count)
+    return labels
+
+
+def payload_results(robot: Robot, path: RigidPath, record: Record) -> dict[str, Made]:
+    """Payload and tool against the rigid path."""
+    com = record.pose[:, :3]
+    e = cache(lambda: canonical(record.pose[:, 3:]))
+    e_rigid = cache(lambda: quaternion(path.rotation))
+    R = cache(lambda: matrix(e()))
+    com_rigid = cache(lambda: path.place(robot.com))
+    tool, tool_rigid = cache(lambda: com + R() @ (robot.tool - robot.com)), cache(lambda: path.place(robot.tool))
+    return {
+        "com_position_rigid": com_rigid,
+        "com_position": com,
+        "com_deviation": lambda: com - com_rigid(),
+        "tool_position_rigid": tool_rigid,
+        "tool_position": tool,
+        "tool_deviation": lambda: tool() - tool_rigid(),
+        "rotation_deviation": lambda: difference(e(), e_rigid()),
+        "platform_quaternion": e,
+        "platform_quaternion_rigid": e_rigid,
+        "platform_angular_velocity": lambda: np.einsum("tij,tj->ti", R(), record.turn),
+    }
+
+
+def cause_results(robot: Robot, system: System, path: RigidPath, record: Record) -> dict[str, Made]:
+    """Deviation of the centre of mass by cause."""
+
+    @cache
+    def shares() -> Array:
+        found = deviation_by_cause(robot, path, errors_of(robot, system, path, record))
+        return found if path.base is None else np.einsum("txy,tcly->tclx", path.base.rotation, found)
+
+    def residual() -> Array:
+        deviation = record.pose[:, :3] - path.place(robot.com)
+        return deviation - shares().reshape(len(deviation), -1, 3).sum(axis=1)
+
+    return {"deviation_by_cause": shares, "deviation_residual": residual}
+
+
+def rigid_force_results(path: RigidPath) -> dict[str, Made]:
+    """Drive and joint forces of the rigid robot."""
+    found: dict[str, Made] = {
+        "drive_force_rigid": lambda: path.forces.drive_force * per_turn(path.robot),
+        "joint_force_rigid": lambda: path.forces.joint_force,
+    }
+    if has_strokes(path.robot):
+        found["actuator_force_rigid"] = lambda: stroke_forces(robot_limbs(path.robot), path.forces.drive_force)
+    return found
+
+
+def energy_results(record: Record, moved: bool = False) -> dict[str, Array]:
+    """Energies, works and closure residual; kinetic + potential + strain + dissipated - works is constant.
+
+    `moved`: the base, on which that does work.
+    """
+    return {
+        "energy_kinetic": record.energy[:, 0],
+        "energy_potential": record.energy[:, 1],
+        "energy_strain": record.energy[:, 2],
+        "energy_dissipated": record.sums[:, 0],
+        "work_drive": record.sums[:, 1],
+        "work_external": record.sums[:, 2],
+        "closure_residual": record.closure,
+        **({"work_base": record.sums[:, 3]} if moved else {}),
+    }
+
+
+def frame_results(robot: Robot, system: System, path: RigidPath, record: Record) -> dict[str, Made]:
+    """Where base and plates on mounts are, forces on the floor, and the deviation as seen from the base plate."""
+    found: dict[str, Made] = {}
+    for name, what in (("g", "base_motion"), ("f", "base_mount"), ("m", "platform_mount")):
+        if system.kernel.shapes.has(name):
+            moved = shared_by_legs(system, record.q, name)
+            found |= {f"{what}_displacement": moved[:, :3], f"{what}_rotation": moved[:, 3:]}
+    if system.floor.any():  # (T24.10)
+        held = record.drive[:, :, system.floor].sum(axis=1)
+        axes = turning_axes(shared_by_legs(system, record.q, "g")[:, 3:])
+        moment = np.linalg.solve(axes.swapaxes(1, 2), held[:, 3:, None])[..., 0]
+        found |= {"base_motion_force": held[:, :3], "base_motion_moment": moment}
+    if system.kernel.shapes.has("f"):
+        seen = cache(lambda: _from_the_base(robot, system, record))
+        found |= {
+            "tool_deviation_base": lambda: seen()[0] - path.poses.place(robot.tool),
+            "rotation_deviation_base": lambda: difference(quaternion(seen()[1]), quaternion(path.poses.rotation)),
+        }
+    return found
+
+
+def _from_the_base(robot: Robot, system: System, record: Record) -> tuple[Array, Array]:
+    """Tool (T, 3) and attitude of the payload (T, 3, 3) as seen from the base plate."""
+    R = matrix(record.pose[:, 3:])
+    tool = record.pose[:, :3] + R @ (robot.tool - robot.com)
+    return base_on_mount(system, robot, record.q).seen(*floor(system, robot, record.q).seen(tool, R))
+
+
+def command_results(study: Study, t: Array) -> dict[str, Made]:
+    """Commanded surge, sway, heave and roll, pitch, yaw with rates and accelerations at instants (T,)."""
+    law = cache(lambda: coordinates(study.motion, t))
+    endings = {"": "position", "_rate": "rate", "_acceleration": "acceleration"}
+    return {
+        f"{kind}_command{ending}": lambda part=part, columns=columns: getattr(law(), part)[:, columns]
+        for kind, columns in (("translation", slice(0, 3)), ("rotation", slice(3, 6)))
+        for ending, part in endings.items()
+    }

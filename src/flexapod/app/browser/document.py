@@ -1,0 +1,256 @@
+"""The text of a study that is being changed: values replaced in place, whole tables, each change validated."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+from tomlkit.container import Container
+from tomlkit.items import AoT, Table, Whitespace
+
+from flexapod import model
+from flexapod.app.browser.text_fields import plain
+from flexapod.common.errors import InputError
+from flexapod.common.tables.named_files import NamedFiles
+from flexapod.common.units import DIMENSIONS, number_and_unit, to_si
+from flexapod.model.file.fields import NotedField
+from flexapod.model.file.files import loads_among
+
+NOWHERE = NamedFiles(Path(), closed=True)
+_STEP = re.compile(r"([^.\[\]]+)|\[(\d+)\]")
+
+
+@dataclass(frozen=True)
+class Document:
+    """A study file being changed: its `text`, its `path` (for its name), and the `files` that it may name.
+
+    Without `files` it may name none: whoever changes it is not the one whose files lie around the server.
+    """
+
+    text: str
+    path: str | None
+    files: NamedFiles = NOWHERE
+
+    def changed(self, key: str, value: object) -> Document:
+        """With another value at a key path such as ``payload.com[2]``; a key that is not there is added."""
+        tree = tomlkit.parse(self.text)
+        table, last = _holder(tree, key)
+        table[last] = value
+        return self.saying(tree.as_string())
+
+    def without(self, key: str) -> Document:
+        """Without the value at a key path."""
+        tree = tomlkit.parse(self.text)
+        table, last = _holder(tree, key)
+        del table[last]
+        return self.saying(tree.as_string())
+
+    def saying(self, text: str) -> Document:
+        """With another text."""
+        return replace(self, text=text)
+
+    def beside(self, folder: Path) -> Document:
+        """With a folder in which it may name tables, besides those that it has."""
+        return replace(self, files=NamedFiles(folder, closed=True, stored=self.files.stored))
+
+    def value(self, key: str) -> object:
+        """The value at a key path, as written; None where there is none."""
+        return _value(tomllib.loads(self.text), key)
+
+    def having(self, keys: Iterable[str]) -> set[str]:
+        """Those of the key paths at which there is a value."""
+        data = tomllib.loads(self.text)
+        return {key for key in keys if _value(data, key) is not None}
+
+
+@dataclass(frozen=True)
+class TypedQuantity:
+    """A number as written in a study file: `number` in `unit`; the unit is "" where none is written (SI)."""
+
+    number: float
+    unit: str
+
+    def shown_unit(self, dimension: str) -> str:
+        """The unit to show beside the number."""
+        return (self.unit or DIMENSIONS[dimension].unit).replace("^2", "²").replace("^3", "³").replace("um", "µm")
+
+    def in_unit(self, unit: str, dimension: str) -> TypedQuantity:
+        """The same in another unit."""
+        if unit == self.unit:
+            return self
+        here, there = (to_si(f"1 {u}", dimension) if u else 1.0 for u in (self.unit, unit))
+        return TypedQuantity(self.number * here / there, unit)
+
+    def written(self) -> object:
+        """What to write into the file: a number, or a text with the unit."""
+        text = plain(self.number)
+        if self.unit:
+            return f"{text} {self.unit}"
+        return int(text) if re.fullmatch(r"[-+]?\d+", text) else float(text)
+
+
+def quantity(value: object) -> TypedQuantity | None:
+    """The number and unit of a written value; None where it is neither a number nor a text that is read as one."""
+    if isinstance(value, bool):
+        return None
+    if isinstance(value, int | float):
+        return TypedQuantity(float(value), "")
+    read = number_and_unit(value) if isinstance(value, str) else None
+    return TypedQuantity(float(read[0]), read[1]) if read else None
+
+
+def _value(data: Any, key: str) -> object:
+    for name, index in _STEP.findall(key):
+        try:
+            data = data[int(index) - 1 if index else name]
+        except (LookupError, TypeError):
+            return None
+    return data
+
+
+def _holder(tree: Any, key: str) -> tuple[Any, str | int]:
+    """The table or list that holds `key`, and the name or index in it; tables on the way are made."""
+    steps = [int(index) - 1 if index else name for name, index in _STEP.findall(key)]
+    for step in steps[:-1]:
+        if isinstance(step, str) and step not in tree:
+            tree[step] = tomlkit.table()
+        tree = tree[step]
+    return tree, steps[-1]
+
+
+_HEADING = re.compile(r"^\s*\[\[?\s*([^\[\]\"']+?)\s*\]\]?\s*(#.*)?$")
+
+
+def blocks(text: str, name: str) -> list[tuple[int, int]]:
+    """Lines (first, after the last) of each table with a heading ``[name]`` or ``[[name]]``, its inner tables included.
+
+    Comments directly above a heading belong to it, blank lines before them to nobody.
+    """
+    lines = text.splitlines()
+    headings = [(i, found[1]) for i, line in enumerate(lines) if (found := _HEADING.match(line))]
+    headings = [(i, path) for i, path in headings if not path.startswith(f"{name}.")]
+    ends = [_start(lines, i) for i, _ in headings[1:]] + [len(lines)]
+    found = []
+    for (i, path), end in zip(headings, ends, strict=True):
+        if path == name:
+            while not lines[end - 1].strip():
+                end -= 1
+            found.append((_start(lines, i), end))
+    return found
+
+
+def replaced(text: str, first: int, after: int, lines: Sequence[str]) -> str:
+    """The text with other lines in place of some."""
+    old = text.splitlines()
+    end = "\r\n" if "\r\n" in text else "\n"
+    return end.join([*old[:first], *lines, *old[after:]]) + end
+
+
+def renamed(lines: Sequence[str], name: str, heading: str) -> list[str]:
+    """The lines of a table with another heading, ``[[leg]]`` for ``[leg]``."""
+    pattern = re.compile(rf"^\s*\[\[?\s*{re.escape(name)}\s*\]\]?")
+    return [pattern.sub(heading, line) for line in lines]
+
+
+def bare(lines: Sequence[str]) -> list[str]:
+    """The lines of a table without comments."""
+    tree = tomlkit.parse("\n".join(lines) + "\n")
+    _strip(tree)
+    return [line for line in tree.as_string().splitlines() if line.strip() and not line.lstrip().startswith("#")]
+
+
+def checked(text: str, expected: object, key: str) -> str:
+    """The text where it reads as it should, else InputError: it is written in a way that the form does not change."""
+    try:
+        same = tomllib.loads(text) == expected
+    except tomllib.TOMLDecodeError:
+        same = False
+    if not same:
+        raise InputError(
+            "is written in a way that cannot be changed here",
+            key=key,
+            next_step="Download the study, change it in an editor, upload it again",
+        )
+    return text
+
+
+def _start(lines: Sequence[str], heading: int) -> int:
+    while heading and lines[heading - 1].lstrip().startswith("#"):
+        heading -= 1
+    return heading
+
+
+def _strip(container: Container) -> None:
+    for _, item in container.body:
+        for part in item.body if isinstance(item, AoT) else [item]:
+            if not isinstance(part, Whitespace):
+                part.trivia.comment = part.trivia.comment_ws = ""
+            if isinstance(part, Table):
+                _strip(part.value)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Edit:
+    """A document and what reading it gives: a `study`, or the `error` that refuses it; `removed`: keys taken out."""
+
+    document: Document
+    study: model.Study | model.ActuatorStudy | None = None
+    error: InputError | None = None
+    removed: tuple[str, ...] = ()
+
+
+def read(document: Document, removed: tuple[str, ...] = ()) -> Edit:
+    """Read a document as `flexapod.load` reads a file."""
+    try:
+        study = loads_among(document.text, document.path, document.files)
+    except InputError as error:
+        return Edit(document=document, error=error, removed=removed)
+    return Edit(document=document, study=study, removed=removed)
+
+
+def edited(document: Document, changes: Mapping[str, object]) -> Edit:
+    """The document with other values at some key paths."""
+    for key, value in changes.items():
+        document = document.changed(key, value)
+    return read(document)
+
+
+def chosen(document: Document, field: NotedField, value: str) -> Edit:
+    """The document with another choice; keys of the same table that belonged to the choice before are taken out."""
+    found, removed = read(document.changed(field.key, value)), []
+    while (key := _refused(found, field.table)) is not None:
+        removed.append(key)
+        found = read(found.document.without(key), tuple(removed))
+    return found
+
+
+def first_value(field: NotedField) -> object:
+    """A value to start from where an absent one is wanted: the model's default, else an example."""
+    if field.kind == "text":
+        return field.choices[0] if field.choices else ""
+    if field.kind == "whole":
+        return int(field.default or 1)
+    if field.kind == "flag":
+        return False
+    if field.kind == "words":
+        return list(field.choices or ())
+    if field.kind == "rows":
+        return [[0.0] * len(field.dimensions) for _ in range(3)]
+    if field.kind == "vector":
+        return [1, 0, 0] if field.dimensions[0] == "number" else [0] * len(field.dimensions)
+    example = DIMENSIONS[field.dimensions[0]].example
+    if field.default is not None:
+        return field.default
+    return float(example) if field.dimensions[0] == "number" else example
+
+
+def _refused(found: Edit, table: str) -> str | None:
+    error = found.error
+    if error is None or error.what != "unknown key" or not (error.key or "").startswith(f"{table}."):
+        return None
+    return error.key

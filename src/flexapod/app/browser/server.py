@@ -1,0 +1,138 @@
+"""The server of `flexapod view`: one page for everybody who connects, a session of their own for each."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import io
+import threading
+import traceback
+import warnings
+from typing import TYPE_CHECKING, Any, cast
+
+import viser
+
+from flexapod.app.browser.access import Door
+from flexapod.app.browser.background import Latest, Threads
+from flexapod.app.browser.client_limits import Pool
+from flexapod.app.browser.kept_results import KeptResults
+from flexapod.app.browser.logs import LOG
+from flexapod.app.browser.running import Cores
+from flexapod.common.lazy_imports import loaded
+from flexapod.common.memory import collect, few_arenas
+
+if TYPE_CHECKING:
+    from flexapod.app.browser.client_limits import Visitor
+    from flexapod.app.browser.opening import StudySource
+    from flexapod.app.browser.session import Session
+
+GONE = "Queued a .* on a closed connection"
+"""What viser remarks where somebody leaves while their page is being drawn: nothing is wrong then."""
+
+GARBLED = r"\[viser\] .* does not match annotation"
+"""What viser remarks of a message that is not as it should be; Python would keep each remark, and the message in it."""
+
+SETTLED = 0.5  # time after somebody has left, when what they leave is collected [s]
+
+
+class View:
+    """A running server that begins with `source` for everybody.
+
+    It listens on `host` and the free `port` (see `free_port`); `name`: another one under which the page is reached, as
+    through a proxy.
+    """
+
+    def __init__(self, source: StudySource, host: str, port: int, name: str | None = None) -> None:
+        for remark in (GONE, GARBLED):
+            warnings.filterwarnings("ignore", message=remark)
+        few_arenas()
+        self._source, self._cores = source, Cores()
+        self._results = KeptResults(released=lambda: self._leftovers.request(SETTLED))
+        self._sessions: dict[int, Session] = {}
+        self._lock = threading.Lock()
+        self._leftovers = Latest(Threads(lambda error: self._fault(None, error)), collect)
+        door = Door(host, name, lambda: self._leftovers.request(SETTLED))
+        with contextlib.redirect_stdout(io.StringIO()):  # viser announces itself; the command says where it listens
+            with door.before():
+                self._server = _Server(host=host, port=port, label="flexapod", verbose=False)
+        self._server._thread_executor = Pool(self._fault, self._visitor)
+        self._server.get_event_loop().set_exception_handler(_unhandled)
+        self.port: int = self._server.get_port()
+        self._server.gui.configure_theme(
+            show_logo=False, show_share_button=False, control_width="large", brand_color=(0, 90, 160)
+        )
+        self._server.scene.configure_environment_map(None)  # its reflections take seconds where no GPU draws the page
+        self._server.scene.configure_default_lights(enabled=False)
+        self._loading = threading.Thread(target=_load, name="flexapod-load", daemon=True)
+        self._loading.start()
+        self._server.on_client_connect(self._connected)
+        self._server.on_client_disconnect(self._disconnected)
+
+    @property
+    def sessions(self) -> list[Session]:
+        """Sessions of those who are connected."""
+        with self._lock:
+            return list(self._sessions.values())
+
+    def stop(self) -> None:
+        """Disconnect everybody and free the port."""
+        for session in self.sessions:
+            session.close()
+        with contextlib.redirect_stdout(io.StringIO()):
+            self._server.stop()
+
+    def _connected(self, client: viser.ClientHandle) -> None:
+        self._loading.join()
+        from flexapod.app.browser.session import Session
+
+        session = Session(client, self._source, self._cores, self._results)
+        with self._lock:
+            self._sessions[client.client_id] = session
+        session.start()
+        if client.client_id not in self._server.get_clients():
+            self._disconnected(client)  # gone while its session was being made
+
+    def _disconnected(self, client: viser.ClientHandle) -> None:
+        with self._lock:
+            session = self._sessions.pop(client.client_id, None)
+        if session is not None:
+            session.close()
+
+    def _visitor(self, client_id: int) -> Visitor | None:
+        return cast("Visitor | None", self._server._websock_server._live_connections.get(client_id))
+
+    def _fault(self, client_id: int | None, error: BaseException) -> None:
+        with self._lock:
+            session = self._sessions.get(client_id) if client_id is not None else None
+        if session is not None:
+            session.fault(error)
+        else:
+            LOG.error("client %s: %s", client_id, "".join(traceback.format_exception(error)))
+
+
+class _Server(viser.ViserServer):
+    """viser's server without its public share links."""
+
+    def request_share_url(self, verbose: bool = True) -> str | None:
+        return None
+
+
+def _load() -> None:
+    """Load what the first session needs while its browser fetches the page."""
+    for name in (
+        "flexapod.app.browser.session",
+        *(f"flexapod.app.browser.{panel}_panel" for panel in ("time", "modes")),
+    ):
+        loaded(name)
+    loaded("flexapod.analysis.simulation")
+    loaded("xarray")
+    loaded("dask.base")  # xarray asks it for its types; of two threads that import it at once one gets half of it
+
+
+def _unhandled(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    """An entry in the log for what viser could not do with a message, without the message."""
+    error = context.get("exception")
+    if error is None:
+        loop.default_exception_handler(context)
+    else:
+        LOG.error("a message had no effect: %.100s", f"{type(error).__name__}: {error}")

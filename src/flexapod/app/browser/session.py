@@ -1,0 +1,344 @@
+"""One person's state: study, results, panels, scene. Nothing of it is shared with anybody else."""
+
+from __future__ import annotations
+
+import threading
+import traceback
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from viser import ClientHandle
+
+from flexapod import model
+from flexapod.app.browser import markup
+from flexapod.app.browser.actuator_scene import ActuatorScene
+from flexapod.app.browser.background import Latest, Threads
+from flexapod.app.browser.document import Document, Edit, read
+from flexapod.app.browser.files_panel import FilesPanel
+from flexapod.app.browser.header import Header, Picture
+from flexapod.app.browser.inputs import limit_inputs
+from flexapod.app.browser.kept_results import KeptResults
+from flexapod.app.browser.logs import LOG
+from flexapod.app.browser.opening import StudySource
+from flexapod.app.browser.preview import coarse, is_quick, preview_words
+from flexapod.app.browser.robot_scene import RobotScene
+from flexapod.app.browser.running import Cores, Run
+from flexapod.app.browser.scripts import run_script
+from flexapod.app.browser.study_panel import StudyPanel
+from flexapod.app.browser.uploads import Sent, refuse_length
+from flexapod.common.errors import FlexapodError
+from flexapod.output.text.parts import warnings_of
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+DROPPED = (
+    "This result was dropped: others have computed since, and results of all visitors together have a limit. "
+    "Press Simulate to have it again."
+)
+QUIET = 0.15  # time without a change after which the study is simulated [s]
+
+
+class Session:
+    """What one client sees and does, from `source` on.
+
+    Simulations of all sessions share the `cores` of the server, their results the room that `results` has.
+
+    `study`: the last valid one; `data`: results of it, or None.
+    """
+
+    client: ClientHandle
+
+    def __init__(self, client: ClientHandle, source: StudySource, cores: Cores, results: KeptResults) -> None:
+        self.client, self._cores, self._results = client, cores, results
+        self._threads, self._sent = Threads(self.fault), Sent()
+        self.study, self.data = source.study, source.data
+        self._lock, self._closed = threading.RLock(), False
+        self._run: Run | None = None
+        self._settling = Latest(self._threads, self._settled)
+        self._unsettled = False
+        self._valid = True
+        self._panels: list[Any] = []
+        self._source: StudySource | None = source
+        self.header: Header | None = None
+
+    def start(self) -> None:
+        """Build the page."""
+        if self._source is not None:
+            limit_inputs(self.client)
+            self.open(self._source)
+            self._source = None
+
+    @property
+    def busy(self) -> bool:
+        """Whether a simulation is running."""
+        return self._run is not None
+
+    def open(self, source: StudySource) -> None:
+        """Begin anew with another study."""
+        with self._lock:
+            if self._closed:
+                return
+            self._stop()
+            self._drop_panels()
+            self.study, self.data, self._valid = source.study, source.data, True
+            self._results.drop(self)
+            self._build(source.document.beside(self._sent.folder))
+            self.time_panel.show_data(None)
+            self.modes_panel.show_study(self.study)
+            self.budget_panel.show(self.study)
+            if self.data is None:
+                self._simulate()
+            else:
+                self._show_data()
+
+    def close(self) -> None:
+        """Give everything back: the simulation ends, arrays and files go."""
+        with self._lock:
+            self._closed = True
+            self._stop()
+            self._drop_panels()
+            self._sent.close()
+            self.data = None
+            self._results.drop(self)
+
+    def simulate(self) -> None:
+        """Compute the study as it stands, as the user asks; one that is running is cancelled."""
+        self._fault("")
+        self._simulate()
+
+    def _simulate(self, preview: bool = False) -> None:
+        with self._lock:
+            if self._closed or not self._valid:
+                return
+            self._stop()
+            try:
+                refuse_length(self.study)
+            except FlexapodError as error:
+                self.fault(error)
+                return
+            self._run = Run(coarse(self.study) if preview else self.study, self._threads, self._cores, self)
+            self._show_running(True)
+            self._run.start()
+
+    def cancel(self) -> None:
+        """Stop the simulation; results that are there stay."""
+        with self._lock:
+            if self._run is not None:
+                self._stop()
+                if self.data is None:
+                    self._say(markup.block("Cancelled. The study is not simulated as it stands.", "warning"))
+                else:
+                    self._show_answer(self.data, markup.block("Cancelled. What was there stays.", "warning"))
+
+    def fault(self, error: BaseException) -> None:
+        """Tell this person, and the log, what went wrong; the session goes on."""
+        known = isinstance(error, FlexapodError)
+        html = markup.error_html(error) if known else markup.fault_html(error)
+        if not known or self.header is None:
+            LOG.error("client %s: %s", self.client.client_id, "".join(traceback.format_exception(error)))
+        if self.header is None and not self._closed:  # the page is not there yet: the words are all there is
+            self.client.gui.add_html(html)
+        elif known:
+            self._say(html)
+        else:
+            self._fault(html)
+
+    def waits(self, run: Run) -> None:
+        """As `Watcher.waits`."""
+        self._tell(run, markup.block("Waiting for a free core: others are simulating on this machine.", "soft"))
+
+    def begins(self, run: Run) -> None:
+        """As `Watcher.begins`."""
+        self._tell(run, markup.block("Simulating.", "soft"))
+
+    def progress(self, run: Run, share: float) -> None:
+        """As `Watcher.progress`."""
+        with self._lock:
+            if run is self._run and not self._closed and self.header is not None:
+                self.header.progress(share)
+
+    def ended(self, run: Run, found: Dataset | BaseException) -> None:
+        """As `Watcher.ended`."""
+        with self._lock:
+            if run is not self._run or self._closed:
+                return  # cancelled, or another one was started since
+            self._run = None
+            self._show_running(False)
+            if isinstance(found, BaseException):
+                self._say("")
+                self.fault(found)
+                return
+            self.data = found
+            self._show_data()
+        self._results.take(self, found)
+
+    def forget(self, data: Dataset) -> None:
+        """Drop a result, which others need the room of, unless there is another one already."""
+        with self._lock:
+            if self._closed or self.data is not data:
+                return
+            self.data = None
+            self._show_study()
+            self.budget_panel.show(self.study)
+            if not self.busy:
+                self._say(markup.block(DROPPED, "warning"))
+
+    def _tell(self, run: Run, html: str) -> None:
+        with self._lock:
+            if run is self._run:
+                self._say(html)
+
+    def _say(self, html: str) -> None:
+        with self._lock:
+            if not self._closed and self.header is not None:
+                self.header.say(html)
+
+    def _fault(self, html: str) -> None:
+        with self._lock:
+            if not self._closed and self.header is not None:
+                self.header.fault(html)
+
+    def _build(self, document: Document) -> None:
+        from flexapod.app.browser.budget_panel import BudgetPanel
+        from flexapod.app.browser.modes_panel import ModesPanel
+        from flexapod.app.browser.time_panel import TimePanel
+
+        gui = self.client.gui
+        run_script(self.client, "view", f"{_name(document)} - flexapod")
+        self.header = Header(self.client, _name(document), self.simulate, self.cancel)
+        self.scene: Any = RobotScene(self.client) if isinstance(self.study, model.Study) else ActuatorScene(self.client)
+        self.scene.show_study(self.study)  # first of all: it is what takes the browser longest
+        self._picture = Picture(gui, self._back, self.scene.reset_view)
+        tabs = gui.add_tab_group()
+        with tabs.add_tab("Time"):
+            self.time_panel: TimePanel = TimePanel(self.client, self.scene, self._threads, self._point_chosen)
+        with tabs.add_tab("Study"):
+            self.study_panel: StudyPanel = StudyPanel(self.client, document, self._threads, self._edited)
+        with tabs.add_tab("Modes"):
+            self.modes_panel: ModesPanel = ModesPanel(self.client, self.scene, self._threads)
+        with tabs.add_tab("Budget"):
+            self.budget_panel: BudgetPanel = BudgetPanel(self.client, self._threads)
+        with tabs.add_tab("Files"):
+            self.files_panel: FilesPanel = FilesPanel(
+                self.client,
+                self._threads,
+                self._sent,
+                lambda: self.study_panel.document,
+                lambda: self.study,
+                lambda: self.data,
+                self._uploaded,
+            )
+        self.scene.told = self._drawn
+        self._drawn()
+        self._panels = [self.time_panel, self.modes_panel, self.budget_panel, self.files_panel, self.scene]
+
+    def _drop_panels(self) -> None:
+        for panel in self._panels:
+            panel.close()
+        if self._panels and not self._closed:
+            self.client.gui.reset()
+            self.client.scene.reset()
+        self._panels, self.header = [], None
+
+    def _edited(self, found: Edit) -> None:
+        with self._lock:
+            if found.document is not self.study_panel.document:
+                return  # of the study before: another one was opened while it was read
+            self._valid = found.study is not None
+            if self.header is not None:
+                self.header.ready(self._valid)
+            self._stop()
+            if found.study is None:
+                self._say(markup.block("The study is refused; the picture shows the last valid one.", "error"))
+                return
+            self.study, self.data = found.study, None
+            self._results.drop(self)
+            self._fault("")
+            self._say(markup.block("Changed: rigid preview.", "soft"))
+            self._show_study()
+            self._unsettled = True
+            self._settling.request(QUIET)
+
+    def _settled(self) -> None:
+        """Compute what takes longer than the preview, once nothing has changed for a while; modes in any case."""
+        with self._lock:
+            if self._closed:
+                return
+            self.modes_panel.show_study(self.study)
+            self.budget_panel.show(self.study, self.data)
+            if not self._unsettled:
+                return
+            self._unsettled = False
+            if is_quick(self.study):
+                self._simulate(preview=True)
+            else:
+                self._say(markup.block("Changed: press Simulate for the flexible result.", "soft"))
+
+    def _uploaded(self, document: Document) -> None:
+        found = read(document)
+        if found.study is not None:
+            self.open(StudySource(document=document, study=found.study))
+
+    def _show_study(self) -> None:
+        self.scene.show_study(self.study)
+        self.time_panel.show_data(None)
+
+    def _show_data(self) -> None:
+        if self.data is not None:
+            self.scene.show_data(self.data)
+            self._show_answer(self.data)
+            self.time_panel.show_data(self.data)
+            self.budget_panel.show(self.study, self.data)
+
+    def _show_answer(self, data: Dataset, first: str = "") -> None:
+        """Show the answer of a result, below other words if there are any."""
+        if not self._closed and self.header is not None:
+            self.header.answer(first + _answer(data, self.scene.point) + _preview(self.study, data))
+
+    def _drawn(self) -> None:
+        """The scene shows something else: the words about it follow."""
+        self._picture.tell(self.scene)
+        self.time_panel.follow()
+
+    def _back(self) -> None:
+        """Show the result over time in place of a mode or a pose."""
+        self.scene.driver = None
+        self.scene.set_time(self.scene.time)
+
+    def _point_chosen(self) -> None:
+        with self._lock:
+            if self._valid and self.data is not None and not self.busy:
+                self._show_answer(self.data)
+
+    def _stop(self) -> None:
+        self._unsettled = False
+        if self._run is not None:
+            self._run.cancel()
+            self._run = None
+            self._show_running(False)
+
+    def _show_running(self, on: bool) -> None:
+        if not self._closed and self.header is not None:
+            self.header.running(on)
+
+
+def _name(document: Document) -> str:
+    return Path(document.path).name if document.path else "study"
+
+
+def _preview(study: model.Study | model.ActuatorStudy, data: Dataset) -> str:
+    said = preview_words(study, data)
+    return markup.block(said, "warning") if said else ""
+
+
+def _answer(data: Dataset, point: str) -> str:
+    """The deviation of a point in a sentence, of the others below it, and what the result warns of."""
+    from flexapod.analysis.results.summary import summaries
+
+    said = sorted(summaries(data), key=lambda s: getattr(s, "point", point) != point)
+    html = "".join(markup.block(s.sentence, "soft" if i else "good") for i, s in enumerate(said))
+    if data.attrs["partial"]:
+        reached = f"Stopped at t = {float(data.time[-1]):.6g} s: {data.attrs.get('failure', '')}"
+        html += markup.block(reached, "error")
+    return html + "".join(markup.block(f"Warning: {line}", "warning") for line in warnings_of(data))

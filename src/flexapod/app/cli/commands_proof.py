@@ -1,0 +1,144 @@
+"""Commands that prove: `replicate` repeats the paper's study, `verify` the verification pack."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from flexapod.app.cli.failures import guarded
+from flexapod.app.cli.options import Json, NoFigures, Quiet, check_writable
+from flexapod.common.files import write_text
+from flexapod.output.text import terminal
+from flexapod.output.text.parts import Bullets, Chapter, Item, TextTable
+
+if TYPE_CHECKING:
+    from flexapod.verification.pack import Outcome
+    from flexapod.verification.paper.study import PaperStudy
+
+Folder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the results.")]
+Engines = Annotated[
+    bool, typer.Option("--engines", help="Also Figs. 8 and 9 by an independent engine, Exudyn (half a minute more).")
+]
+
+
+@guarded
+def replicate(
+    out: Folder = Path("replicate"), engines: Engines = False, no_figures: NoFigures = False, json: Json = False,
+    quiet: Quiet = False,
+) -> None:  # fmt: skip
+    """Repeat the paper's whole study: figures, data, table of its claims, report."""
+    from flexapod.analysis.results.summary import summary
+    from flexapod.verification.paper.claims import by_whose, claims, counted
+    from flexapod.verification.paper.engines import agreements
+    from flexapod.verification.paper.outputs import replicate as repeat
+
+    check_writable(out)
+    with terminal.progress_bar(quiet=quiet or json) as report:
+        result = repeat(out, engines=engines, figures=not no_figures, progress=report)
+    found, table, agreed = summary(result["robot"]), claims(result), agreements(result.parts)
+
+    def data() -> dict[str, object]:
+        files = sorted(path for path in out.rglob("*") if path.is_file())
+        more = {"engines": [asdict(row) for row in agreed]} if engines else {}
+        return {"summary": found.as_dict(), "claims": [asdict(claim) for claim in table], **more, "files": files}
+
+    items: list[Item] = [found.sentence, "The paper prints about 5 mm in Y and 10 mm in Z."]
+    for title, some in by_whose(table).items():
+        told = [f"{claim.where}: {claim.says}: {claim.verdict} ({claim.ours})" for claim in some]
+        items.append(Chapter(f"{title} ({counted(some)[:-1]}):", told))
+    if agreed:
+        theirs = [f"{row.quantity}: {row.words}" for row in agreed]
+        items += [Chapter("Exudyn, an independent engine, against us (largest values):", theirs, close=True)]
+    figures = "" if no_figures else "figures/ "
+    items += ["", f"In {out}: report.html (open it in a browser), claims.md, {figures}and data/."]
+    terminal.tell(items, data, json=json)
+    _fail(result)
+
+
+def _fail(result: PaperStudy) -> None:
+    """Raise what went wrong in an engine, when all else is written and said."""
+    for error in result.failures.values():
+        raise error
+
+
+Only = Annotated[list[str] | None, typer.Option("--only", metavar="NAME", help="This case; may be given again.")]
+All = Annotated[bool, typer.Option("--all", help="Also the slow cases (minutes).")]
+Page = Annotated[Path | None, typer.Option("--html", metavar="FILE", help="Also write the table as a page.")]
+Markdown = Annotated[Path | None, typer.Option("--markdown", metavar="FILE", help="Also write it as Markdown.")]
+
+
+@guarded
+def verify(
+    only: Only = None,
+    slow: All = False,
+    html: Page = None,
+    markdown: Markdown = None,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Compute cases with published or closed-form answers: reference, ours, tolerance, verdict, time."""
+    from flexapod.verification.pack import verify as compute
+
+    for key, file in (("--html", html), ("--markdown", markdown)):
+        check_writable(None if file is None else file.parent, key)
+    outcomes: list[Outcome] = []
+    interrupted = False
+    with terminal.progress_bar(quiet=quiet or json) as report:
+        try:
+            compute(only or (), slow=slow, progress=report, keep=outcomes.append)
+        except KeyboardInterrupt:
+            interrupted = True
+    passed = not interrupted and all(o.passed or o.not_run for o in outcomes)
+    if not interrupted:
+        _write(outcomes, html, markdown)
+    state = {"passed": passed, "complete": not interrupted}
+    terminal.tell(_verified(outcomes), lambda: {**state, "cases": [o.as_dict() for o in outcomes]}, json=json)
+    if interrupted:
+        raise KeyboardInterrupt
+    if not passed:
+        raise typer.Exit(1)
+
+
+def _verified(outcomes: list[Outcome]) -> Iterator[Item]:
+    """The table of the cases, sources of their references, how many agree."""
+    from flexapod.verification import page
+
+    yield TextTable(page.HEAD, page.rows(outcomes), left=(0, 1))
+    yield ""
+    yield "Sources of the references"
+    for o in outcomes:
+        yield f"  {o.case.name}: {o.case.source}"
+        yield from (f"    {fault}" for fault in page.faults(o))
+    yield ""
+    yield page.sentence(outcomes)
+
+
+def _write(outcomes: list[Outcome], html: Path | None, markdown: Path | None) -> None:
+    from flexapod.output.text.html import page as whole
+    from flexapod.output.text.html import section
+    from flexapod.verification import page
+
+    if markdown is not None:
+        write_text(markdown, page.markdown(outcomes))
+    if html is not None:
+        marks = {"pass": "good", "fail": "bad", "not computed": "bad", "not run": "open"}
+        cases = [
+            section(o.case.name, o.case.name, [f"{o.case.statement}.", Bullets(page.notes(o)), _checks(o)])
+            for o in outcomes
+        ]
+        table = TextTable(page.HEAD, page.rows(outcomes), marks=marks)
+        write_text(html, whole("flexapod: verification", page.sentence(outcomes), [table, *cases]))
+
+
+def _checks(outcome: Outcome) -> TextTable:
+    head = ("What", "Reference", "Ours", "Error", "Tolerance", "Verdict")
+    rows = [
+        (c.what, f"{c.reference:.10g}", f"{c.ours:.10g}", f"{c.error:.2g}", f"{c.tolerance:.2g}",
+         "reference at fault" if c.fault else "pass" if c.passed else "fail")
+        for c in outcome.checks
+    ]  # fmt: skip
+    return TextTable(head, rows, marks={"pass": "good", "fail": "bad"})

@@ -1,0 +1,170 @@
+"""Commands that simulate: `run` and `actuator`; `cache` of the kernels that they compile."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import chain
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from flexapod.app.cli.failures import INTERRUPTED, guarded, print_parts, show, stopped
+from flexapod.app.cli.options import (
+    FORMATS,
+    Json,
+    NoFigures,
+    Out,
+    Quiet,
+    StudyFile,
+    Verbose,
+    parse_formats,
+    results_folder,
+    write_all,
+    write_data,
+)
+from flexapod.common.errors import ComputationError, InputError
+from flexapod.common.lazy_imports import without
+from flexapod.output.text import terminal
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from flexapod.mechanics.symbolic.cache import CacheContent
+    from flexapod.model import ActuatorStudy, Study
+
+COMPUTING = 0.88  # share of the bar for the simulation; the rest is for files
+Format = Annotated[
+    str, typer.Option("--format", metavar="FORMATS", help="Of the figures: one or more of png,svg,pdf, with commas.")
+]
+USUAL = "png,svg"
+
+
+@guarded
+def run(
+    file: StudyFile, out: Out = None, formats: Format = USUAL, no_figures: NoFigures = False, json: Json = False,
+    quiet: Quiet = False, verbose: Verbose = False,
+) -> None:  # fmt: skip
+    """Simulate a study, rigid and flexible: results.nc, results.csv, figures, report.html."""
+    from flexapod.model import load
+
+    drawn = () if no_figures else parse_formats(formats)
+    _run(load(file), results_folder(file, "run", out), drawn, json=json, quiet=quiet, verbose=verbose)
+
+
+@guarded
+def actuator(
+    file: StudyFile, out: Out = None, formats: Format = USUAL, no_figures: NoFigures = False, json: Json = False,
+    quiet: Quiet = False, verbose: Verbose = False,
+) -> None:  # fmt: skip
+    """Simulate the study of a single actuator; writes what `run` writes."""
+    from flexapod.model import ActuatorStudy, load
+
+    study = load(file)
+    if not isinstance(study, ActuatorStudy):
+        raise InputError(
+            "is the study of a robot",
+            file=file,
+            allowed="a study with [actuator]",
+            next_step=f"Use `flexapod run {file}`",
+        )
+    drawn = () if no_figures else parse_formats(formats)
+    _run(study, results_folder(file, "run", out), drawn, json=json, quiet=quiet, verbose=verbose)
+
+
+def _run(
+    study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, json: bool, quiet: bool, verbose: bool
+) -> None:
+    from flexapod.analysis import Interrupted
+    from flexapod.analysis import run as simulate
+    from flexapod.analysis.checks.resource_limits import check_disk
+
+    check_disk(study, folder)
+    interrupted = False
+    with without("dask"), without("pint"), terminal.progress_bar(quiet=quiet or json) as report:
+        try:
+            data = simulate(study, progress=lambda time, end: report("simulating", COMPUTING * time / end))
+        except Interrupted as stop:
+            data, interrupted = stop.dataset, True
+        try:
+            files = write_data(data, folder) if interrupted else write_all(data, folder, report, formats)
+        except KeyboardInterrupt:  # a second one ends it
+            files, interrupted = write_data(data, folder), True
+    _say(study, data, folder, files, json=json, verbose=verbose)
+    if interrupted:
+        _stopped(data, json=json)
+        raise typer.Exit(INTERRUPTED)
+    if data.attrs["partial"]:
+        _failed(data, json=json)
+        raise typer.Exit(1)
+
+
+def _say(
+    study: Study | ActuatorStudy, data: Dataset, folder: Path, files: list[Path], *, json: bool, verbose: bool
+) -> None:
+    from flexapod.output.text.answers import run_as_dict, run_items
+
+    items = chain(run_items(study, data), ["", _where(data, folder, files)])
+    places = {"folder": folder, "files": files}
+    terminal.tell(items, lambda: run_as_dict(study, data) | places, json=json, verbose=verbose)
+
+
+def _where(data: Dataset, folder: Path, files: Sequence[Path]) -> str:
+    """Where the files are, and what they took."""
+    formats = list(dict.fromkeys(path.suffix for path in files if path.suffix[1:] in FORMATS))
+    names = ", ".join(path.name for path in files if path.suffix not in formats)
+    names = names.replace("report.html", "report.html (open it in a browser)")
+    figures = sum(path.suffix in formats for path in files) // max(len(formats), 1)
+    kinds = " and ".join(suffix[1:].upper() for suffix in formats)
+    drawn = f", {figures} figure{'s' * (figures > 1)} ({kinds})" if figures else ""
+    seconds = f"{data.attrs['steps']} steps, {data.attrs['wall_time']:.2g} s"
+    return f"In {folder}: {names}{drawn}. ({seconds} of time integration)"
+
+
+def _stopped(data: Dataset, *, json: bool) -> None:
+    kept = "what was computed is kept and marked as partial" if data.attrs["partial"] else "the whole result is kept"
+    what = f"{stopped()} at t = {float(data.time[-1]):.6g} s; {kept}"
+    print_parts({"kind": "interrupt", "what": what}, INTERRUPTED, as_json=json)
+
+
+def _failed(data: Dataset, *, json: bool) -> None:
+    what = f"the simulation stopped at t = {float(data.time[-1]):.6g} s: {data.attrs['failure']}"
+    show(ComputationError(what, next_step="What was computed is kept and marked as partial"), as_json=json)
+
+
+Clear = Annotated[bool, typer.Option("--clear", help="Remove all kernels; each is compiled again when needed.")]
+
+
+@guarded
+def cache(clear: Clear = False, json: Json = False) -> None:
+    """Where compiled kernels are kept, how many there are, and how to remove them.
+
+    FLEXAPOD_CACHE chooses another folder, FLEXAPOD_CACHE_MEGABYTES another bound.
+    """
+    from flexapod.mechanics.symbolic.cache import cache_content, clear_cache
+
+    found = clear_cache() if clear else cache_content()
+    kernels = f"{found.kernels} compiled kernel{'s' * (found.kernels != 1)}"
+    if clear:
+        items = [f"Removed {kernels} ({_megabytes(found.size)}) from {found.folder}."]
+    else:
+        items = [f"Folder: {found.folder}", f"{kernels}, {_megabytes(found.size)} of at most {_megabytes(found.limit)}"]
+        if found.unused_because:
+            items += [f"Not used: {found.unused_because}. Each run compiles its own kernels."]
+    terminal.tell(items, lambda: _as_dict(found, cleared=clear), json=json)
+
+
+def _as_dict(found: CacheContent, *, cleared: bool) -> dict[str, object]:
+    if cleared:
+        return {"folder": found.folder, "removed": found.kernels, "bytes": found.size}
+    return {
+        "folder": found.folder,
+        "kernels": found.kernels,
+        "bytes": found.size,
+        "limit_bytes": found.limit,
+        "unused_because": found.unused_because,
+    }
+
+
+def _megabytes(size: int) -> str:
+    return f"{size / 1e6:.4g} MB"

@@ -1,0 +1,202 @@
+"""Commands about study files: `new` writes one, `keys` says what it may contain, `check` describes it in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from flexapod.app.cli.failures import guarded
+from flexapod.app.cli.options import Force, Json, StudyFile, Verbose, as_options, refuse_existing
+from flexapod.common.errors import InputError
+from flexapod.common.files import write_text
+from flexapod.output.text import parts
+from flexapod.output.text.terminal import tell
+
+if TYPE_CHECKING:
+    from flexapod.model.file.page import Listed
+
+Name = Annotated[Path | None, typer.Argument(metavar="NAME.toml", help="File to write.")]
+Preset = Annotated[
+    str | None,
+    typer.Option(
+        "--preset",
+        metavar="P",
+        help="paper-robot (the default), paper-robot-radii, paper-actuator, tripod, flight-simulator, "
+        "machine-hexapod, small-hexapod, nano-hexapod or motion-base.",
+    ),
+]
+From = Annotated[
+    str | None,
+    typer.Option(
+        "--from",
+        metavar='"home=300 mm, payload=20 kg, stroke=60 mm"',
+        help="A first robot of catalogue parts that fit: electric cylinders, or drive=hydraulic; also base, platform "
+        "(radii), diameter (of pistons), material, motion (surge to yaw), duration.",
+    ),
+]
+Ideal = Annotated[
+    bool,
+    typer.Option("--ideal", help="With --from: joints and drives that do not give way, pistons that stretch and bend."),
+]
+
+
+Example = Annotated[
+    str | None, typer.Option("--example", metavar="E", help="An example of the gallery, in Python: E.py here.")
+]
+Notebook = Annotated[
+    str | None, typer.Option("--notebook", metavar="N", help="A notebook, as N.py for Jupyter with jupytext.")
+]
+List = Annotated[bool, typer.Option("--list", help="Name all presets, examples and notebooks.")]
+
+
+@guarded
+def new(
+    name: Name = None, preset: Preset = None, request: From = None, ideal: Ideal = False, example: Example = None,
+    notebook: Notebook = None, listed: List = False, force: Force = False, json: Json = False,
+) -> None:  # fmt: skip
+    """Write a commented study file to edit, or an example in Python; --list names what there is."""
+    if listed:
+        told = {"NAME": name, "--preset": preset, "--from": request, "--ideal": ideal, "--example": example}
+        told |= {"--notebook": notebook, "--force": force}
+        for option, value in told.items():
+            if value:
+                raise InputError("is given together with --list", key=option, value=value, allowed="one of the two")
+        return _list(json=json)
+    given = {"--preset": preset, "--from": request, "--example": example, "--notebook": notebook}
+    chosen = [option for option in ("--example", "--notebook") if given[option] is not None]
+    if chosen:
+        others = [option for option in given if given[option] is not None and option != chosen[0]]
+        others += ["--ideal"] if ideal else []
+        if others:
+            raise InputError(f"is given together with {others[0]}", key=chosen[0], allowed="one of the two")
+        return _example(chosen[0], given[chosen[0]] or "", name, force=force, json=json)
+    if name is None:
+        raise InputError("is missing", key="NAME.toml", next_step="Give the name of the file to write: robot.toml")
+    path = name if name.suffix or name.is_dir() else name.with_suffix(".toml")
+    if path.is_dir():
+        raise InputError("is a folder", file=path, next_step="Give the name of a file")
+    refuse_existing(path, force)
+    if ideal and request is None:
+        raise InputError("is given without --from", key="--ideal", next_step='Add --from "home=300 mm, payload=20 kg"')
+    if request is None:
+        text, source, remarks = _preset(preset or "paper-robot")
+    else:
+        text, source, remarks = _first_robot(request, preset, ideal=ideal)
+    write_text(path, text)
+    words = f", from the preset {source['preset']}" if "preset" in source else ""
+    data = {"file": path, **source, **({} if request is None else {"remarks": remarks})}
+    tell([*remarks, f"{path} written{words}. Edit it, then: flexapod check {path}"], lambda: data, json=json)
+
+
+def _list(*, json: bool) -> None:
+    from flexapod.app.cli.examples import titles
+    from flexapod.model import PRESETS
+
+    found = {
+        "--preset": dict.fromkeys(PRESETS, ""),
+        **{option: titles(option) for option in ("--example", "--notebook")},
+    }
+    items = [f"{option} {name}".ljust(40) + title for option, names in found.items() for name, title in names.items()]
+    tell(items, lambda: {option.strip("-"): names for option, names in found.items()}, json=json)
+
+
+def _example(option: str, wanted: str, name: Path | None, *, force: bool, json: bool) -> None:
+    from flexapod.app.cli.examples import place, text
+
+    written, path = text(option, wanted), place(option, wanted, name)
+    refuse_existing(path, force)
+    write_text(path, written)
+    run = f"python {path}" if option == "--example" else f"jupytext --to ipynb {path}, or open it in Jupyter"
+    tell([f"{path} written. Run it: {run}"], lambda: {"file": path, option.strip("-"): wanted}, json=json)
+
+
+def _preset(name: str) -> tuple[str, dict[str, object], list[str]]:
+    from flexapod.model import preset_text
+
+    with as_options(preset="--preset"):
+        return preset_text(name), {"preset": name}, []
+
+
+def _first_robot(request: str, preset: str | None, *, ideal: bool) -> tuple[str, dict[str, object], list[str]]:
+    """Text of a first robot, what it is from, and what there is to say about it."""
+    from flexapod.design.first_robot import IDEAL, first_robot, parse_request
+    from flexapod.output.text.first import first_words
+
+    if preset is not None:
+        raise InputError("is given together with --from", key="--preset", value=preset, allowed="one of the two")
+    wanted = parse_request(request)
+    if ideal and wanted.texts.get("drive", IDEAL) != IDEAL:
+        raise InputError(
+            "is given together with --from drive", key="--ideal", value=wanted.drive, allowed="one of the two"
+        )
+    text = first_robot(replace(wanted, drive=IDEAL) if ideal else wanted)
+    return text, {"from": request}, first_words(text)
+
+
+Table = Annotated[str | None, typer.Argument(metavar="[TABLE]", help="Only this table and those in it: leg.drive")]
+Markdown = Annotated[Path | None, typer.Option("--markdown", metavar="FILE", help="Write the whole page as Markdown.")]
+
+Schema = Annotated[
+    Path | None, typer.Option("--schema", metavar="FILE", help="Write a JSON schema of study files, for editors.")
+]
+
+
+@guarded
+def keys(table: Table = None, markdown: Markdown = None, schema: Schema = None, json: Json = False) -> None:
+    """Show every key of a study file: what it is, unit, what it is if left out, what is allowed, an example."""
+    from dataclasses import asdict
+
+    from flexapod.app.cli.key_names import check_table
+
+    if table is not None:
+        check_table(table)
+    files = [str(path) for path in (markdown, schema) if path is not None]
+    if table is not None and files:
+        words = "is given together with a file, which has all tables"
+        raise InputError(words, key="TABLE", value=table, allowed="one of the two")
+    if len(set(files)) < len(files):
+        raise InputError("is that of --markdown, too", key="--schema", value=files[0], allowed="another file")
+    from flexapod.model.file import page
+
+    if markdown is not None:
+        write_text(markdown, page.markdown())
+    if schema is not None:
+        from flexapod.model.file.json_schema import json_schema
+
+        write_text(schema, json_schema())
+    found = page.listed(table)
+    written = [f"{' and '.join(files)} written."] if files else None
+    told = (_key_chapter(item, page.HEAD, alone=table is not None) for item in found)
+    tell(written or told, lambda: [asdict(item) for item in found], json=json)
+
+
+def _key_chapter(found: Listed, head: Sequence[str], *, alone: bool) -> parts.Chapter:
+    """A table of a study file: its words, its keys, an example."""
+    entry = found.entry
+    title = f"[{entry.table}] {entry.title}".rstrip() + ("" if alone else f" ({entry.study})")
+    rows = [[row.key, row.what, row.unit, row.default, row.allowed] for row in found.rows]
+    keys = [parts.TextTable(head, rows, left=range(len(head)))] if rows else []
+    keys += [parts.Text(found.further)] if found.further else []
+    return parts.Chapter(
+        title, [parts.Text(entry.words), *keys, "", parts.Lines(entry.example.strip()), ""], close=True
+    )
+
+
+@guarded
+def check(file: StudyFile, verbose: Verbose = False, json: Json = False) -> None:
+    """Validate a study and say in words what it asks of its legs: lengths, strokes, loads, stiffness, frequencies."""
+    from flexapod.analysis.description.robot_description import describe
+    from flexapod.model import Study, load
+    from flexapod.output.text.check import check_items
+
+    found, control = describe(study := load(file)), ()
+    if isinstance(study, Study) and study.control is not None:
+        from flexapod.analysis.predicted_damping import control_words
+
+        control = control_words(study)
+    data = lambda: found.as_dict() | ({"control": control} if control else {})  # noqa: E731
+    tell(check_items(found, control), data, json=json, verbose=verbose)

@@ -1,0 +1,193 @@
+"""Commands of many runs: `sweep` over variants, `converge` over step and shapes."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from itertools import chain
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from flexapod.app.cli.failures import INTERRUPTED, guarded, print_parts, stopped
+from flexapod.app.cli.options import Json, NoFigures, Out, Quiet, StudyFile, as_options, results_folder
+from flexapod.common.lazy_imports import without
+from flexapod.output.text import terminal
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from flexapod.design.convergence import Trials
+
+SweepFile = Annotated[Path, typer.Argument(metavar="SWEEP", help="Sweep file (TOML): what varies, what is kept.")]
+SweepOut = Annotated[
+    Path | None,
+    typer.Option(
+        "--out", metavar="DIR", help="Folder of the results; default: beside the study, the names of both files."
+    ),
+]
+Scheduler = Annotated[
+    str | None, typer.Option("--scheduler", metavar="ADDRESS", help="A running Dask scheduler, tcp://host:8786.")
+]
+Workers = Annotated[
+    int | None, typer.Option("--workers", metavar="N", help="Local processes; default: one a core; 0: none but this.")
+]
+RetryFailed = Annotated[bool, typer.Option("--retry-failed", help="Compute points again that failed before.")]
+Zarr = Annotated[bool, typer.Option("--zarr", help="Write what was computed also as Zarr, for other programs.")]
+
+
+@guarded
+def sweep(
+    file: StudyFile, sweep_file: SweepFile, out: SweepOut = None, scheduler: Scheduler = None, workers: Workers = None,
+    retry_failed: RetryFailed = False, zarr: Zarr = False, no_figures: NoFigures = False, json: Json = False,
+    quiet: Quiet = False,
+) -> None:  # fmt: skip
+    """Compute many variants of a study: grids, lists, Latin hypercubes, random tolerances. Run again, it continues."""
+    from flexapod.design.sweeps import SweepStopped
+    from flexapod.design.sweeps import sweep as compute
+
+    folder = results_folder(file, sweep_file.stem, out)
+    store = folder / ("sweep.zarr" if zarr else "sweep.sqlite")
+    options = as_options(workers="--workers", scheduler="--scheduler")
+    with without("dask.array"), options, terminal.progress_bar(quiet=quiet or json) as report:
+        try:
+            data = compute(
+                file, sweep_file, store=store, scheduler=scheduler, workers=workers, retry_failed=retry_failed,
+                progress=report,
+            )  # fmt: skip
+            interrupted = False
+        except SweepStopped as stop:
+            data, interrupted = stop.dataset, True
+        files = [folder / "sweep.sqlite", *[store] * zarr, *_write_sweep(data, folder, figure=not no_figures)]
+    _say_sweep(data, folder, files, json=json)
+    if interrupted:
+        _stopped_sweep(data, json=json)
+        raise typer.Exit(INTERRUPTED)
+    if not (data.status == "computed").any():
+        raise typer.Exit(1)
+
+
+def _write_sweep(data: Dataset, folder: Path, *, figure: bool) -> list[Path]:
+    """The table, and the figure where it is wanted and there is something to see."""
+    from flexapod.design.sweeps import save_table, scalar_names
+    from flexapod.output import figures
+    from flexapod.output.figures.sweep import sweep as draw
+
+    files = [save_table(data, folder / "sweep.csv")]
+    if figure and any(data[name].notnull().any() for name in scalar_names(data)):
+        files += figures.save(draw(data), folder / "sweep")
+    return files
+
+
+def _say_sweep(data: Dataset, folder: Path, files: list[Path], *, json: bool) -> None:
+    from flexapod.output.text.surveys import sweep_as_dict, sweep_items
+
+    where = f"In {folder}: {', '.join(path.name for path in files)}."
+    places = {"folder": folder, "files": files}
+    terminal.tell(chain(sweep_items(data), ["", where]), lambda: sweep_as_dict(data) | places, json=json)
+
+
+def _stopped_sweep(data: Dataset, *, json: bool) -> None:
+    done = int((data.status != "pending").sum())
+    print_parts(
+        {
+            "kind": "interrupt",
+            "what": f"{stopped()} after {done} of {data.sizes['point']} points, which are stored",
+            "next_step": f"To continue, run the same command again: {shlex.join(['flexapod', *sys.argv[1:]])}",
+        },
+        INTERRUPTED,
+        as_json=json,
+    )
+
+
+Accuracy = Annotated[
+    float, typer.Option("--accuracy", metavar="ERROR", help="Relative error that the recommended setting keeps.")
+]
+Ladder = Annotated[bool, typer.Option("--ladder", help="Also every fidelity, rigid to solid-fem: error against cost.")]
+
+
+@guarded
+def converge(
+    file: StudyFile, accuracy: Accuracy = 1e-2, ladder: Ladder = False, out: Out = None,
+    no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
+) -> None:  # fmt: skip
+    """Vary step, shapes and elements of a study: errors, orders, cost, and the cheapest setting that will do."""
+    from flexapod.design.convergence.plan import checked_trials, estimate
+    from flexapod.model import load
+
+    trials = checked_trials(load(file), None)
+    folder = results_folder(file, "converge", out)
+    with as_options(accuracy="--accuracy"):
+        count, seconds = estimate(trials, accuracy)
+    if not (json or quiet):
+        terminal.print_text(
+            f"About {count} settings, {_rough(seconds)}; the first time a few seconds more for each number of "
+            "shapes that is compiled."
+        )
+    tables, interrupted = _computed(trials, accuracy, ladder=ladder, quiet=quiet or json)
+    files = [path for name, data in tables.items() for path in _write(data, folder, name, figure=not no_figures)]
+    _say(tables, folder, files, json=json)
+    if interrupted:
+        _stopped(tables, json=json)
+        raise typer.Exit(INTERRUPTED)
+
+
+def _computed(trials: Trials, accuracy: float, *, ladder: bool, quiet: bool) -> tuple[dict[str, Dataset], bool]:
+    """Tables by the names of their files, and whether the user stopped."""
+    from flexapod.design.convergence import ConvergenceStopped
+    from flexapod.design.convergence import converge as compute
+    from flexapod.design.convergence.ladder import ladder as climb
+
+    tables: dict[str, Dataset] = {}
+    name = "convergence"
+    with terminal.progress_bar(quiet=quiet) as report:
+        try:
+            tables[name] = compute(trials.study, accuracy=accuracy, progress=report, trials=trials)
+            if ladder:
+                name, step = "ladder", float(tables[name].attrs["shape_step"])
+                tables[name] = climb(trials.study, step=step, progress=report, trials=trials)
+        except ConvergenceStopped as stop:
+            tables[name] = stop.dataset
+            return tables, True
+        except KeyboardInterrupt:
+            if not tables:
+                raise
+            return tables, True
+    return tables, False
+
+
+def _rough(seconds: float) -> str:
+    """A duration as an estimate deserves."""
+    return f"up to {max(10, 10 * round(seconds / 10 + 0.4))} s" if seconds < 90 else f"{seconds / 60:.0f} minutes"
+
+
+def _write(data: Dataset, folder: Path, name: str, *, figure: bool) -> list[Path]:
+    """The table as NetCDF and CSV, and its figure where it is wanted."""
+    from flexapod.analysis.store import save
+    from flexapod.design.convergence.table import save_table
+    from flexapod.output import figures
+    from flexapod.output.figures.convergence import convergence, ladder
+
+    draw = {"convergence": convergence, "ladder": ladder}[name]
+    files = [save(data, folder / f"{name}.nc"), save_table(data, folder / f"{name}.csv")]
+    return [*files, *(figures.save(draw(data), folder / name) if figure else ())]
+
+
+def _say(tables: dict[str, Dataset], folder: Path, files: list[Path], *, json: bool) -> None:
+    from flexapod.output.text.surveys import convergence_as_dict, convergence_items, ladder_items
+
+    def data() -> dict[str, object]:
+        found = {name: convergence_as_dict(data) for name, data in tables.items()}
+        return {**found.get("convergence", {}), "ladder": found.get("ladder"), "folder": folder, "files": files}
+
+    said = {"convergence": convergence_items, "ladder": ladder_items}
+    where = f"In {folder}: {', '.join(path.name for path in files)}."
+    items = (item for name, data in tables.items() for item in said[name](data))
+    terminal.tell(chain(items, ["", where]), data, json=json)
+
+
+def _stopped(tables: dict[str, Dataset], *, json: bool) -> None:
+    count = sum(data.sizes["setting"] for data in tables.values())
+    what = f"{stopped()} after {count} settings; what was computed is kept and marked as partial"
+    print_parts({"kind": "interrupt", "what": what}, INTERRUPTED, as_json=json)

@@ -1,0 +1,147 @@
+"""Options and arguments that several commands share, what they refuse, and what is written where they say."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from flexapod.common.errors import InputError
+from flexapod.common.files import check_name, scratch
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from flexapod.analysis.results.time_history import Report
+    from flexapod.model import Study
+
+StudyFile = Annotated[Path, typer.Argument(metavar="FILE", help="Study file (TOML); `flexapod new` writes one.")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON on stdout and nothing else; errors as JSON on stderr.")]
+Out = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Folder for the results; default: beside the study, FILE-COMMAND."),
+]
+NoFigures = Annotated[bool, typer.Option("--no-figures", help="Draw nothing: data and words only, in less time.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar.")]
+
+Verbose = Annotated[bool, typer.Option("--verbose", help="Explain each remark, not only say it.")]
+
+Pose = Annotated[
+    str | None,
+    typer.Option("--pose", metavar='"roll=20deg,heave=10mm"', help="From home; numbers without unit in m and rad."),
+]
+Force = Annotated[bool, typer.Option("--force", help="Replace the file if it exists.")]
+_PARTS = ("what", "file", "value", "allowed", "next_step")
+
+
+@contextmanager
+def as_options(**options: str) -> Iterator[None]:
+    """Let errors name a keyword of a Python call as the option that the user typed: ``as_options(modes="--count")``."""
+    try:
+        yield
+    except InputError as error:
+        key = options.get(error.key or "", error.key)
+        raise InputError(**{name: getattr(error, name) for name in _PARTS}, key=key) from None
+
+
+def robot_study(file: Path) -> Study:
+    """The study of a robot; refuses that of a single actuator."""
+    from flexapod.model import ActuatorStudy, load
+
+    study = load(file)
+    if isinstance(study, ActuatorStudy):
+        raise InputError("is the study of a single actuator", file=file, allowed="the study of a robot")
+    return study
+
+
+def refuse_existing(file: Path, force: bool) -> None:
+    """Refuse to replace a file unasked."""
+    if file.exists() and not force:
+        raise InputError("exists already", file=file, next_step="Choose another name, or replace it with --force")
+
+
+FORMATS = ("png", "svg", "pdf")  # of figures
+PROCESSES = min(os.cpu_count() or 1, 4)  # that draw them, where there are
+MANY = 10_000  # instants: with fewer, a copy of this process costs a third of what it takes off
+
+
+def parse_formats(text: str) -> tuple[str, ...]:
+    """Formats of figures, each once, ``"png, PDF"`` gives ``("png", "pdf")``; unknown ones, and none, are refused."""
+    names = tuple(dict.fromkeys(name.strip().lower() for name in text.split(",") if name.strip()))
+    unknown = [name for name in names if name not in FORMATS]
+    if unknown or not names:
+        raise InputError(
+            "is not a format of figures",
+            key="--format",
+            value=unknown[0] if unknown else text,
+            allowed=f"{', '.join(FORMATS)}, or several with commas",
+            next_step="For example --format png,pdf",
+        )
+    return names
+
+
+def results_folder(file: Path, command: str, out: Path | None) -> Path:
+    """Where results go: `out`, else beside the study file, ``robot-run``; refused where it cannot be written to."""
+    folder = file.with_name(f"{file.stem}-{command}") if out is None else out
+    check_writable(folder)
+    return folder
+
+
+def check_writable(folder: Path | None, key: str = "--out") -> None:
+    """Refuse a folder that could not be made or written to, before anything is computed; it is not made yet."""
+    if folder is None:
+        return
+    check_name(folder.absolute(), key)
+    existing = next(place for place in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(place))
+    try:
+        with scratch(existing):
+            pass
+    except OSError as error:
+        what = (
+            f"cannot be made: {existing} is a file" if existing.is_file() else f"cannot be written to: {error.strerror}"
+        )
+        raise InputError(what, key=key, value=str(folder), next_step=f"Choose another place with {key}") from None
+
+
+def write_data(data: Dataset, folder: Path) -> list[Path]:
+    """``results.nc`` and ``results.csv``, each whole or not at all."""
+    from flexapod.analysis.store import save, save_csv
+
+    return [save(data, folder / "results.nc"), save_csv(data, folder / "results.csv")]
+
+
+def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str]) -> list[Path]:
+    """Data, figures in the formats asked for (none: no figures), ``report.html``; `report` is told what is written."""
+    from flexapod.output.report.figures import Drawn, drawing
+    from flexapod.output.report.report import write_report
+    from flexapod.output.text import html
+
+    if formats:
+        _without_help()
+    data.load()  # what nobody has asked for yet each copy of this process would make for itself
+    figures: list[Drawn] = []
+    processes = PROCESSES if data.sizes["time"] >= MANY else 1
+    with drawing(data, folder, formats, processes) if formats else nullcontext(list[Drawn]) as drawn:
+        report("writing results", 0.90)
+        files = write_data(data, folder)
+
+        def waited() -> list[Drawn]:
+            if formats:
+                html.library()  # while others draw
+            report("drawing figures", 0.94)
+            figures.extend(drawn())
+            return figures
+
+        page = write_report(data, folder, waited)
+    return [*files, *(path for figure in figures for path in figure.files), page]
+
+
+def _without_help() -> None:
+    """Matplotlib writes help on the keywords of each of its classes as it is imported: nobody reads it in a command."""
+    from matplotlib.artist import Artist
+
+    Artist._update_set_signature_and_docstring = classmethod(lambda _: None)  # type: ignore[attr-defined]

@@ -1,0 +1,138 @@
+"""A motion that brings the loaded tool onto the path of the drawing, Eqs. (T22.1)-(T22.5)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from flexapod import kinematics
+from flexapod.analysis.checks.checks import check_path
+from flexapod.analysis.results.arguments import RobotLike, as_study
+from flexapod.commissioning.feedforward.command_table import Tabled, named, saved, tabled
+from flexapod.commissioning.feedforward.correction_series import knots_of, lasts, refuse, refuse_beyond, static_series
+from flexapod.commissioning.feedforward.loaded_path import LoadedPath, apart
+from flexapod.common.arrays import Array
+from flexapod.common.quantities import NOTHING, number, text
+from flexapod.kinematics import Law
+from flexapod.model import Study
+from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.modal.modes import modes_of
+
+__all__ = ["Compensation", "compensation"]
+
+LOOKS = 41  # instants at which the miss is measured
+ROWS = 20  # of a table in a period of the first mode, where accelerations are made up for
+MOST = 1000  # periods that are resolved so
+FEWEST = 200  # and at least in the whole path
+
+
+Pair = tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Compensation:
+    """A compensated study and what it brings.
+
+    Before and after, as equilibria tell at instants of the path: ``tool`` [m] and ``turned`` [rad], how far the loaded
+    tool misses its wanted place and attitude at most; ``commanded`` [m], [rad], how far the coordinates that are
+    ``named`` (of the pivot) miss theirs; ``named`` is empty where all six are. ``tail``: last coefficients of the
+    corrections' series over the largest; ``table``: by how much accelerations of the table are off in the mean, over
+    the largest. ``periods`` of the first mode that the path lasts, where its inertia is made up for.
+    """
+
+    study: Study
+    periods: float | None
+    named: tuple[str, ...]
+    tool: Pair
+    turned: Pair
+    commanded: tuple[Pair, Pair]
+    tail: float
+    table: float
+
+    @property
+    def sentence(self) -> str:
+        """Benefit, cost and effect in words."""
+        what, own = "weight and load", "its inertia and its own vibration are left"
+        if self.periods is not None:
+            what = "weight, load and the inertia of its path"
+            own = f"its own vibration is left, of a path that lasts {number(self.periods, 3)} periods of the first mode"
+        miss = f"the tool misses the wanted path by {_pair(self.tool, 'm')}"
+        if self.named:
+            ways = (_pair(x, unit) for x, unit in zip(self.commanded, ("m", "rad"), strict=True) if x[0] > 0)
+            follow = f"what follows is not commanded: the tool is {_pair(self.tool, 'm')} beside the wanted path"
+            miss = f"{', '.join(self.named)} miss the wanted path by {' and '.join(ways) or 'nothing'}; {follow}"
+        return (
+            f"commands make up for what {what} do to the elastic robot, in the same time: {miss}, as equilibria tell; "
+            f"{own}. Series leave out {number(self.tail, 1)} of the largest correction. Deviations in results are "
+            "those from the commands, which lie beside the wanted path"
+        )
+
+    def __repr__(self) -> str:
+        return f"Compensation({self.sentence})"
+
+
+def compensation(
+    study: RobotLike,
+    order: Literal[0, 2] = 0,
+    *,
+    corrections: int = 2,
+    as_built: bool = True,
+    out: str | Path | None = None,
+) -> Compensation:
+    """As `compensate`, with what it brings."""
+    study = as_study(study)
+    known = study if as_built else study.replace(robot=study.robot.replace(geometry=None, heat=None))
+    refuse(known, corrections, inertia=order == 2)
+    check_path(study)
+    path = LoadedPath(known, inertia=order == 2)
+    until = study.motion.end_time - study.motion.hold if lasts(study) else study.duration
+    knots = knots_of(study, until)
+    series = static_series(path, corrections, knots)
+
+    def law(t: Array) -> Law:
+        return Law(*(x + y for x, y in zip(path.wanted(t), series(t), strict=True)))
+
+    periods = None if order == 0 else _periods(study, knots)
+    rows = None if periods is None else np.linspace(0.0, until, max(FEWEST, int(ROWS * min(periods, MOST))) + 1)
+    hold = study.motion.hold if lasts(study) else 0.0
+    length = kinematics.rigid_limbs(study.robot).L_c
+    table = tabled(law, knots, study.motion, path.axes, length, hold=hold, rows=rows)
+    found = _told(study, path, series.tail, table, periods)
+    refuse_beyond(found.study)
+    return found if out is None else replace(found, study=saved(found.study, out))
+
+
+def _periods(study: Study, knots: Array) -> float:
+    """How many periods of the first mode at its start the path lasts."""
+    start = kinematics.poses(study.robot, study.motion, np.zeros(1))
+    still = kinematics.Poses.at_rest(start.position, start.rotation)
+    modes = modes_of(locked_poses(study.robot, study.simulation, still, study.load))
+    return float(modes.frequency[0, 0] * knots[-1])
+
+
+def _told(study: Study, path: LoadedPath, tail: float, table: Tabled, periods: float | None) -> Compensation:
+    """What the table brings, at instants between those at which it was made."""
+    motion = table.motion
+    robot, axes, t = path.study.robot, path.axes, np.linspace(0.0, motion.time[-1], LOOKS)
+    law, commanded = path.wanted(t), kinematics.coordinates(motion, t)
+    wanted = path.rigid(law, t)
+    goal, found = path.seen(wanted), []
+    for there in (law.position, commanded.position):
+        loaded = path.loaded(Law(there, law.rate, law.acceleration), t)
+        off = np.where(axes, goal - path.seen(loaded), 0.0)
+        parts = *apart(robot, loaded, wanted), off[:, :3], off[:, 3:]
+        found.append([float(np.linalg.norm(part, axis=1).max()) for part in parts])
+    tool, turned, way, turn = zip(*found, strict=True)
+    told = Compensation(
+        study=study, periods=periods, named=named(axes) or (), tool=tool, turned=turned, commanded=(way, turn),
+        tail=tail, table=table.acceleration,
+    )  # fmt: skip
+    return replace(told, study=study.replace(motion=motion, notes=(*study.notes, told.sentence)))
+
+
+def _pair(values: Pair, unit: str) -> str:
+    before, after = (f"less than 1 p{unit}" if x < NOTHING else text(x, unit) for x in values)
+    return f"{after} in place of {before}"

@@ -1,0 +1,164 @@
+"""How a robot vibrates along a path, by its linear model with all modes, Eqs. (T22.12)-(T22.13)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod import kinematics
+from flexapod.commissioning.feedforward.loaded_path import inertia_forces, refuse_missing
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError
+from flexapod.model import Study
+from flexapod.solve.batch import RestStates
+from flexapod.solve.linear.motions import on_motions
+from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.modal.modes import ManyModes, modes_of
+from flexapod.solve.rigid_motion import rigid_rest
+from flexapod.solve.statics.locked_robot import LockedPoses
+from flexapod.solve.statics.stiffness import tool_motion
+
+__all__ = ["LinearPath", "PathVibration", "followed", "forces", "linear_path", "vibration_along"]
+
+POSES = 25  # along a path, between which matrices follow cubic splines
+FINE, OF = 24, 3  # steps in a period of the third mode: the first may be far below what a path shakes
+LEAST, MOST = 100, 20_000  # steps
+LOOKS = 100  # in a period, once the path is over
+PERIODS = 6  # of the first mode that a residual vibration is looked at, at least
+
+_GAUSS = np.array([[1 / 4, 1 / 4 - np.sqrt(3) / 6], [1 / 4 + np.sqrt(3) / 6, 1 / 4]])
+_NODE = np.sqrt(3) / 6
+_ROOT, _AXES = np.linalg.eig(_GAUSS)
+_TURN, _WEIGHT, _ROOT = np.linalg.inv(_AXES)[0], 0.5 * _AXES[:, 0].sum(), _ROOT[0]  # the other stage is its conjugate
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinearPath:
+    """A robot about its equilibria at P instants ``time`` (P,) of a path, in d independent motions.
+
+    ``M``, ``D``, ``K`` (P, d, d); ``flat`` (P, N, d): these motions in all coordinates; ``tool`` (P, 3, d): of the
+    tool; ``modes``: with damping ratios.
+    """
+
+    time: Array
+    locked: LockedPoses
+    M: Array
+    D: Array
+    K: Array
+    flat: Array
+    tool: Array
+    modes: ManyModes
+
+
+@dataclass(frozen=True, kw_only=True)
+class PathVibration:
+    """Motion of the tool (T, 3) [m] beside where it rests at each pose, at instants (T,) [s]; without friction."""
+
+    time: Array
+    tool: Array
+
+    def after(self, instant: float) -> float:
+        """Largest distance of the tool from where it comes to rest, from an instant on [m]."""
+        return float(np.linalg.norm(self.tool[self.time >= instant - 1e-9], axis=1).max(initial=0.0))
+
+    @property
+    def largest(self) -> float:
+        """Largest distance in the whole time [m]."""
+        return self.after(0.0)
+
+
+def linear_path(study: Study, t: Array, path: kinematics.Poses | None = None) -> LinearPath:
+    """The linear model at instants (P,) of a study's path, or of another one's poses, loads as at its start.
+
+    Raises
+    ------
+    ComputationError
+        There is no equilibrium at an instant.
+    """
+    path = kinematics.poses(study.robot, study.motion, t) if path is None else path
+    _refuse_loops(study)
+    locked = locked_poses(study.robot, study.simulation, path, study.load)
+    refuse_missing(locked, t)
+    about = locked.shaken
+    each = np.broadcast_to(np.eye(about.motions.columns.size), (len(t),) + (about.motions.columns.size,) * 2)
+    flat = about.motions.flat(about.system, each)
+    M, D, K = (flat.swapaxes(1, 2) @ part for part in on_motions(about.system, about.m, flat))
+    hub = flat[:, about.system.legs * about.system.n :]
+    tool = tool_motion(study.robot, locked.equilibria.states.pose)[:, :3] @ hub
+    return LinearPath(time=t, locked=about, M=M, D=D, K=K, flat=flat, tool=tool, modes=modes_of(locked, shapes=True))
+
+
+def _refuse_loops(study: Study) -> None:
+    loops = [leg.screw is not None and leg.screw.loops for leg in study.robot.legs]
+    if any(loops):
+        raise InputError(
+            "lags or is about another place than the rotor, which the linear model along a path leaves out",
+            file=study.path,
+            key="leg.drive.loop",
+            allowed="motors that do not lag, loops about rotors; fx.linearize and fx.modes know the others at a pose",
+        )
+
+
+def vibration_along(study: Study, moving: float, until: float) -> PathVibration:
+    """What the inertia of a study's path, which is at rest after `moving` [s], makes the tool do until an instant.
+
+    M z'' + D z' + K z = -flat^T f, (T22.12): matrices along the path by Gauss' formula of order 4, (T22.13), afterwards
+    those of its end, exactly.
+    """
+    from scipy.interpolate import CubicSpline
+
+    at = linear_path(study, np.linspace(0.0, moving, POSES))
+    edges, x = followed(at, lambda t: forces(at, kinematics.poses(study.robot, study.motion, t))[..., None])
+    tool = np.einsum("txd,td->tx", CubicSpline(at.time, at.tool)(edges), x[:, 0, :, 0])
+    later, rest = _at_rest(at, x[-1, 0, :, 0], x[-1, 1, :, 0], until - moving)
+    return PathVibration(time=np.append(edges, moving + later), tool=np.concatenate([tool, rest]))
+
+
+def followed(at: LinearPath, acting: Callable[[Array], Array], least: int = LEAST) -> tuple[Array, Array]:
+    """Instants (T,) and motions with rates (T, 2, d, c) along a path under each of c loads (T, N, c), Eq. (T22.13)."""
+    from scipy.interpolate import CubicSpline
+
+    moving = float(at.time[-1])
+    count = int(np.ceil(moving * FINE * np.nanmax(at.modes.frequency[:, :OF])))
+    edges = np.linspace(0.0, moving, min(MOST, max(count, least)) + 1)
+    h, middle = edges[1], edges[:-1] + edges[1] / 2
+    flat = CubicSpline(at.time, at.flat)
+    force = [-flat(t).swapaxes(1, 2) @ acting(t) for t in (middle - h * _NODE, middle + h * _NODE)]
+    matrices = CubicSpline(at.time, np.stack([at.M, at.D, at.K], axis=1))
+    x = np.zeros((len(edges), 2, *force[0].shape[1:]))
+    for k, t in enumerate(middle):
+        x[k + 1] = _step(matrices(t), h, x[k], _TURN[0] * force[0][k] + _TURN[1] * force[1][k])
+    return edges, x
+
+
+def _step(matrices: Array, h: float, x: Array, force: Array) -> Array:
+    """Places and rates (2, d, c) a step later; Gauss' two stages are one complex one, (T22.13)."""
+    (M, D, K), (z, v), way, c = matrices, x, h * _ROOT, _TURN.sum()
+    q = np.linalg.solve(M + way * D + way**2 * K, force - c * (D @ v + K @ z) - way * c * (K @ v))
+    return x + 2 * h * np.real(_WEIGHT * np.array([c * v + way * q, q]))
+
+
+def _at_rest(at: LinearPath, z: Array, v: Array, until: float) -> tuple[Array, Array]:
+    """Instants after the path's end and the tool (any, 3) there, from the last motions and their rates on."""
+    from scipy.linalg import expm
+
+    M, D, K = at.M[-1], at.D[-1], at.K[-1]
+    d = len(z)
+    h = until / max(LEAST, int(np.ceil(until * LOOKS * at.modes.frequency[-1, 0])))
+    A = np.block([[np.zeros((d, d)), np.eye(d)], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]])
+    step, x, found = expm(h * A), np.append(z, v), []
+    times: Array = (h * np.arange(1, round(until / h) + 1)).astype(float)
+    for _ in times:
+        x = step @ x
+        found.append(at.tool[-1] @ x[:d])
+    return times, np.array(found)
+
+
+def forces(at: LinearPath, path: kinematics.Poses) -> Array:
+    """What a rigid path's rates ask for in all coordinates (T, N), at the undeformed robot, Eq. (T22.2)."""
+    system, robot = at.locked.system, at.locked.robot
+    states: RestStates = rigid_rest(system, robot, path)
+    legs, payload = inertia_forces(system, robot, states, path, at.locked.acts.wrench)
+    return np.concatenate([legs.reshape(len(path), -1), payload], axis=1)

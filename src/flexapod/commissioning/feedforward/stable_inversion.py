@@ -1,0 +1,171 @@
+"""Commands of a robot that make up for its elastic motion, before the path begins and after, Eqs. (T22.23)-(T22.24)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flexapod import kinematics
+from flexapod.commissioning.feedforward.modal_path import LinearPath, followed, forces, linear_path
+from flexapod.common.arrays import Array
+from flexapod.kinematics import Law, Poses
+from flexapod.kinematics.trajectory import turning_axes
+from flexapod.model import Study
+from flexapod.solve.statics.stiffness import tool_motion
+
+__all__ = ["Ahead", "elastic_commands"]
+
+POSES = 41  # along the path with what comes before and after
+PERIODS = 4  # of the first mode before and after the path, at first
+MODE, TIMES = 6, 4  # commands reach up to so many times the frequency of that mode
+EACH = 8  # instants in a period of that
+ROUNDS = 3
+ENOUGH = 1e-4  # of the elastic motion: what may be missed
+EDGE = 1e-3  # of the largest command: what may be cut off at the ends
+MOST = 2**15
+SHIFT = 12.0  # time constants in the whole time by which what rings is made to decay
+
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ahead:
+    """Corrections (n, 6) of the pose at even instants ``time`` (n,) [s], 0 where the path begins.
+
+    ``before``, ``after`` (n, 6): what the tool misses without and with them, in coordinates of the pose, by the linear
+    model; ``early``, ``late`` [s]: how long they act before the path and after it.
+    """
+
+    time: Array
+    value: Array
+    before: Array
+    after: Array
+    early: float
+    late: float
+
+
+def elastic_commands(study: Study, moving: float) -> Ahead:
+    """What to add to a path that moves for so long [s], so that the tool of the linear robot does not leave it.
+
+    Elastic motion along the path, matrices as they change, is made up for by the inverse of its transfer in the
+    middle of the path, (T22.23), anew until it is.
+    """
+    middle = linear_path(study, np.array([0.5 * moving]))
+    first, reach = middle.modes.frequency[0, 0], TIMES * np.nanmax(middle.modes.frequency[0, :MODE])
+    pad = PERIODS / first
+    while True:
+        found = _converged(study, middle, moving, pad, reach)
+        cut = max(np.abs(found.value[0]).max(), np.abs(found.value[-1]).max()) / np.abs(found.value).max()
+        if cut < EDGE or len(found.time) > MOST:
+            return found
+        pad *= 2
+
+
+def _converged(study: Study, middle: LinearPath, moving: float, pad: float, reach: float) -> Ahead:
+    whole = moving + 2 * pad
+    count = int(2 ** np.ceil(np.log2(whole * reach * EACH)))
+    time = np.arange(count) * whole / count - pad
+    path = _Path(study, moving, time)
+    shift = SHIFT / whole
+    s = (2j * np.pi * np.fft.rfftfreq(count, whole / count) + shift).astype(complex)
+    inverse = _inverse(study, middle, 0.5 * moving, s, reach)
+    fading = np.exp(-shift * (time - time[0]))[:, None]  # of what still rings at the end nothing is left
+    before = path.elastic(np.zeros((count, 6)))
+    value = -path.at_rest() * path.window[:, None]
+    missed = path.elastic(value)
+    for _ in range(ROUNDS):
+        wrong = np.fft.rfft(fading * (value + missed), axis=0)
+        trial = value - np.fft.irfft(np.einsum("fij,fj->fi", inverse, wrong), count, axis=0) / fading
+        trial = trial * path.window[:, None]
+        after = path.elastic(trial)
+        if _size(trial + after) > _size(value + missed):
+            break
+        value, missed = trial, after
+        if _size(value + missed) < ENOUGH * _size(before):
+            break
+    acting = np.flatnonzero(np.abs(value).max(axis=1) > EDGE * np.abs(value).max())
+    early, late = float(-time[acting[0]]), float(time[acting[-1]] - moving)
+    return Ahead(
+        time=time, value=value, before=before, after=value + missed, early=max(0.0, early), late=max(0.0, late)
+    )
+
+
+def _size(missed: Array) -> float:
+    return float(np.linalg.norm(missed))
+
+
+class _Path:
+    """A study's path with time before and after it, and the elastic motion of the robot on it."""
+
+    def __init__(self, study: Study, moving: float, time: Array) -> None:
+        self.study, self.time, self.moving, self.start = study, time, moving, float(time[0])
+        shifted = np.linspace(0.0, time[-1] - self.start, POSES)
+        self.at = linear_path(study, shifted, self._poses(Law(*(np.zeros((POSES, 6)),) * 3), shifted))
+        ramp = np.clip(np.minimum(time - time[0], time[-1] - time) / (0.1 * -self.start), 0.0, 1.0)
+        self.window = ramp**3 * (10 - 15 * ramp + 6 * ramp**2)
+
+    def law(self, t: Array) -> Law:
+        """The path's own coordinates at instants from the beginning of the time before it."""
+        return kinematics.coordinates(self.study.motion, np.clip(t + self.start, 0.0, self.moving))
+
+    def _poses(self, added: Law, t: Array) -> Poses:
+        own, inside = self.law(t), ((t + self.start >= 0) & (t + self.start <= self.moving))[:, None]
+        whole = Law(own.position, np.where(inside, own.rate, 0.0), np.where(inside, own.acceleration, 0.0))
+        law = Law(*(x + y for x, y in zip(whole, added, strict=True)))
+        return kinematics.poses_of_law(self.study.robot, self.study.motion, law, t)
+
+    def at_rest(self) -> Array:
+        """What the inertia of the path bends the robot by, without motion of its own, (n, 6)."""
+        from scipy.interpolate import CubicSpline
+
+        shifted, none = self.time - self.start, np.zeros((len(self.time), 6))
+        parts = self.at.flat, self.at.K, _pose_rows(self.study, self.at)
+        flat, K, rows = (CubicSpline(self.at.time, part)(shifted) for part in parts)
+        f = forces(self.at, self._poses(Law(none, none, none), shifted))
+        there = (rows @ np.linalg.solve(K, -flat.swapaxes(1, 2) @ f[..., None]))[..., 0]
+        there[:, 3:] = np.linalg.solve(turning_axes(self.law(shifted).position[:, 3:]), there[:, 3:, None])[..., 0]
+        return there
+
+    def elastic(self, value: Array) -> Array:
+        """Elastic motion (n, 6) of the pose, in coordinates about the pivot, commands `value` (n, 6) added."""
+        from scipy.interpolate import CubicSpline, make_interp_spline
+
+        shifted = self.time - self.start
+        curve = make_interp_spline(shifted, value, k=5)
+        first, second = curve.derivative(), curve.derivative(2)
+
+        def acting(t: Array) -> Array:
+            return forces(self.at, self._poses(Law(curve(t), first(t), second(t)), t))[..., None]
+
+        edges, x = followed(self.at, acting, len(self.time))
+        to = CubicSpline(self.at.time, _pose_rows(self.study, self.at))(edges)
+        there = np.einsum("txd,td->tx", to, x[:, 0, :, 0])
+        there[:, 3:] = np.linalg.solve(turning_axes(self.law(edges).position[:, 3:]), there[:, 3:, None])[..., 0]
+        return CubicSpline(edges, there)(shifted)
+
+
+def _pose_rows(study: Study, at: LinearPath) -> Array:
+    """Displacement of the pivot and rotation, world axes, by independent motions (P, 6, d)."""
+    system, robot = at.locked.system, at.locked.robot
+    at_pivot = robot.replace(payload=robot.payload.replace(tool=study.motion.pivot))
+    hub = at.flat[:, system.legs * system.n :]
+    return tool_motion(at_pivot, at.locked.equilibria.states.pose) @ hub
+
+
+def _inverse(study: Study, at: LinearPath, instant: float, laplace: Complex, reach: float) -> Complex:
+    """Pose to command by the pose that is wanted (f, 6, 6) about one pose of the path, up to a reach, Eq. (T22.24)."""
+    now = kinematics.coordinates(study.motion, np.array([instant]))
+    none, each = np.zeros((6, 6)), np.eye(6)
+    law = Law(np.repeat(now.position, 6, axis=0), none, each)
+    bend = forces(at, kinematics.poses_of_law(study.robot, study.motion, law, np.full(6, instant)))
+    force, rows = at.flat[0].T @ bend.T, _pose_rows(study, at)[0]
+    rows[3:] = np.linalg.solve(turning_axes(now.position[:, 3:])[0], rows[3:])
+    found, hz = np.zeros((len(laplace), 6, 6), dtype=complex), laplace.imag / (2 * np.pi)
+    for k in np.flatnonzero(hz < reach):
+        s = laplace[k]
+        x = np.linalg.solve(s**2 * at.M[0] + s * at.D[0] + at.K[0], -(s**2) * force)
+        fade = 0.5 * (1 + np.cos(np.pi * np.clip(2 * hz[k] / reach - 1, 0.0, 1.0)))
+        found[k] = fade * np.linalg.inv(np.eye(6) + rows @ x)
+    return found

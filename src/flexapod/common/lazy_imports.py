@@ -1,0 +1,122 @@
+"""Imports without searches for garbage, which would take a third of the time of a short process."""
+
+from __future__ import annotations
+
+import atexit
+import gc
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from importlib import import_module
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+from typing import Any
+
+__all__ = ["FormerPaths", "later", "lazy", "loaded", "without"]
+
+WINGS = frozenset(
+    "analysis app commissioning common control design examples kinematics mechanics model output solve "
+    "verification".split()
+)
+#: Packages that keep a name of their own beside the place where they stand: no remark.
+SHOWN = {"flexapod.plot": "flexapod.output.figures", "flexapod.study": "flexapod.analysis"}
+
+atexit.register(gc.freeze)  # the search as the interpreter ends would look at every module again
+
+
+def loaded(name: str) -> ModuleType:
+    """Import a module; what it makes goes to the oldest generation at once, as it stays for the life of the process."""
+    if name in sys.modules:  # garbage that is there by now is to be found, and not to grow old with the modules
+        return import_module(name)
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        return import_module(name)
+    finally:
+        if not gc.get_freeze_count():
+            gc.freeze()
+            gc.unfreeze()  # into the oldest generation
+        if collecting:
+            gc.enable()
+
+
+def later(package: str, homes: Mapping[str, Sequence[str]]) -> Callable[[str], object]:
+    """What a package has for `__getattr__`: its names, by the modules that they live in, load on first use."""
+    module_of = {name: module for module, names in homes.items() for name in names}
+
+    def found(name: str) -> object:
+        if name not in module_of:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        value = getattr(loaded(module_of[name]), name)
+        setattr(sys.modules[package], name, value)
+        return value
+
+    return found
+
+
+class lazy(ModuleType):
+    """A module that is imported with the first name that is asked of it."""
+
+    def __getattr__(self, name: str) -> Any:
+        value = getattr(loaded(self.__name__), name)
+        setattr(self, name, value)
+        return value
+
+
+class FormerPaths:
+    """Finds modules of the package by the paths that they had one release ago: the same modules, with a remark.
+
+    Of packages that are gone at the front of `sys.meta_path`, as a module that is found twice would be made twice, its
+    classes with it; of packages that are still there at the end, where nothing else was found.
+    """
+
+    def __init__(self, *, gone: bool) -> None:
+        self.gone = gone
+
+    def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
+        """Spec of a module of the package under a former path; None of all others."""
+        if not name.startswith("flexapod.") or (name.split(".", 2)[1] in WINGS) == self.gone:
+            return None
+        if (now := SHOWN.get(name)) is None:
+            from flexapod.common.former_paths import new_path
+
+            if (now := new_path(name)) is None or now == name:
+                return None
+            import warnings
+
+            warnings.warn(f"{name} is {now} now", FutureWarning, stacklevel=2)
+        return ModuleSpec(name, _Former(loaded(now)))  # type: ignore[arg-type]  # all that a loader needs
+
+
+class _Former:
+    """Gives a module that is there under another name, as it is."""
+
+    def __init__(self, module: ModuleType) -> None:
+        self._module, self._spec = module, module.__spec__
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        """Take the module itself."""
+        return self._module
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Leave the module as it says that it is."""
+        module.__spec__ = self._spec
+
+
+@contextmanager
+def without(name: str) -> Iterator[None]:
+    """Let a package that is not needed seem absent, so that xarray does not import it to look for its types.
+
+    Where xarray is there already it may have found the package, and would not look again.
+    """
+    absent = name not in sys.modules and "xarray" not in sys.modules
+    if absent:
+        sys.modules[name] = None  # type: ignore[assignment]  # imports of it then fail at once
+    try:
+        yield
+    finally:
+        if absent:
+            del sys.modules[name]
+
+
+sys.meta_path[:] = [FormerPaths(gone=True), *sys.meta_path, FormerPaths(gone=False)]

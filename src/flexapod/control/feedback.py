@@ -1,0 +1,204 @@
+"""Systems closed by controllers, with what enters at the sensors, (T21.20)-(T21.21), (T21.46)-(T21.47)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
+
+import numpy as np
+
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError
+from flexapod.control.channels import NOISE, RATE, chosen
+
+if TYPE_CHECKING:
+    from flexapod.control.state_space import StateSpace
+
+__all__ = ["CONTROL", "OnChannels", "closed", "law_of", "noise_names", "opened", "units_with"]
+
+CONTROL = "control:"  # before the name of an actuator: what the controller asks of it
+SINGULAR = 1e-12  # distance of a direct gain around a loop from 1 at which nothing says where it ends
+
+
+@dataclass(frozen=True, kw_only=True)
+class Readings:
+    """What a controller reads: C x + D u + D_rate u', errors of sensors among the inputs, new ones by `names`.
+
+    ``C`` (readings, n); ``D``, ``D_rate`` (readings, m + new).
+    """
+
+    C: Array
+    D: Array
+    D_rate: Array
+    names: tuple[str, ...]
+
+
+def noise_names(readings: Sequence[str], inputs: Sequence[str]) -> list[str]:
+    """Inputs for errors of the sensors that are read, plainly or by their rate, without those that are there."""
+    names = dict.fromkeys(NOISE + name.removeprefix(RATE) for name in readings)
+    return [name for name in names if name not in inputs]
+
+
+def _readings(system: StateSpace, readings: tuple[str, ...]) -> Readings:
+    """Outputs by their names, rates of outputs and of their errors exactly, Eqs. (T21.20), (T21.46).
+
+    Raises
+    ------
+    InputError
+        A rate of what jumps with an input.
+    """
+    new = noise_names(readings, system.inputs)
+    every = [*system.inputs, *new]
+    plain = [name.removeprefix(RATE) for name in readings]
+    rows = [chosen(name, system.outputs, "sensor")[0] for name in plain]
+    C, D, D_rate = np.array(system.C[rows]), *np.zeros((2, len(rows), len(every)))
+    D[:, : len(system.inputs)] = system.D[rows]
+    if system.D_rate is not None:
+        D_rate[:, : len(system.inputs)] = system.D_rate[rows]
+    errors = np.array([name.startswith(NOISE) for name in every])
+    for i, name in enumerate(readings):
+        if name.startswith(RATE):
+            jumps = bool(D[i, ~errors].any() or D_rate[i].any())
+            if system.sample is not None or jumps:
+                raise InputError(
+                    "has no rate: it jumps with an input" if jumps else "has no rate between samples",
+                    key="sensor",
+                    value=plain[i],
+                    next_step="Give the controller a low_pass",
+                )
+            D_rate[i] = D[i]
+            C[i], D[i] = C[i] @ system.A, _extended(C[i : i + 1] @ system.B, len(new))[0]
+        (D_rate if name.startswith(RATE) else D)[i, every.index(NOISE + plain[i])] += 1.0
+    return Readings(C=C, D=D, D_rate=D_rate, names=tuple(new))
+
+
+def _extended(matrix: Array, new: int) -> Array:
+    """A matrix with further columns of 0."""
+    return np.hstack([matrix, np.zeros((len(matrix), new))])
+
+
+@runtime_checkable
+class OnChannels(Protocol):
+    """What finds its channels among those of a system, as `controllers.Controller`."""
+
+    def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str]) -> StateSpace:
+        """The law between channels."""
+        ...
+
+
+def law_of(
+    controller: OnChannels | StateSpace, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str]
+) -> StateSpace:
+    """A controller between channels of a system; a state space is one itself, with channels that the system has."""
+    if isinstance(controller, type) or not (isinstance(controller, OnChannels) or hasattr(controller, "A")):
+        raise InputError(
+            "is no controller", key="controller", value=controller,
+            allowed="one of flexapod.control, as IFF(100.0), or a StateSpace",
+        )  # fmt: skip
+    if isinstance(controller, OnChannels):
+        return controller.on(outputs, inputs, units)
+    for name in controller.inputs:
+        chosen(name.removeprefix(RATE), outputs, "sensor")
+    for name in controller.outputs:
+        chosen(name, inputs, "actuator")
+    return controller
+
+
+def opened(system: StateSpace, controller: StateSpace) -> tuple[Array, Array, Array, Array]:
+    """A, B, C, D from the actuators through system and controller back to them, the loop cut there."""
+    at = [chosen(name, system.inputs, "actuator")[0] for name in controller.outputs]
+    read = _readings(system, controller.inputs)
+    A = np.block([[system.A, np.zeros((len(system.A), len(controller.A)))], [controller.B @ read.C, controller.A]])
+    B = np.vstack([system.B[:, at], controller.B @ read.D[:, at]])
+    return A, B, np.hstack([controller.D @ read.C, controller.C]), controller.D @ read.D[:, at]
+
+
+def closed(system: StateSpace, controller: StateSpace) -> StateSpace:
+    """The system with u = r + K (y + w), Eq. (T21.21): inputs r and w, outputs y and what the controller asks for.
+
+    Raises
+    ------
+    InputError
+        Sample times that differ, no such channel, or a loop without any state in it that has no answer.
+    """
+    if system.sample != controller.sample:
+        words = f"of the controller is {controller.sample}, of the system {system.sample}"
+        raise InputError(f"differs: that {words}", key="sample", next_step="Sample both with .sampled(period)")
+    if controller.D_rate is not None:
+        raise InputError(
+            "answers the rate of one of its inputs", key="controller", value=controller,
+            next_step="Give the loop inside it a low_pass, or .select other channels of it",
+        )  # fmt: skip
+    at = [chosen(name, system.inputs, "actuator")[0] for name in controller.outputs]
+    read = _readings(system, controller.inputs)
+    new = len(read.names)
+    names = (*system.inputs, *read.names)
+    B, D = _extended(system.B, new), _extended(system.D, new)
+    D_rate = np.zeros(D.shape) if system.D_rate is None else _extended(system.D_rate, new)
+    puts = np.eye(len(names))[:, at]
+    through = puts @ controller.D
+    if np.abs(1.0 - np.linalg.eigvals(controller.D @ read.D[:, at])).min(initial=1.0) < SINGULAR:
+        raise InputError(
+            "feeds a sensor straight through to the actuator that moves it",
+            key="controller",
+            allowed="a direct gain times the sensor's direct response other than 1",
+        )
+    # (T21.21)  u = r + P (Ck xk + Dk (Cy x + Dy u + Dy' u')), r with the errors of sensors
+    by_x, by_k, by_r, by_rate = (
+        np.linalg.solve(np.eye(len(names)) - through @ read.D, matrix)
+        for matrix in (through @ read.C, puts @ controller.C, np.eye(len(names)), through @ read.D_rate)
+    )
+    A = np.block(
+        [
+            [system.A + B @ by_x, B @ by_k],
+            [controller.B @ (read.C + read.D @ by_x), controller.A + controller.B @ read.D @ by_k],
+        ]
+    )
+    own = np.hstack([system.C + D @ by_x, D @ by_k, D @ by_r, D_rate + D @ by_rate])
+    asked: Array = np.hstack([by_x[at], by_k[at], by_r[at] - puts.T, by_rate[at]]).astype(np.float64)
+    outputs, rows = _asked_for(system, controller, own, asked)
+    C, D, D_rate = np.split(rows, [len(A), len(A) + len(names)], axis=1)
+    # (T21.47)  states less what rates of inputs add to them
+    ahead = np.vstack([B @ by_rate, controller.B @ (read.D @ by_rate + read.D_rate)])
+    return replace(
+        system.select(),
+        A=A,
+        B=np.vstack([B @ by_r, controller.B @ read.D @ by_r]) + A @ ahead,
+        C=C,
+        D=D + C @ ahead,
+        D_rate=D_rate,
+        inputs=names,
+        outputs=outputs,
+        states=(*system.states, *_fresh(controller.states, system.states)),
+        units=units_with(system.units, (*names, *outputs)),
+    )
+
+
+def _asked_for(system: StateSpace, controller: StateSpace, rows: Array, asked: Array) -> tuple[tuple[str, ...], Array]:
+    """Outputs with what the controllers ask of actuators; of an inner and an outer loop the sum."""
+    outputs = list(system.outputs)
+    for name, row in zip(controller.outputs, asked, strict=True):
+        own = CONTROL + name
+        if own in outputs:
+            rows[outputs.index(own)] += row
+        else:
+            outputs.append(own)
+            rows = np.vstack([rows, row])
+    return tuple(outputs), rows
+
+
+def _fresh(names: tuple[str, ...], taken: tuple[str, ...]) -> list[str]:
+    known = set(taken)
+    loop = next(k for k in range(1, len(known) + 2) if not any(f"loop {k} {name}" in known for name in names))
+    return [f"loop {loop} {name}" for name in names]
+
+
+def units_with(units: Mapping[str, str], names: Sequence[str]) -> dict[str, str]:
+    """Units with those of noises and of what controllers ask for: of the channels that they belong to."""
+    found = dict(units)
+    for name in names:
+        plain = name.removeprefix(NOISE).removeprefix(CONTROL)
+        if name not in found and plain in found:
+            found[name] = found[plain]
+    return found

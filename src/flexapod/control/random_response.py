@@ -1,0 +1,112 @@
+"""Random vibration of any outputs of a linear system: the integral of `flexapod.vibration`, (T18.6)-(T18.11)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flexapod.common.arrays import Array, floats
+from flexapod.common.errors import InputError
+from flexapod.control.channels import chosen
+from flexapod.control.integrators import moved_and_shown
+from flexapod.model.study.disturbance import Disturbance, Floor, Spectrum, check_density
+from flexapod.solve.linear.random_vibration import FLOOR_RATES, SOURCES, RandomVibration, Source, with_error
+
+if TYPE_CHECKING:
+    from flexapod.control.state_space import StateSpace
+
+__all__ = ["Sources", "shaken"]
+
+Complex = NDArray[np.complex128]
+
+#: A disturbance of a study, or one-sided spectra by channel or group: tables of a study, or (frequency [Hz], density).
+Sources = Disturbance | Mapping[str, Floor | Spectrum | tuple[ArrayLike, ArrayLike]]
+#: Groups of inputs by the field of a disturbance.
+EXAMPLE = "spectra by channel: {'wrench:fz': (frequencies [Hz], densities)}"
+GROUPS = {"floor": "floor", "wrench": "wrench", "force_noise": "drive"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class OutputsAsModes:
+    """What an integral over frequency asks of a linear system: outputs stand in place of modes."""
+
+    system: StateSpace
+
+    @property
+    def omega(self) -> Array:
+        """As many numbers as outputs."""
+        return np.ones(len(self.system.outputs))
+
+    @property
+    def tool(self) -> Array:
+        """Outputs by themselves."""
+        return np.eye(len(self.system.outputs))
+
+    def poles(self, rate: float) -> Complex:
+        """Poles [1/s] of what inputs move and outputs show."""
+        return np.linalg.eigvals(moved_and_shown(self.system.A, self.system.B, self.system.C)[0]).astype(complex)
+
+    def amplitudes(self, frequency: Array, forces: Array) -> Complex:
+        """Outputs (f, p, k) at frequencies [Hz] under inputs (m, k)."""
+        return np.moveaxis(self.system.at(frequency), 2, 0) @ forces
+
+
+def shaken(system: StateSpace, sources: Sources) -> tuple[RandomVibration, float]:
+    """Vibration of all outputs, and the error of the integral over frequency that is estimated, relative."""
+    if system.sample is not None:
+        raise InputError("is of samples: spectra need a continuous system", key="sample", value=system.sample)
+    every = _sources(system, sources)
+    used = system.select([system.inputs[i] for i in np.flatnonzero(sum(abs(s.forces).sum(axis=1) for s in every))])
+    every = [
+        Source(
+            name=one.name,
+            forces=one.forces[[system.inputs.index(name) for name in used.inputs]],
+            frequency=one.frequency,
+            density=one.density,
+            rates=one.rates,
+        )
+        for one in every
+    ]
+    return with_error(OutputsAsModes(system=used), every)
+
+
+def _sources(system: StateSpace, given: Sources) -> list[Source]:
+    """Sources with what each of their columns moves, (inputs, columns)."""
+    if isinstance(given, Disturbance):
+        tables = {field: getattr(given, field) for field in GROUPS}
+        return [_source(system, SOURCES[f], GROUPS[f], table) for f, table in tables.items() if table is not None]
+    if not isinstance(given, Mapping) or not given:
+        words = "is empty: nothing shakes" if given is None or isinstance(given, Mapping) else "are none"
+        raise InputError(words, key="sources", value=given, allowed=EXAMPLE)
+    return [_source(system, name, name, table) for name, table in given.items()]
+
+
+def _source(system: StateSpace, name: str, group: str, table: Floor | Spectrum | tuple[ArrayLike, ArrayLike]) -> Source:
+    places = chosen(group, system.inputs, "sources")
+    rates = FLOOR_RATES[table.of] if isinstance(table, Floor) else 0
+    if isinstance(table, tuple):
+        try:
+            frequency, density = map(floats, table)
+        except ValueError:
+            raise InputError("is no spectrum", key=f"sources[{name}]", value=table, allowed=EXAMPLE) from None
+        density = density[:, None] if density.ndim == 1 else density
+        check_density(frequency, density)
+    else:
+        if not isinstance(table, Floor | Spectrum):
+            raise InputError("is no spectrum", key=f"sources[{name}]", value=table, allowed=EXAMPLE)
+        frequency, density = table.frequency, table.density
+    columns = density.shape[1]
+    if isinstance(table, Floor):
+        places = places[:columns]  # along x, y, z; not about them
+    if columns not in (1, len(places)):
+        raise InputError(
+            f"has {columns} columns", key=f"sources[{name}]", allowed=f"1, or {len(places)}: one for each of {group}"
+        )
+    forces = np.zeros((len(system.inputs), len(places)))
+    forces[places, np.arange(len(places))] = 1.0
+    density = np.broadcast_to(density, (len(frequency), len(places)))
+    return Source(name=name, forces=forces, frequency=frequency, density=density, rates=rates)

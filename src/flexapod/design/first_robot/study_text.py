@@ -1,0 +1,168 @@
+"""The study file of a first robot: every value with its reason."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from textwrap import wrap
+from typing import Protocol
+
+from flexapod import model
+from flexapod.design.first_robot import sizing
+from flexapod.design.first_robot.sizing import Body, Joints, Request, SizedLeg
+from flexapod.model import MATERIALS
+
+WIDTH = 110  # of a comment
+
+
+class Parts(Protocol):
+    """What legs are made of, where they are more than ideal."""
+
+    sources: tuple[str, ...]
+
+    def leg(self, plan: Plan) -> list[str]:
+        """The table of the legs."""
+        ...
+
+    def tables(self, plan: Plan) -> list[str]:
+        """Further tables, each behind an empty line: how warm and how exact the machine is."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plan:
+    """All that the file says: request, joints, payload's body, leg, `amplitude` [m or rad] and `duration` [s].
+
+    `parts`: None of ideal joints and drives; `slow`: why the motion takes as long.
+    """
+
+    request: Request
+    joints: Joints
+    body: Body
+    leg: SizedLeg
+    amplitude: float
+    duration: float
+    parts: Parts | None = None
+    slow: str = "joints of the platform accelerate by 1 m/s^2 at most"
+
+
+def written(plan: Plan) -> str:
+    """The commented study file."""
+    asked = ", ".join(f"{key}={value}" for key, value in plan.request.texts.items())
+    parts = plan.parts
+    return "\n".join([
+        *words(f'A first robot, from "{asked}".'),
+        *words(
+            "Values are marked as given, computed or chosen, with the reason. It is a beginning: put in what you know "
+            "better, then `flexapod check` says what it means. Numbers are in SI units; text carries its unit."
+        ),
+        *(line for source in (parts.sources if parts else ()) for line in words(source)),
+        "", *_robot(plan), "", *_payload(plan.body), "", *(parts.leg(plan) if parts else _leg(plan)), "",
+        *_motion(plan), "", *(parts.tables(plan) if parts else ()),
+        "[simulation]",
+        'fidelity = "assumed-modes"   # legs bend and stretch; "lumped" (stretch only) is faster',
+        "modes = 3                    # shapes per lateral plane; `flexapod converge` says which number will do",
+        'tolerance = 1e-4             # relative error of the step control; or step = "0.5 ms"',
+        "",
+    ])  # fmt: skip
+
+
+def words(text: str) -> list[str]:
+    """Lines of comment."""
+    return [f"# {line}" for line in wrap(text, WIDTH)]
+
+
+def given(value: object, computed: str) -> str:
+    """Whether a value was given, or how it was computed."""
+    return "given" if value else f"computed, {computed}"
+
+
+def _robot(plan: Plan) -> list[str]:
+    request, joints = plan.request, plan.joints
+    base = given(request.base, f"{sizing.BASE:g} of the home height: legs lean and hold sideways as well")
+    platform = given(request.platform, f"{sizing.PLATFORM:g} of the base's radius")
+    angle = f'half_angle = "{sizing.HALF_ANGLE:g} deg"'
+    return [
+        "[robot]",
+        'type = "6-UPS"               # universal joint on the base, prismatic leg, spherical joint on the platform',
+        f'base     = {{ radius = "{length(joints.base)}", {angle} }}   # {base}',
+        f'platform = {{ radius = "{length(joints.platform)}", {angle} }}   # {platform}',
+        *words("half_angle: chosen, joints in close pairs are far from the singular arrangement at 30 deg"),
+        f'home_height = "{length(joints.height)}"   # given; legs are then {1e3 * joints.length:.4g} mm long',
+        "gravity = [0, 0, -9.81]      # m/s^2, z up",
+    ]
+
+
+def _payload(body: Body) -> list[str]:
+    moments = ", ".join(f"{moment:.4g}" for moment in body.inertia)
+    density = body.mass / (math.pi * body.radius**2 * body.height)
+    shape = f"{length(2 * body.radius)} wide and {length(body.height)} high ({density:.3g} kg/m^3)"
+    return [
+        "[payload]                    # the platform and all it carries",
+        f'mass = "{body.mass:.10g} kg"   # given',
+        *words(f"inertia, com, tool: computed for a solid cylinder that stands on the platform, {shape}"),
+        f"inertia = [{moments}]   # kg m^2 about the centre of mass",
+        f'com = [0, 0, "{length(body.height / 2)}"]   # the middle, from the platform\'s centre',
+        f'tool = [0, 0, "{length(body.height)}"]   # the top: the point you care about',
+    ]
+
+
+def _leg(plan: Plan) -> list[str]:
+    request, leg = plan.request, plan.leg
+    mass, com, inertia = sizing.cylinder_of(leg, MATERIALS[request.material].density)
+    diameter = given(
+        request.diameter,
+        f"the thinnest rod of the series of ISO 3320 that is {sizing.SAFETY:g} times safe against buckling at its "
+        f"longest, and against yield, and is no longer outside than {sizing.SLENDER:g} times its width",
+    )
+    stroke = given(request.stroke, f"{sizing.STROKE:g} of the home height")
+    return [
+        "[leg]                        # all six legs alike; write [[leg]] six times for unequal ones",
+        f'cylinder = {{ mass = "{mass:.4g} kg", com = "{length(com)}", inertia = {inertia:.4g}, '
+        f'mouth = "{length(leg.mouth)}" }}',
+        *words(
+            f"mouth: computed, {sizing.MOUTH:g} of the leg at home, but as deep as the piston needs when drawn in, and "
+            "two widths of the piston stay outside"
+        ),
+        *words(
+            f"mass, com, inertia: computed for a tube of {request.material} from the base joint to the mouth, twice as "
+            "wide as the piston"
+        ),
+        f'piston = {{ diameter = "{length(leg.diameter)}", length = "{length(leg.piston)}", '
+        f'material = "{request.material}" }}',
+        *words(f"diameter: {diameter}"),
+        *words("length: computed, as far as it comes out and two widths that stay guided"),
+        *words(material_words(request)),
+        f'stroke = {{ min = "{length(leg.shortest)}", max = "{length(leg.longest)}" }}   # joint to joint',
+        *words(f"stroke: {stroke}; half of it either way from home"),
+        "damping = 0.005              # chosen: 0.5 % of the critical one is usual for bare metal",
+        'drive = { type = "prescribed" }  # chosen: the stroke follows its command exactly; or "servo", "force"',
+    ]
+
+
+def material_words(request: Request) -> str:
+    """Who chose the material."""
+    others = ", ".join(name for name in MATERIALS if name != request.material)
+    return f"material: {'given' if 'material' in request.texts else f'chosen, or {others}'}"
+
+
+def _motion(plan: Plan) -> list[str]:
+    request = plan.request
+    turning = request.motion in model.AXES[3:]
+    amplitude = f"{math.degrees(plan.amplitude):.6g} deg" if turning else length(plan.amplitude)
+    others = " ".join(axis for axis in model.AXES if axis != request.motion)
+    seconds = f'"{plan.duration:.6g} s"'
+    slow = given(request.duration, plan.slow)
+    return [
+        "[motion]",
+        f'type = "{request.motion}"   # {"given" if "motion" in request.texts else "chosen"}; or {others}',
+        f'amplitude = "{amplitude}"   # computed, {100 * sizing.SHARE:g} % of what the stroke allows from home',
+        f"duration = {seconds}   # {slow}",
+        f"hold = {seconds}   # as long: shows the vibration after the motion",
+        'profile = "quintic"          # from rest to rest with a continuous acceleration',
+    ]
+
+
+def length(value: float) -> str:
+    """A length in m or mm."""
+    return f"{value:.10g} m" if value >= 1 else f"{1e3 * value:.10g} mm"

@@ -1,0 +1,1 @@
+"""The equations: one file for each chapter part of docs/theory."""

@@ -1,0 +1,72 @@
+"""What carries a base joint: a slider on a rail or a crank on a shaft, Eqs. (T13.1)-(T13.3)."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import TYPE_CHECKING
+
+from flexapod.mechanics.elements.frames import Energies, Frame
+from flexapod.mechanics.elements.rotations import about_axis
+from flexapod.mechanics.symbolic.vocabulary import cross, dot, matrix33, zeros
+
+if TYPE_CHECKING:
+    from flexapod.mechanics.symbolic.vocabulary import SX
+
+
+def carriage(
+    kind: str, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace, base: Frame | None = None
+) -> tuple[Frame, Energies]:
+    """Frame in which the base joint stands, and the energies of what carries it; ``kind``: "", "slider", "crank".
+
+    ``base``: frame of a base that moves, at the origin while it is where it is drawn.
+    """
+    if base is not None:
+        return _on_moving_base(kind, p, qs, vs, base)
+    R0 = matrix33(p.R0)
+    if not kind:
+        return Frame(origin=p.base, axes=R0, velocity=zeros(3), omega=zeros(3)), Energies()
+    axis = p.carriage_axis
+    if kind == "slider":
+        frame = Frame(  # (T13.1)
+            origin=p.base + axis * qs.chi, axes=R0, velocity=R0.T @ axis * vs.chi, omega=zeros(3)
+        )
+        return frame, Energies(
+            kinetic=0.5 * p.carriage_mass * vs.chi**2, gravity=-p.carriage_mass * dot(p.gravity, frame.origin)
+        )
+    turn = about_axis(axis, qs.chi)
+    axes, arm, shaft = turn @ R0, turn @ p.carriage_arm, p.base - p.carriage_arm
+    frame = Frame(  # (T13.2)
+        origin=shaft + arm,
+        axes=axes,
+        velocity=axes.T @ cross(axis, arm) * vs.chi,
+        omega=R0.T @ axis * vs.chi,
+    )
+    weight = -p.carriage_mass * dot(p.gravity, shaft + turn @ p.carriage_com)
+    return frame, Energies(kinetic=0.5 * p.carriage_inertia * vs.chi**2, gravity=weight)  # (T13.3)
+
+
+def _on_moving_base(
+    kind: str, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace, base: Frame
+) -> tuple[Frame, Energies]:
+    """The same on a base that moves, Eq. (T24.4)."""
+
+    def home(frame: Frame) -> Frame:
+        return frame.turned(matrix33(p.R0), zeros(3))
+
+    if not kind:
+        return home(base.moved(p.base, zeros(3))), Energies()
+    axis, mass = p.carriage_axis, p.carriage_mass
+    if kind == "slider":
+        frame = base.moved(p.base + axis * qs.chi, axis * vs.chi)
+        return home(frame), _body(frame, mass, p.gravity)
+    shaft = base.moved(p.base - p.carriage_arm, zeros(3)).turned(about_axis(axis, qs.chi), axis * vs.chi)
+    centre = shaft.moved(p.carriage_com, zeros(3))
+    about = p.carriage_inertia - mass * dot(p.carriage_com, p.carriage_com)
+    spin = Energies(kinetic=0.5 * about * dot(axis, shaft.omega) ** 2)
+    return home(shaft.moved(p.carriage_arm, zeros(3))), _body(centre, mass, p.gravity) + spin
+
+
+def _body(frame: Frame, mass: SX, gravity: SX) -> Energies:
+    """A mass at the origin of a frame."""
+    kinetic = 0.5 * mass * dot(frame.velocity, frame.velocity)
+    return Energies(kinetic=kinetic, gravity=-mass * dot(gravity, frame.origin))

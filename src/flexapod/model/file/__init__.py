@@ -1,0 +1,1 @@
+"""A study as a file: presets, key paths, reference, JSON schema."""

@@ -1,0 +1,1 @@
+"""A leg as written: cylinder, piston, joints, drive, friction, damping."""

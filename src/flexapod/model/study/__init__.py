@@ -1,0 +1,1 @@
+"""A study as written: robot, payload, control, settings."""

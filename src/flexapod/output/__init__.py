@@ -1,0 +1,1 @@
+"""What people read and send on: text, figures, report, scene, exchange."""

@@ -1,0 +1,157 @@
+"""The standard figures of a run, drawn and stored."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from flexapod import model
+from flexapod.analysis.results.attributes import carried_study, robot_of
+from flexapod.analysis.results.element_outputs import of_elements
+from flexapod.analysis.results.summary import tool_apart
+from flexapod.common.files import scratch
+from flexapod.common.processes import started
+from flexapod.common.quantities import capital
+from flexapod.output.scene.geometry import DrawnMotion
+from flexapod.output.scene.style import drives
+from flexapod.output.text.budget import peak_budget
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from xarray import Dataset
+
+FAST = 3  # level of deflating: half the time of the usual one, a quarter more bytes
+_Plan = tuple[str, str, Callable[[], "Figure"]]
+
+
+class Drawn(NamedTuple):
+    """A figure: its name and title, for a page its picture (PNG) and its curves, if it has any; its files."""
+
+    name: str
+    title: str
+    picture: bytes
+    plot: dict[str, Any] | None = None
+    files: tuple[Path, ...] = ()
+
+    @property
+    def png(self) -> Path:
+        """Its PNG file, where one was asked for."""
+        return next(path for path in self.files if path.suffix == ".png")
+
+
+def draw(data: Dataset, folder: str | Path, formats: Sequence[str] = ("png", "svg")) -> list[Drawn]:
+    """Draw the standard figures of a run, whole or partial, in the order of the report.
+
+    `folder` is made if needed, figures of the same name are replaced; `formats` are of png, svg, pdf. InputError: the
+    folder cannot be written to, or a format is unknown.
+    """
+    with drawing(data, folder, formats, 1) as drawn:
+        return drawn()
+
+
+def drawing(
+    data: Dataset, folder: str | Path, formats: Sequence[str], processes: int
+) -> AbstractContextManager[Callable[[], list[Drawn]]]:
+    """The same begun in copies of this process; what the block is given takes part, and waits for them."""
+    plans = list(_robot(data) if "com_deviation" in data else _actuator(data))
+
+    def drawn(plan: _Plan) -> Drawn:
+        name, title, make = plan
+        return store(make(), title, Path(folder) / name, formats)
+
+    return started(drawn, plans, processes)
+
+
+def store(figure: Figure, title: str, stem: Path, formats: Sequence[str] = ("png", "svg")) -> Drawn:
+    """Write a figure as ``stem.png``, ``stem.svg``, ``stem.pdf``, as asked for."""
+    from flexapod.output import figures as plot
+    from flexapod.output.report.plotly_export import interactive
+
+    files = plot.save(figure, stem, formats=formats)
+    if "png" not in formats:
+        with scratch() as folder:
+            plot.save(figure, folder / stem.name, formats=("png",))
+    return Drawn(stem.name, title, _picture(figure), interactive(figure), files)
+
+
+def _picture(figure: Figure) -> bytes:
+    """The drawing of a figure's PNG file in 128 colours: a third of its size, and no difference to the eye.
+
+    Colours are chosen among the first pixels of runs of one colour, a twentieth of them all.
+    """
+    import numpy as np
+    from PIL import Image
+
+    drawn = np.asarray(figure.canvas.buffer_rgba())  # type: ignore[attr-defined]  # of Agg: as last drawn
+    pixels = drawn.view(np.uint32).ravel()
+    starts = np.flatnonzero(np.concatenate([[True], pixels[1:] != pixels[:-1]]))
+    lengths = np.diff(starts, append=len(pixels))
+    colors = pixels[starts].view(np.uint8).reshape(1, -1, 4)[:, :, :3]
+    few = Image.fromarray(np.ascontiguousarray(colors)).quantize(
+        128, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE
+    )
+    chosen = np.asarray(few).ravel()
+    sums = [np.bincount(chosen, lengths * part, 128) for part in (1, *colors[0].T)]
+    mean = np.round(np.array(sums[1:]) / np.maximum(sums[0], 1)).astype(np.uint8)  # of the pixels that it stands for
+    page = Image.fromarray(np.repeat(chosen, lengths).reshape(drawn.shape[:2]))
+    page.putpalette(mean.T.tobytes())
+    made = BytesIO()
+    page.save(made, "PNG", compress_level=FAST)
+    return made.getvalue()
+
+
+def _robot(data: Dataset) -> Iterator[_Plan]:
+    import numpy as np
+
+    from flexapod.output import figures as plot
+
+    found = drives(data)
+    elastic = bool(np.abs(data.com_deviation).max() > 0)
+    axes, held = ("x", "y", "z"), robot_of(data).platform_fixed
+    words = "rigid legs against flexible ones, and the deviation on its own scale"
+    if tool_apart(data):
+        yield "tool-path", f"Path of the tool: {words}", lambda: plot.com_path(data, axes, "tool")
+    if not held:
+        yield "com-path", f"Path of the centre of mass: {words}", lambda: plot.com_path(data, axes)
+    if elastic:
+        yield "deviation-by-cause", "Deviation of the centre of mass by cause", lambda: plot.deviation_by_cause(data)
+    budget = peak_budget(data)
+    if budget is not None:
+        yield "error-budget", "Error budget at rest, at the pose of the largest deviation", lambda: plot.budget(budget)
+    method = "Newton-Euler" if found.plain else "rigid robot"
+    forces = f"Drive {found.word}s: {method} with rigid legs against the multibody model, and their difference"
+    yield "actuator-forces", forces, lambda: plot.actuator_forces(data)
+    place = found.place
+    words = "Leg lengths, and how far the flexible legs are off"
+    words = words if place == "length" else f"{place[0].upper()}{place[1:]}, as commanded"
+    yield "leg-lengths", words, lambda: plot.leg_lengths(data)
+    if np.abs(data.tip_deflection).max() > 0:
+        yield "tip-deflections", "Deflection of the tips across the legs", lambda: plot.tip_deflections(data)
+    for own in of_elements(data):
+        yield own.replace("_", "-"), capital(data[own].attrs["long_name"]), lambda own=own: plot.by_leg(data, own)
+    if not held:
+        yield "motion", "Commanded motion", lambda: plot.motion_law(data)
+    yield "energies", "Energies and their balance", lambda: plot.energies(data)
+    yield "robot", "The robot at the end of the motion; pale: at the start", lambda: plot.robot_3d(data)
+
+
+def _actuator(data: Dataset) -> Iterator[_Plan]:
+    from flexapod.output import figures as plot
+
+    drawn = _seen(data)
+    if drawn is not None and "direction" not in data.tip_deflection.dims:
+        yield "path", "The tip in the plane of motion", lambda: plot.actuator_path(data, *drawn)
+    yield "response", "Deflection of the tip, and the length outside the hub", lambda: plot.actuator_response(data)
+    if "mode_amplitude" in data:
+        yield "amplitudes", "Amplitudes of the shapes", lambda: plot.actuator_modes(data)
+
+
+def _seen(data: Dataset) -> tuple[float, float] | None:
+    """Radius of the hub [m] and the factor of the replay; None where the study cannot be read any more."""
+    study = carried_study(data)
+    if not isinstance(study, model.ActuatorStudy):
+        return None
+    return study.actuator.hub_radius, DrawnMotion(study, data).automatic_scale()

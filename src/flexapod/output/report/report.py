@@ -1,0 +1,209 @@
+"""The report of a run: one self-contained page whose first sentence is the answer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from platform import python_version
+from typing import TYPE_CHECKING
+
+from flexapod.analysis.description.robot_description import describe
+from flexapod.analysis.results.attributes import carried_study
+from flexapod.analysis.results.bodies import bodies_words
+from flexapod.analysis.results.summary import POINT_WORDS, RobotSummary, summaries
+from flexapod.common.errors import FlexapodError
+from flexapod.common.files import scratch, write_text
+from flexapod.common.quantities import text
+from flexapod.output.report.curves import MOST_POINTS
+from flexapod.output.report.figures import Drawn
+from flexapod.output.report.linear import linear_section
+from flexapod.output.text import html
+from flexapod.output.text.answers import distances_table, told_of
+from flexapod.output.text.budget import peak_budget, peak_items
+from flexapod.output.text.html import Html
+from flexapod.output.text.parts import Chapter, Item, Lines, Remarks, Text, TextTable, warnings_of
+from flexapod.output.text.study import modes_section, study_items
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from flexapod.analysis.description.actuator_description import ActuatorDescription
+    from flexapod.analysis.description.robot_description import RobotDescription
+    from flexapod.analysis.results.summary import ActuatorSummary
+    from flexapod.model import ActuatorStudy, Study
+
+SOLVER = {
+    "integrator": "Time integration",
+    "rho_inf": "Spectral radius at infinite frequency",
+    "fidelity": "Fidelity",
+    "basis": "Lateral shapes",
+    "modes": "Shapes per plane",
+    "axial_modes": "Axial shapes",
+    "start": "Start",
+    "compiled": "Compiled equations",
+    "tolerance": "Tolerance of the step control",
+    "estimated_error": "Largest estimated error",
+    "estimated_force_error": "Estimated error of the legs' forces over their peak",
+    "step": "Smallest step (with a tolerance: least mean over some outputs) [s]",
+    "output_step": "Output step [s]",
+    "steps": "Steps",
+    "newton_iterations": "Newton iterations",
+    "factorisations": "Factorisations",
+    "rejected_steps": "Rejected steps",
+    "impact_energy": "Energy step of an impact at the start [J]",
+    "wall_time": "Time of the integration [s]",
+}
+THINNED = (
+    "Drag over a figure to zoom, double-click to see all again; point at a curve to read it. Curves of more than "
+    f"{MOST_POINTS} points are thinned for this page, and keep their least and largest values; the data are whole."
+)
+TITLES = {"linear": "Linear model"}  # of links, where they are not the name
+STILLS = ("robot", "path")  # figures that stand for the replay on paper
+_PACKAGES = ("flexapod", "numpy", "scipy", "casadi", "xarray", "matplotlib", "plotly")
+
+
+def robot_report(study: Study | ActuatorStudy, data: Dataset) -> str:
+    """The report of a robot's or an actuator's run, whole or partial, as text, with figures drawn for it."""
+    from flexapod.output.report.figures import draw
+
+    with scratch() as folder:
+        return _page(study, data, lambda: draw(data, folder, ("png",)))
+
+
+def write_report(data: Dataset, folder: str | Path, figures: Callable[[], Sequence[Drawn]] = tuple) -> Path:
+    """Write ``report.html`` of a robot's or an actuator's run, whole or partial, with drawn `figures`; its path.
+
+    The figures are asked for last. The folder is made if needed; an existing report is replaced when the new one is
+    complete. InputError: the folder cannot be written to.
+    """
+    return write_text(Path(folder) / "report.html", _page(carried_study(data), data, figures))
+
+
+def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[[], Sequence[Drawn]]) -> str:
+    first, *further = summaries(data)
+    described = _described(study)
+    name = Path(str(data.attrs.get("study_file") or "study")).name
+    modes = modes_section(study, described)
+    budget = peak_budget(data) if isinstance(first, RobotSummary) else None
+    moving, others = _replay(study, data, figures)
+    linear = linear_section(study)
+    parts = {"replay": moving, "figures": others, "modes": modes, "linear": linear}
+    numbers = {"deviation": "Deviation"} if isinstance(first, RobotSummary) else {"deflection": "Deflection"}
+    links = {
+        **numbers,
+        **({} if budget is None else {"budget": "Error budget"}),
+        "warnings": "Warnings",
+        "study": "Study",
+    }
+    links |= {part: TITLES.get(part, part.capitalize()) for part, there in parts.items() if there}
+    links |= {"solver": "Solver", "toml": "Study file", "repeat": "Repeat"}
+    body = [
+        *(*(found.sentence for found in further), *bodies_words(data)),
+        *filter(None, told_of(study)),
+        Text(f"Report of {name}, flexapod {data.attrs['flexapod_version']}.", "soft"),
+        html.contents(links),
+        *_partial(data),
+        by_axis(data) if isinstance(first, RobotSummary) else _actuator_numbers(first),
+        *([] if budget is None else [html.section("budget", "Error budget", peak_items(budget))]),
+        warnings_section(data),
+        html.section("study", "What was computed", () if study is None else study_items(study, described)),
+        *moving,
+        *figures_section("figures", "Figures", others),
+        *modes,
+        *linear,
+        html.section("solver", "Solver", [solver_table(data)]),
+        html.section("toml", "Study file", [Lines(str(data.attrs["study"]))]),
+        repeat_section("Save the study file above as study.toml, then", "flexapod run study.toml --out results"),
+    ]
+    return html.page(f"flexapod: {name}", first.sentence, body)
+
+
+def _described(study: Study | ActuatorStudy | None) -> RobotDescription | ActuatorDescription | None:
+    """The study as `flexapod check` describes it; None where it cannot be."""
+    try:
+        return None if study is None else describe(study)
+    except FlexapodError:
+        return None
+
+
+def _replay(
+    study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[[], Sequence[Drawn]]
+) -> tuple[list[Html], list[Drawn]]:
+    """The replay, with the figure that stands for it on paper, and the other figures."""
+    if study is None:
+        return [], list(figures())
+    from flexapod.output.report.replay import locked_modes, replay
+
+    told = replay(study, data, locked_modes(study))
+    drawn = figures()
+    still = next((figure for figure in drawn if figure.name in STILLS), None)
+    return [replay_section(data, told, still)], [figure for figure in drawn if figure is not still]
+
+
+def replay_section(data: Dataset, told: Mapping[str, object], still: Drawn | None) -> Html:
+    """What `flexapod.output.report.replay` tells, and the figure that stands for it on paper."""
+    title = "The robot in motion" if "com_deviation" in data else "The beam in motion"
+    words = str(told["words"])
+    shown = len(told["time"])  # type: ignore[arg-type]
+    title += f", {shown} of {data.sizes['time']} instants; {words}. {told['mouse']}."
+    return html.section("replay", "Replay", [html.replay(title, told, still and (still.title, still.picture))])
+
+
+def by_axis(data: Dataset) -> Html:
+    """Largest and rms deviation along each axis, of the centre of mass and of a tool elsewhere."""
+    tables = {x.point: distances_table(x) for x in summaries(data) if isinstance(x, RobotSummary)}
+    several = [Chapter(POINT_WORDS[point].capitalize(), [table]) for point, table in tables.items()]
+    note = "Flexible minus rigid at the same instant, world axes; it contains the sag at rest. Per cent of the travel: "
+    note += "largest deviation over the rigid point's peak-to-peak travel, n/a where that is below 1 µm."
+    told = several if len(several) > 1 else tables.values()
+    return html.section("deviation", "Deviation by axis", [*told, Text(note, "soft")])
+
+
+def _actuator_numbers(found: ActuatorSummary) -> Html:
+    start, end = (text(length, "m", 4) for length in found.lengths)
+    rows = [
+        ("Largest deflection of the tip", f"{text(found.peak, 'm')} at {found.time:.3f} s"),
+        ("rms", text(found.rms, "m")),
+        ("At the end", text(found.end, "m")),
+        ("Free length", f"{start} at the start, {end} at the end"),
+    ]
+    return html.section("deflection", "Deflection of the tip", [TextTable((), rows)])
+
+
+def _partial(data: Dataset) -> list[Item]:
+    if not data.attrs.get("partial"):
+        return []
+    return [Text(f"Incomplete: computed to t = {float(data.time[-1]):.6g} s. {data.attrs.get('failure', '')}", "bad")]
+
+
+def warnings_section(data: Dataset) -> Html:
+    """What is doubtful about a result, in words."""
+    found = warnings_of(data)
+    return html.section("warnings", "Warnings", [Remarks(found) if found else "None."])
+
+
+def figures_section(name: str, title: str, figures: Sequence[Drawn], *, first: bool = True) -> list[Html]:
+    """Figures, one below the other, nothing where there are none; the first of a page say how they are read."""
+    parts = [html.figure(figure.title, figure.picture, figure.plot) for figure in figures]
+    read = [Text(THINNED, "soft screen")] if first else []
+    return [html.section(name, title, [*read, *parts])] if parts else []
+
+
+def solver_table(data: Dataset) -> TextTable:
+    """Settings and counters of the time integration."""
+    attrs: Mapping[object, object] = data.attrs
+    return TextTable((), [(words, _shown(attrs[key], key)) for key, words in SOLVER.items() if key in attrs])
+
+
+def _shown(value: object, key: str) -> str:
+    if key == "compiled":
+        return "yes" if value else "no (interpreted: slow)"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def repeat_section(words: str, command: str) -> Html:
+    """How to get the same again, with the versions it was got with."""
+    versions = ", ".join(f"{name} {version(name)}" for name in _PACKAGES)
+    note = Text(f"Python {python_version()}, {versions}.", "soft")
+    return html.section("repeat", "How to repeat this", [words, Lines(command), note])

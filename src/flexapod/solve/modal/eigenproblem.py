@@ -1,0 +1,109 @@
+"""Frequencies and shapes from factors of stiffness and mass, right however light a part is, Eqs. (T7.21)-(T7.22)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexapod.common.arrays import Array, Mask
+from flexapod.mechanics.shapes.eigen import finite
+from flexapod.solve.saddle_point import cholesky_each
+
+__all__ = ["count_real", "mass_factor", "natural"]
+
+ROUNDED = 1e-10  # eigenvalue of a mass matrix with a unit diagonal that may be rounding
+NO_MASS = 1e-12  # share of its mass that what others do leaves of a coordinate: less is rounding
+PIVOT = 4 * np.finfo(float).eps  # share of a mass, times the size, that a factor leaves of what has none of its own
+LIGHTEST = 1e-10  # root of a mass over that of what moves with it: less is rounding
+SLOW = 1e-6  # lowest frequency over the highest: above, all modes have mass
+
+
+def mass_factor(M: Array, *, carried: bool = False) -> tuple[Array, Mask]:
+    """Factors U, M = U^T U, of mass matrices (..., n, n), and which of these no mass or a real one has.
+
+    A coordinate without mass has a row of zeros. Taken of one body by itself, each row is right to rounding of its own
+    size, however much heavier other bodies are. Where coordinates move the same mass, as those of a base joint and a
+    stroke with nothing but the piston, the matrix is singular; `carried`: it is, as a base moves the body in ways in
+    which it moves by itself.
+    """
+    if carried:
+        return _by_pivots(M)
+    whole = np.diagonal(M, axis1=-2, axis2=-1)
+    massless = whole == 0
+    root, positive = cholesky_each(M + massless[..., None] * np.eye(M.shape[-1]))
+    U, left = root.swapaxes(-1, -2) * ~massless[..., None], np.diagonal(root, axis1=-2, axis2=-1) ** 2
+    alike = ~positive | ((left <= M.shape[-1] * PIVOT * whole) & ~massless).any(axis=-1)
+    if alike.any():
+        U[alike], positive[alike] = _by_pivots(M[alike])
+    return U, positive
+
+
+def _by_pivots(M: Array) -> tuple[Array, Mask]:
+    """Factors of singular mass matrices, the coordinates that keep most of their mass first, zeros from the rank on."""
+    left, U = M.copy(), np.zeros(M.shape)
+    whole = np.abs(np.diagonal(M, axis1=-2, axis2=-1))
+    per_whole = np.divide(1.0, whole, out=np.zeros(whole.shape), where=whole > 0)
+    for k in range(M.shape[-1]):
+        share = np.diagonal(left, axis1=-2, axis2=-1) * per_whole
+        at = share.argmax(axis=-1)[..., None]
+        real = np.take_along_axis(share, at, axis=-1) > NO_MASS
+        row = np.take_along_axis(left, at[..., None], axis=-2)[..., 0, :]
+        pivot = np.where(real, np.take_along_axis(row, at, axis=-1), 1.0)
+        U[..., k, :] = np.where(real, row, 0.0) / np.sqrt(pivot)
+        left -= U[..., k, :, None] * U[..., k, None, :]
+    return U, (np.diagonal(left, axis1=-2, axis2=-1) * per_whole).min(axis=-1, initial=0.0) > -ROUNDED
+
+
+def mass_rank(U: Array) -> Array:
+    """Rank (p,) of mass matrices U^T U, (p, rows, r): how many motions have mass, Eq. (T7.22)."""
+    size = np.linalg.norm(U, axis=1, keepdims=True)
+    moving = size > np.finfo(float).eps * U.shape[1] * size.max(axis=-1, keepdims=True, initial=0.0)
+    alike = np.divide(U, size, out=np.zeros(U.shape), where=moving)
+    return np.asarray((np.linalg.svd(alike, compute_uv=False) > LIGHTEST).sum(axis=-1))
+
+
+def natural(U: Array, K: Array, *, shapes: bool) -> tuple[Array, Array, Mask]:
+    """Angular frequencies (p, r) [rad/s] ascending, shapes (p, r, r) of unit stiffness, and where K is positive.
+
+    Parameters
+    ----------
+    U : ndarray, shape (p, rows, r)
+        Factor of the mass matrix, M = U^T U, with r rows or more; its rank may be lower than r.
+    K : ndarray, shape (p, r, r)
+        Stiffness, symmetric.
+    shapes : bool
+        Whether shapes are wanted; else (p, r, 0).
+
+    Raises
+    ------
+    ComputationError
+        A number is not finite.
+
+    Notes
+    -----
+    With K = L L^T and the singular values s of U L^-T (T7.21) the frequencies are 1 / s: the lowest ones are right to
+    rounding, the others to rounding times their multiple of it. There are as many as the rank of the mass matrix
+    (T7.22); the others are inf, and all NaN where K is not positive. Times its frequency a shape has unit mass.
+    """
+    L, positive = cholesky_each(K)
+    L = np.where(positive[:, None, None], L, np.eye(K.shape[-1]))
+    X = np.asarray(np.linalg.solve(L, U.swapaxes(1, 2)), dtype=np.float64)  # (T7.21), transposed
+    finite(X)
+    if shapes:
+        left, sizes, _ = np.linalg.svd(X, full_matrices=False)
+    else:
+        left, sizes = np.zeros((*K.shape[:2], 0)), np.linalg.svd(X, compute_uv=False)
+    real = sizes > SLOW * sizes[:, :1]
+    if (light := ~real.all(axis=1)).any():
+        real[light] = np.arange(sizes.shape[1]) < mass_rank(U[light])[:, None]  # (T7.22)
+    real &= sizes > 0
+    omega = np.divide(1.0, sizes, out=np.full(sizes.shape, np.inf), where=real)
+    omega[~positive] = np.nan
+    z = np.asarray(np.linalg.solve(L.swapaxes(1, 2), left), dtype=np.float64)
+    return omega, z, positive
+
+
+def count_real(frequency: Array) -> int:
+    """How many modes any pose has, of frequencies (..., m), those that are none last; all where no pose has any."""
+    width = frequency.shape[-1]
+    real = np.isfinite(frequency).reshape(-1, width).any(axis=0)
+    return int(real.sum()) or width

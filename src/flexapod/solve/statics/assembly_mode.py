@@ -1,0 +1,81 @@
+"""Another assembly than the drives mean: beyond a singularity, or a platform joint half a turn off."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from flexapod import kinematics
+from flexapod.common.arrays import Array, Mask
+from flexapod.common.errors import ComputationError
+from flexapod.kinematics.closures import turned_over
+from flexapod.kinematics.rotations import matrix
+from flexapod.kinematics.screws import screws
+from flexapod.model import Robot
+from flexapod.solve.batch import RestStates, matrices_at_rest
+from flexapod.solve.frames import on_plates
+from flexapod.solve.rigid_motion import leg_coordinates
+from flexapod.solve.statics.elimination import leg_bases
+from flexapod.solve.system import System
+
+__all__ = ["FALLS_THROUGH", "fallen", "flipped", "platform_poses", "refuse_fallen", "refuse_flipped"]
+
+FALLS_THROUGH = "no equilibrium: the robot sags through a singularity"
+
+
+def platform_poses(robot: Robot, pose: Array) -> kinematics.Poses:
+    """Poses of the platform in states (P, 7) of centre of mass and quaternion."""
+    R = matrix(pose[:, 3:])
+    return kinematics.Poses.at_rest(pose[:, :3] - R @ robot.com, R)
+
+
+def fallen(system: System, robot: Robot, start: RestStates, states: RestStates) -> Mask:
+    """Which of P equilibria are another assembly than their undeformed states ``start``, (P,)."""
+    if not len(start):
+        return np.zeros(0, dtype=bool)
+    if kinematics.rigid_limbs(robot).plain and system.legs == system.hub_free.size == 6:
+        both = platform_poses(robot, np.concatenate([start.pose, states.pose]))
+        before, after = np.split(kinematics.determinants(robot, both), 2)
+    else:
+        before, after = (_determinant(system, robot, x) for x in (start, states))
+    return (np.sign(before) != np.sign(after)) | flipped(system, robot, states.q, states.pose).any(axis=1)
+
+
+def flipped(system: System, robot: Robot, q: Array, pose: Array) -> Mask:
+    """Legs (P, legs) at the false root of (T13.12), in states of coordinates (P, legs, n) and payload poses (P, 7)."""
+    legs = kinematics.robot_limbs(robot)
+    if system.rows < 6:
+        return np.zeros((len(q), len(legs)), dtype=bool)
+    there, at = leg_coordinates(system.kernel.shapes)
+    of_leg = np.tile(legs.home, (len(q), 1, 1))
+    of_leg[..., there] = q[..., at]
+    return turned_over(legs, screws(legs, of_leg), on_plates(system, robot, q, pose)[-1][2])
+
+
+def _determinant(system: System, robot: Robot, x: RestStates) -> Array:
+    """Of the rates of what the rigid robot holds by steps of the payload, (P,); 1 where it is held in excess."""
+    there, at = leg_coordinates(system.kernel.shapes)
+    holds = np.zeros_like(system.held)
+    holds[:, at] = kinematics.rigid_limbs(robot).given[:, there]
+    rows = []
+    for b in leg_bases(system, matrices_at_rest(system, x, np.zeros(6))):
+        for i, leg in enumerate(b.legs):
+            rows.append(b.Y[:, i, b.pivot[holds[leg, b.pivot]], : system.hub_free.size])
+    found = np.concatenate(rows, axis=1)
+    return np.linalg.det(found) if found.shape[1] == found.shape[2] else np.ones(len(x))
+
+
+def refuse_flipped(system: System, robot: Robot, x: RestStates) -> None:
+    """Raise ComputationError where a leg of one state is `flipped`."""
+    turned = np.argwhere(flipped(system, robot, x.q, x.pose))
+    if len(turned):
+        raise ComputationError(
+            f"leg {turned[0, 1] + 1} meets the platform half a turn off: legs and platform do not fit so",
+            next_step="Check the axes of the leg's joints, or reduce the load.",
+        )
+
+
+def refuse_fallen(system: System, robot: Robot, start: RestStates, states: RestStates) -> None:
+    """Raise ComputationError where the equilibrium of one state is `fallen`."""
+    refuse_flipped(system, robot, states)
+    if fallen(system, robot, start, states).any():
+        raise ComputationError(FALLS_THROUGH, next_step="Choose a pose farther from the singularity.")

@@ -1,1 +1,0 @@
-"""Many runs of one study: variants (`sweeps`), poses (`workspace`), steps and shapes (`convergence`)."""

@@ -1,5 +1,0 @@
-"""Maps of what a robot can do over a line, slice or volume of poses."""
-
-from flexapod.surveys.workspace.maps import workspace_map
-
-__all__ = ["workspace_map"]

@@ -1,0 +1,114 @@
+"""Running the pack: every case by itself, a failure of one leaves the others."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+
+from flexapod.analysis.results.time_history import Report
+from flexapod.common.errors import FlexapodError, check_known
+from flexapod.verification.case import Case, Check
+from flexapod.verification.cases import CASES
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """What a case gave: its checks, or why it failed or was not run; `seconds` it took."""
+
+    case: Case
+    checks: tuple[Check, ...]
+    seconds: float
+    failure: str = ""
+    not_run: str = ""
+
+    @property
+    def counted(self) -> tuple[Check, ...]:
+        """The checks whose reference is not at fault."""
+        return tuple(check for check in self.checks if not check.fault)
+
+    @property
+    def passed(self) -> bool:
+        """Whether it was computed and every check lies within its tolerance or has a reference shown to be wrong."""
+        return not self.failure and bool(self.counted) and all(check.passed for check in self.counted)
+
+    @property
+    def verdict(self) -> str:
+        """In words: pass, fail, not run, not computed."""
+        if self.not_run:
+            return "not run"
+        if self.failure:
+            return "not computed"
+        return "pass" if self.passed else "fail"
+
+    @property
+    def worst(self) -> Check | None:
+        """The check that comes nearest to its tolerance or exceeds it most; None if nothing was computed."""
+        return max(self.counted, key=lambda check: check.strain, default=None)
+
+    def as_dict(self) -> dict[str, object]:
+        """Everything as plain data."""
+        rows = [{**asdict(check), "error": check.error, "passed": check.passed} for check in self.checks]
+        words = {name: getattr(self.case, name) for name in ("name", "statement", "source", "argument")}
+        state = {"verdict": self.verdict, "passed": self.passed, "failure": self.failure, "not_run": self.not_run}
+        return {**words, **state, "seconds": self.seconds, "checks": rows}
+
+
+def verify(
+    only: Sequence[str] = (),
+    *,
+    slow: bool = False,
+    progress: Report | None = None,
+    keep: Callable[[Outcome], None] | None = None,
+) -> tuple[Outcome, ...]:
+    """Compute the cases of the verification pack.
+
+    Parameters
+    ----------
+    only : sequence of str
+        Names of cases; none: all that are not slow.
+    slow : bool
+        Also the slow ones.
+    progress : callable, optional
+        Called with the name of the case and the share of the whole that is done.
+    keep : callable, optional
+        Called with each outcome as soon as it is there.
+
+    Returns
+    -------
+    tuple of Outcome
+        In the order of the pack.
+
+    Raises
+    ------
+    InputError
+        A name that no case has.
+    """
+    chosen = _chosen(only, slow)
+    outcomes = []
+    for i, case in enumerate(chosen):
+        if progress is not None:
+            progress(case.name, i / len(chosen))
+        outcomes.append(_computed(case))
+        if keep is not None:
+            keep(outcomes[-1])
+    return tuple(outcomes)
+
+
+def _chosen(only: Sequence[str], slow: bool) -> list[Case]:
+    names = [case.name for case in CASES]
+    for name in only:
+        check_known(name, names, "--only", "is not a case")
+    return [case for case in CASES if case.name in only or (not only and (slow or not case.slow))]
+
+
+def _computed(case: Case) -> Outcome:
+    if obstacle := case.obstacle:
+        return Outcome(case=case, checks=(), seconds=0.0, not_run=obstacle)
+    begin = time.perf_counter()
+    try:
+        found, failure = tuple(case.compute()), ""
+    except Exception as error:  # whatever a case does, the others are computed
+        words = str(error) if isinstance(error, FlexapodError) else f"{type(error).__name__}: {error}"
+        found, failure = (), words
+    return Outcome(case=case, checks=found, seconds=time.perf_counter() - begin, failure=failure)

@@ -1,0 +1,172 @@
+"""What the deviation of the paper's robot depends on, as entries of the claims table."""
+
+from __future__ import annotations
+
+import numpy as np
+from xarray import Dataset
+
+from flexapod.analysis.results.attributes import robot_study
+from flexapod.common.quantities import number, text
+from flexapod.verification.paper.claim import (
+    BREAKS,
+    ELASTIC_LENGTH,
+    MISSES,
+    REACHES,
+    by_axis,
+    in_y_and_z,
+    judged,
+    largest,
+    near,
+    peaks,
+    roll_and_arm,
+    roll_error,
+    size,
+)
+from flexapod.verification.paper.claims_readings import SAYS
+from flexapod.verification.paper.rows import Said, variant
+
+FAR = 25.0  # half-angles up to here are one row [deg]
+NO_ANGLES = f"{SAYS}; no joint angles are given"
+
+
+@variant("Time of the roll", f"{SAYS}; no time is given", "assumptions", "robot")
+def _duration(data: Dataset, robot: Dataset) -> Said:
+    durations, rows = data.duration.values, data.deviation_by_duration.values
+    parts = [f"{duration:g} s: {in_y_and_z(peak)}" for duration, peak in zip(durations, rows, strict=True)]
+    sag = abs(float(robot.com_deviation.sel(axis="z")[0]))
+    fast, slow = (text(float(rows[i, 2]) - sag, "m", 2) for i in (durations.argmin(), durations.argmax()))
+    return Said(
+        ours="; ".join(parts),
+        verdict=size(*rows),
+        reason=f"At rest it sags by {text(sag, 'm')} in z; to that the motion adds {fast} in {durations.min():g} s and "
+        f"{slow} in {durations.max():g} s.",
+    )
+
+
+@variant("Half-angles", NO_ANGLES, "half-angles", "half-angles-radii", expected=MISSES)
+def _half_angles(diameters: Dataset, radii: Dataset) -> Said:
+    own, other = (data.isel(half_angle=data.half_angle.values <= FAR) for data in (diameters, radii))
+    angles, rows = own.half_angle.values, own.deviation_peak.values
+    forces = np.fmax(own.force_peak, other.force_peak).values / _weight(own)
+    each = "; ".join(f"{angle:g} deg: {in_y_and_z(peak)}" for angle, peak in zip(angles, rows, strict=True))
+    most = in_y_and_z(other.deviation_peak.max("half_angle").values)
+    to = f" to {angles[-1]:g}" if len(angles) > 1 else ""
+    return Said(
+        where=f"Half-angles {angles[0]:g}{to} deg",
+        ours=f"Diameters: {each}. Radii: at most {most}",
+        verdict=size(*rows, *other.deviation_peak.values),
+        reason=f"Leg forces up to {number(forces[0], 2)} times the payload's weight at {angles[0]:g} deg, "
+        f"{number(forces[-1], 2)} at {angles[-1]:g} deg: the nearer to the architecture singularity at 30 deg, "
+        "where the joints form similar hexagons, the softer the robot.",
+    )
+
+
+def _weight(data: Dataset) -> float:
+    robot = robot_study(data).robot
+    return robot.payload.mass * float(np.linalg.norm(robot.gravity))
+
+
+@variant("Half-angles", NO_ANGLES, "half-angles", "half-angles-radii")
+def _beyond(diameters: Dataset, radii: Dataset) -> list[Said]:
+    angles = diameters.half_angle.values
+    pairs = ((angle, *(data.sel(half_angle=angle) for data in (diameters, radii))) for angle in angles[angles > FAR])
+    return [_half_angle(*pair) for pair in pairs]
+
+
+def _half_angle(angle: float, own: Dataset, other: Dataset) -> Said:
+    sound = [data.deviation_peak.values for data in (own, other) if str(data.verdict.item()) == ""]
+    force = float(np.fmax(own.force_peak, other.force_peak)) / _weight(own)
+    order = " y exceeds z, in the paper z is twice y." if sound and all(y > z for _, y, z in sound) else ""
+    return Said(
+        where=f"Half-angles {angle:g} deg",
+        ours=f"Diameters: {_words(own)}. Radii: {_words(other)}",
+        verdict=size(*sound) if sound else BREAKS,
+        reason=_near(force) + order,
+    )
+
+
+def _words(data: Dataset) -> str:
+    verdict, peak = str(data.verdict.item()), data.deviation_peak.values
+    if np.isnan(peak).any():
+        return verdict
+    if verdict:
+        return f"{verdict} ({by_axis(peak)}: beyond the theory)"
+    return f"{by_axis(peak)}; forces to {text(float(data.force_peak), 'N')}"
+
+
+def _near(force: float) -> str:
+    """How near the singularity a robot is, by its largest leg force over the payload's weight."""
+    words = f"Leg forces up to {number(force, 2)} times the payload's weight"
+    if force < 10:
+        return f"{words}: near the singularity the robot turns soft; Fig. 8 would show such forces."
+    return f"{words}: next to the singularity, where no robot can be used."
+
+
+@variant(
+    "Start with a jump", f"{SAYS}; no law is given, it might start and stop at full rate", "jump", "jump-radii", "robot"
+)
+def _jump(diameters: Dataset, radii: Dataset, smooth: Dataset) -> Said:
+    impact = text(float(diameters.attrs["impact_energy"]), "J")
+    force, usual = (float(np.abs(data.actuator_force).max()) for data in (diameters, smooth))
+    return Said(
+        ours=f"Diameters: {peaks(diameters, 2)}. Radii: {peaks(radii, 2)}",
+        verdict=size(largest(diameters), largest(radii)),
+        reason=f"The impact of the first instant puts {impact} into the legs; driven on, they ring with a strain "
+        f"energy of up to {text(float(diameters.energy_strain.max()), 'J', 2)} and drive forces of up to "
+        f"{text(force, 'N', 2)}, {number(force / usual, 2)} times those of the quintic: Fig. 8 would show them.",
+    )
+
+
+@variant("Jump, half-angles 27 deg", SAYS, "jump-27")
+def _jump_near(data: Dataset) -> Said:
+    return Said(
+        ours=f"Diameters: {peaks(data, 2)}",
+        verdict=size(largest(data)),
+        reason="The same jump in a robot that is nearly singular.",
+    )
+
+
+@variant("What would give it: roll", f"{SAYS}, 6 %", "robot", expected=REACHES)
+def _roll_error(robot: Dataset) -> Said:
+    roll, arm = roll_and_arm(robot)
+    error = roll_error(arm)
+    off = [0.0, *(float(arm * f(roll) * error) for f in (np.sin, np.cos))]
+    return Said(
+        ours=f"A roll that is off by {np.rad2deg(error):.2f} deg: {in_y_and_z(off)}",
+        verdict=size(off),
+        reason=f"{100 * error / roll:.2g} % of the roll. It fits by construction and shows nothing: this error, d = "
+        f"{1e3 * arm:.0f} mm and the roll are three unknowns, backed out of three printed figures.",
+    )
+
+
+@variant("What would give it: legs", SAYS, "assumptions", "robot")
+def _length_errors(data: Dataset, robot: Dataset) -> Said:
+    low, high = float(data.length_error.min()), float(data.length_error.max())
+    most = max(-low, high)
+    needed = robot_study(robot).robot.legs[0].piston.EA / ELASTIC_LENGTH * most
+    given, wave = float(np.abs(robot.actuator_force).max()), _half_wave(most)
+    tips = float(np.abs(robot.tip_deflection).max())
+    return Said(
+        ours=f"Legs that are off by {1e3 * low:.1f} to {1e3 * high:+.1f} mm",
+        verdict=judged(near(given, needed) or near(tips, wave), best=REACHES, worst=MISSES),
+        reason=f"To stretch by so much, {1e3 * ELASTIC_LENGTH:.0f} mm of piston need {text(needed, 'N')}, the drive "
+        f"force is {text(given, 'N')}; to shorten by so much they must bend to a half-wave {1e3 * wave:.0f} mm high "
+        f"(shortening pi^2 w^2 / 4 L), tips are {text(tips, 'm', 2)} off.",
+    )
+
+
+def _half_wave(shortening: float) -> float:
+    """Height of a half-wave that shortens the paper's piston by `shortening` [m]."""
+    return 2 * float(np.sqrt(shortening * ELASTIC_LENGTH)) / np.pi
+
+
+@variant("What would give it: drives", SAYS, "assumptions")
+def _drives(data: Dataset) -> Said:
+    peaks, (soft, real) = data.deviation_by_drive.values, data.drive_stiffness.values
+    sag = float(data.sag_by_drive.values[0, 2])
+    return Said(
+        ours=f"Drives of {text(soft, 'N/m')}: {in_y_and_z(peaks[0])}",
+        verdict=size(peaks[0]),
+        reason=f"{100 * sag / peaks[0, 2]:.0f} % of z is sag. Ball screws have {text(real, 'N/m')} and more: "
+        f"{in_y_and_z(peaks[1])}; and the paper's strokes are prescribed.",
+    )

@@ -1,0 +1,136 @@
+"""The paper's robot with ball joints that carry moments: equilibria along the roll, legs welded to the platform."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from xarray import Dataset
+
+from flexapod import kinematics, model
+from flexapod.analysis.results.attributes import attributes
+from flexapod.analysis.results.time_history import Share
+from flexapod.common.arrays import Array
+from flexapod.mechanics.leg.layout import Shapes
+from flexapod.solve.system import State
+from flexapod.verification.paper.readings import robot_preset
+from flexapod.verification.paper.trials import opened, resting, system_of
+
+#: Robots of the map: preset and how many legs are welded to the platform.
+READINGS = {
+    "diameters": ("paper-robot", 6),
+    "radii": ("paper-robot-radii", 6),
+    "diameters-one": ("paper-robot", 1),
+    "radii-one": ("paper-robot-radii", 1),
+}
+ROLLS = tuple(map(float, range(31)))  # deg; each equilibrium is sought from the one before
+ARMS = (0.2, 0.3, 0.373, 0.45, 0.6)  # m, of the centre of mass from the platform's centre
+SHAPES = 6  # per plane: the static shapes of a force and of a moment at the tip, and those of thrust
+SHARE = 0.06  # of the travel: the third figure that the paper prints
+SLOPE = 0.1  # of the tip: beyond, the bending of the legs is larger than the theory is made for
+STATIONS = np.linspace(0.0, 1.0, 41)
+COLUMNS = {
+    "deviation": "m",
+    "off_axis": "m",
+    "slope": "rad",
+    "shortening": "m",
+    "leg_force": "N",
+    "stress": "Pa",
+}
+
+
+def welded(study: model.Study, count: int = 6) -> model.Study:
+    """The same robot with the first ``count`` legs fixed to the platform in place of their ball joints."""
+    robot = study.robot
+    legs = tuple(leg.replace(chain="UPF" if i < count else "UPS") for i, leg in enumerate(robot.legs))
+    kind = "6-UPF" if count == 6 else f"{count}-UPF+{6 - count}-UPS"
+    return study.replace(robot=robot.replace(type=kind, legs=legs))
+
+
+def _walk(study: model.Study, rolls: Sequence[float]) -> Iterator[dict[str, object]]:
+    """What the equilibrium at each roll [deg] is, from home on; ends where none continues the one before."""
+    system, state = system_of(study), None
+    for roll in rolls:
+        R = kinematics.rotation_matrix(np.array([[np.deg2rad(roll), 0.0, 0.0]]))[0]
+        path = kinematics.Poses.at_rest(kinematics.home_pose(study.robot).position[0], R)
+        found = resting(study, system, path, state)
+        if not found.found:
+            return
+        state = found.state
+        yield _values(study.robot, system.kernel.shapes, path, state)
+
+
+def _values(robot: model.Robot, shapes: Shapes, path: kinematics.Poses, x: State) -> dict[str, object]:
+    first = shapes.index("a")
+    lateral = x.q[:, first : first + 2 * shapes.beam.a.count].reshape(len(x.q), 2, -1)
+    free = x.q[:, shapes.index("l")] - np.array([leg.cylinder.mouth for leg in robot.legs])
+    slope = lateral @ shapes.beam.a.tip_slope / free[:, None]
+    short = 0.5 * np.einsum("idk,kj,idj->i", lateral, shapes.beam.a.slope_tip, lateral) / free
+    curvature = lateral @ shapes.beam.a.values(STATIONS, 2) / free[:, None, None] ** 2
+    thrust = np.abs(x.drive[:, 0])
+    return {
+        "deviation": np.abs(x.pose[:3] - path.point(robot.payload.com)[0][0]),
+        "off_axis": np.linalg.norm(lateral @ shapes.beam.a.tip, axis=1).max(),
+        "slope": np.linalg.norm(slope, axis=1).max(),
+        "shortening": short.max(),
+        "leg_force": thrust.max(),
+        "stress": _stress(robot, np.linalg.norm(curvature, axis=1).max(axis=1), thrust),
+    }
+
+
+def _stress(robot: model.Robot, bent: Array, thrust: Array) -> float:
+    """Largest stress [Pa] of round pistons: E d / 2 times the curvature, and the thrust over the section."""
+    stress = [
+        0.5 * (p.E or np.nan) * (p.diameter or np.nan) * k + f * (p.E or np.nan) / p.EA
+        for p, k, f in zip((leg.piston for leg in robot.legs), bent, thrust, strict=True)
+    ]
+    return float(max(stress))
+
+
+def welded_map(report: Share, arms: Sequence[float] = ARMS, rolls: Sequence[float] = ROLLS) -> Dataset:
+    """Deviation of welded robots over the roll, the place of the centre of mass, and the readings of the circles.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `reading`, `arm` [m], `roll` [deg]: `deviation` (axis) [m] of the centre of mass at rest; `off_axis` [m],
+        the farthest tip from its cylinder's axis, and its `slope`; `shortening` [m] of a leg by bending; `leg_force`
+        [N]; `stress` [Pa] of a linear elastic piston. NaN beyond the last equilibrium.
+    """
+    shape = (len(READINGS), len(arms), len(rolls))
+    values = {name: np.full((*shape, 3) if name == "deviation" else shape, np.nan) for name in COLUMNS}
+    for i, (preset, count) in enumerate(READINGS.values()):
+        for j, arm in enumerate(arms):
+            study = model.override(welded(with_arm(opened(robot_preset(preset)), arm), count), modes=SHAPES)
+            for k, row in enumerate(_walk(study, rolls)):
+                for name, value in row.items():
+                    values[name][i, j, k] = value
+            report((i * len(arms) + j + 1) / (len(READINGS) * len(arms)))
+    dims = ("reading", "arm", "roll")
+    return Dataset(
+        {
+            name: ((*dims, "axis") if name == "deviation" else dims, values[name], {"units": unit})
+            for name, unit in COLUMNS.items()
+        },
+        {
+            "reading": list(READINGS),
+            "arm": ("arm", list(arms), {"units": "m"}),
+            "roll": ("roll", list(rolls), {"units": "deg"}),
+            "axis": list("xyz"),
+        },
+        attributes(robot_preset("paper-robot")),
+    )
+
+
+def with_arm(study: model.Study, arm: float) -> model.Study:
+    """The same robot with its centre of mass and tool ``arm`` [m] beside the platform's centre, where they are in y."""
+    beside = [0.0, arm, 0.0]
+    payload = study.robot.payload.replace(com=beside, tool=beside)
+    return study.replace(robot=study.robot.replace(payload=payload))
+
+
+def travel_share(found: Dataset) -> Array:
+    """Deviation in z over the travel of the rigid centre of mass in z, (..., arm, roll); NaN at home."""
+    travel = found.arm * np.sin(np.deg2rad(found["roll"]))
+    z = found.deviation.sel(axis="z")
+    return (z / travel.where(found["roll"] > 0)).transpose(*z.dims).values
