@@ -57,7 +57,7 @@ class Response:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Column:
+class ResponseColumn:
     """What a name of a column says: the text `head`, the name before the word, its kind, and the unit or None."""
 
     head: str
@@ -91,7 +91,7 @@ def table_responses(content: bytes) -> list[Response]:
     if np.isinf(table).any():
         raise InputError("has numbers that are infinite", allowed="finite ones, nan where a response was not measured")
     frequency = table[:, 0] * _hertz(heads[0])
-    columns = [Column(head=heads[0], name="", kind="frequency", unit=None), *map(_column, heads[1:])]
+    columns = [ResponseColumn(head=heads[0], name="", kind="frequency", unit=None), *map(_column, heads[1:])]
     return [
         _pair(frequency, columns[k], columns[k + 1], table[:, k : k + 2], (k + 1) // 2)
         for k in range(1, len(columns), 2)
@@ -127,7 +127,7 @@ def _hertz(head: str) -> float:
     return to_si(f"1 {column.unit or 'Hz'}", "frequency", key=f"column {head!r}")
 
 
-def _column(head: str) -> Column:
+def _column(head: str) -> ResponseColumn:
     column = _read(head)
     if column is None:
         raise InputError(
@@ -137,17 +137,17 @@ def _column(head: str) -> Column:
     return column
 
 
-def _read(head: str) -> Column | None:
+def _read(head: str) -> ResponseColumn | None:
     """Name, word and unit of a column; None of a text that is not of this form."""
     found = COLUMN.fullmatch(head) if len(head) <= LONGEST else None
     if found is None:
         return None
     unit = next((found[key] for key in ("square", "round", "bare") if found[key] is not None), None)
     kind = KINDS[found["word"].lower()]
-    return Column(head=head, name=found["name"] or "", kind=kind, unit=None if unit is None else unit.strip())
+    return ResponseColumn(head=head, name=found["name"] or "", kind=kind, unit=None if unit is None else unit.strip())
 
 
-def _pair(frequency: Array, one: Column, other: Column, numbers: Array, count: int) -> Response:
+def _pair(frequency: Array, one: ResponseColumn, other: ResponseColumn, numbers: Array, count: int) -> Response:
     """The response in two columns, numbers (f, 2)."""
     words = f"has the columns {one.head!r}, {other.head!r}"
     if PAIRS.get(one.kind) != other.kind:
@@ -168,7 +168,7 @@ def _pair(frequency: Array, one: Column, other: Column, numbers: Array, count: i
     return Response(frequency=frequency, values=values, output=output, input=input or "input", units=units)
 
 
-def _sizes(numbers: Array, column: Column) -> tuple[Array, tuple[str, str]]:
+def _sizes(numbers: Array, column: ResponseColumn) -> tuple[Array, tuple[str, str]]:
     """Magnitudes in SI units, of decibels too, and the units of output and input."""
     unit = column.unit or ""
     level = DECIBELS.fullmatch(unit)

@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import casadi
 
-__all__ = ["FUNCTIONS", "Function", "call", "constant_text", "definitions", "without_text"]
+__all__ = ["FUNCTIONS", "CFunction", "call", "constant_text", "definitions", "without_text"]
 
 
-class Function(NamedTuple):
+class CFunction(NamedTuple):
     """A function by its name in C, and what it is of x and y [of x alone where it takes one number]."""
 
     name: str
@@ -21,8 +21,8 @@ class Function(NamedTuple):
 
 
 #: By casadi's operations: comparisons are 1 or 0, as casadi has them.
-FUNCTIONS: dict[int, Function] = {
-    getattr(casadi, f"OP_{operation}"): Function(f"of_{operation.lower()}", value)
+FUNCTIONS: dict[int, CFunction] = {
+    getattr(casadi, f"OP_{operation}"): CFunction(f"of_{operation.lower()}", value)
     for operation, value in {
         "LOG": "log(x)",
         "LOG1P": "log1p(x)",
