@@ -25,8 +25,7 @@ from flexapod.mechanics.leg.kernel_functions import payload_functions
 from flexapod.mechanics.leg.layout import Shapes, leg_parameters
 from flexapod.mechanics.leg.leg import leg
 from flexapod.mechanics.symbolic.compiler import compiled_library, compiler
-from flexapod.mechanics.symbolic.functions import NamedFunction
-from flexapod.mechanics.symbolic.lagrange import inverse_dynamics, mass_matrix
+from flexapod.mechanics.symbolic.functions import NamedFunction, inverse_dynamics, mass_matrix
 from flexapod.mechanics.symbolic.vocabulary import jacobian, symbols, time_derivative, zeros
 from flexapod.model import ActuatorStudy, Study
 from flexapod.solve.shapes import home

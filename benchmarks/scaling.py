@@ -200,7 +200,7 @@ def _laws(laws: list[Law]) -> Section:
 def _figure(laws: Sequence[Law]) -> Figure:
     """A panel for each quantity, logarithmic; dashed: the straight lines."""
     from flexapod.output.figures.style import figure, styled
-    from flexapod.output.scene.colours import FLEXIBLE
+    from flexapod.output.scene.style import FLEXIBLE
 
     against = dict.fromkeys(law.against for law in laws)
 

@@ -17,7 +17,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 from benchmarks.report import goal
 from flexapod import sweep
 from flexapod.analysis.simulation import simulated
-from flexapod.design.sweeps import schedule
+from flexapod.design.sweeps import executors
 from flexapod.design.sweeps.outputs import kept
 from flexapod.design.sweeps.plan import read_plan
 from flexapod.design.sweeps.samples import Points
@@ -147,7 +147,7 @@ def main():
     print(f"overhead: client and reading    {1e3 * overhead:26.2f} ms a point, {goal(overhead, GOAL, '2.5 ms')}")
     print(f"two workers / two processes     {ratio:26.3f}, {goal(ratio, 0.93, '0.93', at_least=True)}")
     print(f"10,000 points                   {minutes:26.1f} minutes, {goal(minutes, 10, '10 minutes')}")
-    print(f"(tasks of {schedule.TASK} s, {given.points} points, {settings})")
+    print(f"(tasks of {executors.TASK} s, {given.points} points, {settings})")
 
 
 if __name__ == "__main__":

@@ -6,9 +6,9 @@ import numpy as np
 from tests.layouts import layout
 
 from flexapod.kinematics.rotations import quaternion
+from flexapod.mechanics.elements.distribution import RotaryInertia
 from flexapod.mechanics.elements.drive_train import DriveTrain
 from flexapod.mechanics.elements.mount import BaseMounting, MovedBase, PlatformMounting
-from flexapod.mechanics.elements.shear import RotaryInertia
 from flexapod.mechanics.elements.slot import Slot
 from flexapod.mechanics.elements.soft_joint import SoftBase, SoftPlatform
 from flexapod.mechanics.leg.kernel_functions import leg_functions

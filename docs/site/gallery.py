@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 
 import matplotlib
 
-from flexapod.app.cli.examples import titles
+from flexapod.app.cli.commands_study import titles
 
 FOLDER = Path("gallery")
 EXAMPLES = Path(__file__).parents[2] / "src" / "flexapod" / "examples/gallery"

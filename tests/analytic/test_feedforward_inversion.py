@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.commissioning.feedforward.actuator_inversion import tip_inversion
-from flexapod.commissioning.feedforward.noncausal_filter import answer, inverse
+from flexapod.commissioning.feedforward.actuator_inversion import answer, inverse, tip_inversion
 from flexapod.control import StateSpace
 from flexapod.kinematics import motion_law
 

@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import flexapod as fx
-from flexapod.commissioning.feedforward.drive_loads import limits_of
 from flexapod.commissioning.feedforward.least_time import fastest
+from flexapod.commissioning.feedforward.loaded_path import limits_of
 from flexapod.control import StateSpace
 from flexapod.kinematics import coordinates
 

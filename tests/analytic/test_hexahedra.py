@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from flexapod.model import Rectangle
-from flexapod.solve.fem.hexahedra import element_stiffness, integrals, stiffness
-from flexapod.solve.fem.mesh import beam_mesh
+from flexapod.solve.fem.hexahedra import beam_mesh, element_stiffness, integrals, stiffness
 
 LINEAR = ["hex8", "hex8r", "hex8i"]
 E, POISSON = 2.0, 0.3

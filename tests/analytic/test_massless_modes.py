@@ -7,8 +7,7 @@ from tests.machines import SCREW, TUBE, machine, study
 import flexapod as fx
 from flexapod.model import Feedback, Motor, preset_text
 from flexapod.model.study.mount import Mount
-from flexapod.solve.modal.damped import damping_ratios, poles
-from flexapod.solve.modal.eigenproblem import natural
+from flexapod.solve.modal.eigenproblem import damping_ratios, natural, poles
 
 
 def modal(mass, stiffness, damping):

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from flexapod.model import CURVES, Floor, Spectrum
-from flexapod.solve.linear.random_vibration import Source, density_at, random_vibration
-from flexapod.solve.linear.robot import LinearRobot
+from flexapod.solve.linear.random_vibration import LinearRobot, Source, density_at, random_vibration
 
 F0, RATIO, K = 20.0, 0.01, 3e6
 

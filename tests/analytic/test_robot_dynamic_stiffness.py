@@ -14,8 +14,8 @@ from tests.oracles import beams
 
 from flexapod import modes
 from flexapod.model import ServoDrive, preset
-from flexapod.verification import dynamic_stiffness, locked_robot
-from flexapod.verification.locked_robot import legs_and_body
+from flexapod.verification import dynamic_stiffness
+from flexapod.verification.dynamic_stiffness import legs_and_body
 from flexapod.verification.robots import unlike_legs, without_cylinders, without_gravity
 
 pytestmark = pytest.mark.usefixtures("uncompiled")
@@ -62,11 +62,11 @@ def product(name, pose, k, axial=2, drive=None):
 
 
 def missing_sines(name, frequency, axial):
-    return locked_robot.missing_sines(legs_and_body(case(name), HOME)[0], frequency, axial)
+    return dynamic_stiffness.missing_sines(legs_and_body(case(name), HOME)[0], frequency, axial)
 
 
 def missing_polynomials(name, pose, k):
-    return locked_robot.missing_polynomials(legs_and_body(case(name), pose)[0], exact(name, pose), k)
+    return dynamic_stiffness.missing_polynomials(legs_and_body(case(name), pose)[0], exact(name, pose), k)
 
 
 @pytest.mark.parametrize(

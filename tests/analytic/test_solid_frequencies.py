@@ -8,10 +8,9 @@ from tests.oracles import beams
 
 from flexapod.model import Rectangle, Tube
 from flexapod.solve.fem.frequencies import frequencies
-from flexapod.solve.fem.mesh import beam_mesh
-from flexapod.solve.fem.mouth import mouth_of
+from flexapod.solve.fem.hexahedra import beam_mesh
 from flexapod.solve.fem.reduction import reduced_beam
-from flexapod.solve.fem.sliding import HubMotion, SlidingBeam
+from flexapod.solve.fem.sliding import HubMotion, SlidingBeam, mouth_of
 
 FLAT = Rectangle(width=0.1524, height=0.0095)
 EI, RHOA, LENGTH = 756.65, 4.02, 3.66

@@ -268,7 +268,7 @@ def test_full_disk_is_told_and_leaves_no_half_file(flexapod, study, folder, monk
         Path(path).write_bytes(b"half")
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("flexapod.analysis.netcdf.write", full)
+    monkeypatch.setattr("flexapod.analysis.store.write", full)
     result = flexapod("run", study(*SHORT))
     assert result.exit_code == 2
     assert "No space left on device" in result.stderr

@@ -8,7 +8,7 @@ import pytest
 from tests.cli.conftest import SHORT
 
 from flexapod import load, modes
-from flexapod.output.exchange.export import ELEMENTS, MODES
+from flexapod.output.exchange.pose_deck import ELEMENTS, MODES
 from flexapod.verification.engines import calculix
 from flexapod.verification.engines.engine import CALCULIX
 

@@ -114,7 +114,7 @@ def test_a_disk_that_fills_while_modes_are_written(flexapod, study, folder, monk
     def say(path, size):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("flexapod.analysis.netcdf.write", full)
+    monkeypatch.setattr("flexapod.analysis.store.write", full)
     monkeypatch.setattr(store, "_fill", say)
     for arguments in (["modes", study(*SHORT), "--out", "m"], ["run", study(*SHORT), "--out", "m"]):
         done = flexapod(*arguments)

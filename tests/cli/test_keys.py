@@ -56,7 +56,7 @@ def test_the_last_name_of_a_table_or_a_key_is_enough_to_find_it(wrong, words):
 def test_a_wrong_table_is_answered_without_the_model():
     """The model takes most of a second to load, and is not needed for it: no module of it is."""
     code = (
-        "import sys; from flexapod.app.cli.key_names import check_table\n"
+        "import sys; from flexapod.app.cli.commands_study import check_table\n"
         "from flexapod.common.errors import InputError\n"
         "try: check_table('nut')\n"
         "except InputError: print([name for name in sys.modules if name.startswith('flexapod.model')])"

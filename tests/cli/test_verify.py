@@ -13,7 +13,7 @@ from flexapod.verification import pack
 from flexapod.verification.case import Case, Check, checks
 from flexapod.verification.cases import CASES
 from flexapod.verification.engines.engine import CALCULIX, EXUDYN, MUJOCO, Engine
-from flexapod.verification.page import markdown, notes
+from flexapod.verification.pack import markdown, notes
 
 PAGE = (Path(__file__).parents[2] / "docs" / "verification.md").read_text(encoding="utf-8")
 ROWS = {row[0]: row for line in PAGE.splitlines() if len(row := line.strip("| ").split(" | ")) == 6}

@@ -20,9 +20,9 @@ import flexapod as fx
 from flexapod.analysis import save
 from flexapod.analysis.results.attributes import TABLES
 from flexapod.app.browser import network
-from flexapod.app.browser.logs import CONNECTIONS
+from flexapod.app.browser.background import CONNECTIONS
+from flexapod.app.browser.header import open_source
 from flexapod.app.browser.network import address, free_port, is_local
-from flexapod.app.browser.opening import open_source
 from flexapod.common.errors import InputError
 
 

@@ -13,7 +13,7 @@ from flexapod import kinematics
 from flexapod.analysis.checks.estimates import buckling_load
 from flexapod.analysis.pose_errors.backlash import half_play
 from flexapod.analysis.pose_errors.bent_legs import bent
-from flexapod.analysis.pose_errors.rows import rows
+from flexapod.analysis.pose_errors.error_sources import rows
 from flexapod.analysis.pose_errors.sensitivity import sensitivity
 from flexapod.analysis.pose_errors.tolerances import spreading
 from flexapod.analysis.results.rigid_path import RigidPath

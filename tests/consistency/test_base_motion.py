@@ -96,7 +96,7 @@ def test_a_small_shake_in_modes():
     # Linear model about rest, forced by the base's acceleration (T18.4), against the march. A step of 0.25 ms at 60 Hz
     # turns phases by (omega h)^2 / 12 of a period's angle: 1e-3; shapes are of the first order in the sag.
     from flexapod.kinematics import home_pose
-    from flexapod.solve.linear.robot import linear_robot
+    from flexapod.solve.linear.random_vibration import linear_robot
     from flexapod.solve.modal.at_poses import locked_poses
 
     robot, duration, h = machine().replace(base_mount=MOUNT), 0.12, 2.5e-4

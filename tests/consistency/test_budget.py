@@ -8,7 +8,7 @@ from tests.runs import paper_robot
 
 import flexapod as fx
 from flexapod.analysis.error_budget.rules import Budget
-from flexapod.analysis.pose_errors.rows import ErrorRow
+from flexapod.analysis.pose_errors.error_sources import ErrorRow
 from flexapod.common.errors import InputError
 from flexapod.model import AxisMotion, Geometry, Heat, Joint, Nut, PrescribedDrive, ServoDrive, Tolerances
 

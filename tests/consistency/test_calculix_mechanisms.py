@@ -6,7 +6,7 @@ from tests.mechanisms import ROBOTS
 
 import flexapod as fx
 from flexapod.model import AxialSpring
-from flexapod.output.exchange.export import abaqus_deck
+from flexapod.output.exchange.pose_deck import abaqus_deck
 from flexapod.verification.engines import calculix
 from flexapod.verification.engines.engine import CALCULIX
 

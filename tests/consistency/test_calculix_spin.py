@@ -6,7 +6,7 @@ import pytest
 from flexapod import kinematics, modes
 from flexapod.analysis.results.arguments import as_pose
 from flexapod.model import Study, preset
-from flexapod.output.exchange.export import abaqus_deck
+from flexapod.output.exchange.pose_deck import abaqus_deck
 from flexapod.verification.engines import calculix
 from flexapod.verification.engines.engine import CALCULIX
 

@@ -10,8 +10,7 @@ import flexapod.control as fc
 from flexapod.common.errors import InputError
 from flexapod.model import Disturbance
 from flexapod.model.study.disturbance import Floor, Spectrum
-from flexapod.solve.linear.random_vibration import random_vibration, sources_of
-from flexapod.solve.linear.robot import LinearRobot
+from flexapod.solve.linear.random_vibration import LinearRobot, random_vibration, sources_of
 
 TWIST = ("x", "y", "z", "rx", "ry", "rz")
 

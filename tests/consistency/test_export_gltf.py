@@ -16,8 +16,8 @@ import flexapod as fx
 from flexapod.analysis.results.variables import VARIABLES
 from flexapod.kinematics.rotations import exponential, matrix
 from flexapod.model import CsvMotion, Guide, Piston, override
-from flexapod.output.scene.colours import LEG_COLORS
 from flexapod.output.scene.geometry import RobotMotion
+from flexapod.output.scene.style import LEG_COLORS
 
 SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 SIDES, STATIONS = 16, 25

@@ -7,7 +7,7 @@ from scipy.io import loadmat
 
 import flexapod as fx
 from flexapod.model import override
-from flexapod.output.exchange.uff import uff
+from flexapod.output.exchange.formats import uff
 
 STUDY = override(fx.preset("tripod"), modes=1)
 CHANNELS = {"inputs": ["wrench", "command"], "outputs": ["tool", "stroke:2"]}

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 import flexapod as fx
 from flexapod.analysis import check_path
 from flexapod.app.cli.cli import app
-from flexapod.commissioning.feedforward.elastic_path import elastic_compensation
+from flexapod.commissioning.feedforward.stable_inversion import elastic_compensation
 from flexapod.kinematics import coordinates, poses
 from flexapod.model.file.files import preset_text
 

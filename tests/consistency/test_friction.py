@@ -15,7 +15,7 @@ from tests.runs import balance, run_robot
 
 import flexapod as fx
 from flexapod import kinematics
-from flexapod.analysis.checks.sliding import steady_friction
+from flexapod.analysis.checks.screws import steady_friction
 from flexapod.analysis.error_budget.text import part_words
 from flexapod.kinematics.rotations import exponential
 from flexapod.mechanics.elements.element import Standing

@@ -30,7 +30,7 @@ from flexapod.mechanics.shapes import axial_basis, lateral_basis
 from flexapod.model import MATERIALS, Cylinder, ForceDrive, Guide, Mounted, PrescribedDrive, ServoDrive
 from flexapod.model.leg.material import Tube
 from flexapod.model.leg.spring import AxialSpring
-from flexapod.output.exchange.export import abaqus_deck
+from flexapod.output.exchange.pose_deck import abaqus_deck
 from flexapod.output.report.replay import replay
 from flexapod.output.scene.geometry import RobotMotion
 from flexapod.solve.statics.buckling import leg_loads

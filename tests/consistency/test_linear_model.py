@@ -16,7 +16,7 @@ from flexapod.analysis.linear import MATRICES
 from flexapod.analysis.results.arguments import as_pose
 from flexapod.kinematics import inverse_kinematics, poses_from_home
 from flexapod.kinematics.rotations import exponential
-from flexapod.solve.linear.robot import linear_robot
+from flexapod.solve.linear.random_vibration import linear_robot
 from flexapod.solve.modal.at_poses import locked_poses
 
 HZ = np.geomspace(1.0, 500.0, 25)

@@ -17,7 +17,7 @@ import flexapod as fx
 from flexapod.kinematics import home_pose
 from flexapod.model import Motor
 from flexapod.solve.modal.at_poses import locked_poses
-from flexapod.solve.modal.damped import poles
+from flexapod.solve.modal.eigenproblem import poles
 from flexapod.solve.modal.modes import loops_of, modal_damping, unit_modes
 
 PRESETS = ("paper-robot", "paper-robot-radii", "machine-hexapod", "nano-hexapod", "small-hexapod", "motion-base",

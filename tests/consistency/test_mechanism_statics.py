@@ -16,8 +16,8 @@ from flexapod.solve.batch import matrices_at_rest, residual_at_rest
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.statics.block_arrow import arrow_solve
 from flexapod.solve.statics.equilibrium import _Acts, _loaded_slowly, equilibria
+from flexapod.solve.statics.ideal_robot import with_substitutes
 from flexapod.solve.statics.reduction import independent
-from flexapod.solve.statics.substitutes import with_substitutes
 
 THIRDS, EIGHT = [0.0, 120.0, 240.0], np.array([20.0, 70, 110, 160, 200, 250, 290, 340])
 

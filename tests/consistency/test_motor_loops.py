@@ -17,8 +17,8 @@ from flexapod.analysis.description.robot_description import describe
 from flexapod.common.errors import InputError
 from flexapod.common.generalized_alpha import GeneralizedAlpha
 from flexapod.model import Encoder, Loop, Motor, Ripple, Rotor
-from flexapod.output.exchange.export import abaqus_deck
-from flexapod.solve.linear.robot import linear_robot
+from flexapod.output.exchange.pose_deck import abaqus_deck
+from flexapod.solve.linear.random_vibration import linear_robot
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.modal.structural_damping import loss_frequency
 from flexapod.solve.time import interpreted, native

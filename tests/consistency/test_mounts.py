@@ -23,7 +23,7 @@ from flexapod.mechanics.symbolic.functions import Interpreted
 from flexapod.model import AxialSpring, loads, preset, to_toml
 from flexapod.model.leg.joint import Joint
 from flexapod.model.study.mount import BaseMotion, Mount
-from flexapod.output.exchange.export import abaqus_deck, left_out
+from flexapod.output.exchange.pose_deck import abaqus_deck, left_out
 from flexapod.output.report.replay import replay
 from flexapod.output.scene.geometry import RobotMotion
 from flexapod.solve.statics.buckling import leg_loads

@@ -9,7 +9,7 @@ from flexapod.common.errors import ComputationError
 from flexapod.model import AxisMotion, preset
 from flexapod.verification.cases import mujoco_forces as case
 from flexapod.verification.engines import mujoco_forces
-from flexapod.verification.engines.mujoco_model import mjcf
+from flexapod.verification.engines.mujoco_forces import mjcf
 from flexapod.verification.robots import unlike_legs, without_cylinders
 
 pytestmark = pytest.mark.xdist_group("pack of mujoco_forces")  # one process computes its cases

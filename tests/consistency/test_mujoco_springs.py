@@ -12,7 +12,7 @@ from flexapod.analysis.results.arguments import as_pose
 from flexapod.kinematics.rotations import matrix
 from flexapod.model import AxialSpring
 from flexapod.solve.modal.at_poses import locked_poses
-from flexapod.verification.engines.mujoco_model import LEAST, mjcf
+from flexapod.verification.engines.mujoco_forces import LEAST, mjcf
 
 mujoco = pytest.importorskip("mujoco")
 

@@ -15,14 +15,14 @@ import flexapod as fx
 from flexapod.app.browser.charts import charts
 from flexapod.mechanics.elements.element import registered
 from flexapod.model import ServoDrive, StrokeFriction, preset_text, to_toml
-from flexapod.output.exchange.export import abaqus_deck
+from flexapod.output.exchange.pose_deck import abaqus_deck
 from flexapod.output.report import figures
 from flexapod.output.text.parts import Bullets
 from flexapod.output.text.study import study_items
 from flexapod.solve.modal.at_poses import robot_modes
 from flexapod.verification.engines import exudyn_robot
 from flexapod.verification.engines.exudyn_integration import Integration
-from flexapod.verification.engines.mujoco_model import mjcf
+from flexapod.verification.engines.mujoco_forces import mjcf
 
 STIFFNESS, RELAXATION = 2e4, 0.1
 TABLE = '[leg.maxwell]\nstiffness = "20 kN/m"\nrelaxation = "0.1 s"\n'

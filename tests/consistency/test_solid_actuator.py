@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.analysis.results.vibration import local_vibration
+from flexapod.analysis.results.mode_shapes import local_vibration
 from flexapod.analysis.solid import simulate_solid
 
 STUDY = fx.preset("paper-actuator")

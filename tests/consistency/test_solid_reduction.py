@@ -7,12 +7,10 @@ from scipy.sparse import csc_array, csr_array
 from scipy.sparse.linalg import eigsh
 
 from flexapod.model import Rectangle
-from flexapod.solve.fem.hexahedra import integrals, mass, slope_stiffness, stiffness
-from flexapod.solve.fem.mesh import extruded
-from flexapod.solve.fem.mouth import mouth_of
+from flexapod.solve.fem.hexahedra import extruded, integrals, mass, slope_stiffness, stiffness
 from flexapod.solve.fem.reduction import reduced_beam
 from flexapod.solve.fem.section_mesh import free_unknowns, section_averages, section_mesh
-from flexapod.solve.fem.sliding import HubMotion, SlidingBeam
+from flexapod.solve.fem.sliding import HubMotion, SlidingBeam, mouth_of
 
 FLAT, LENGTH = Rectangle(width=0.1524, height=0.0095), 3.66
 EI, RHOA = 756.65, 4.02

@@ -16,8 +16,8 @@ from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.modal.modes import modes_of
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.statics.equilibrium import TOO_FAR, equilibria
+from flexapod.solve.statics.ideal_robot import with_substitutes
 from flexapod.solve.statics.locked_robot import the_equilibrium
-from flexapod.solve.statics.substitutes import with_substitutes
 
 MOVES = {"3-PUU": slice(0, 3), "3-RPS": slice(2, 5), "6-FPF": slice(0, 6), "3-UPS+UP": slice(2, 5)}
 SHAPES = Simulation(fidelity="assumed-modes", modes=2)

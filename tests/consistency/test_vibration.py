@@ -15,10 +15,9 @@ from flexapod.analysis.pose_errors.sensitivity import sensitivity
 from flexapod.analysis.results.arguments import as_pose
 from flexapod.kinematics.rotations import difference, matrix, quaternion
 from flexapod.model.study.mount import BaseMotion, Mount
-from flexapod.solve.linear.random_vibration import Source, panels, random_vibration
-from flexapod.solve.linear.robot import FAR, LinearRobot, linear_robot
+from flexapod.solve.linear.random_vibration import FAR, LinearRobot, Source, linear_robot, panels, random_vibration
 from flexapod.solve.modal.at_poses import locked_poses
-from flexapod.solve.modal.damped import poles
+from flexapod.solve.modal.eigenproblem import poles
 from flexapod.solve.statics.locked_robot import LockedPoses
 
 WHITE = np.array([1e-3, 1e5])

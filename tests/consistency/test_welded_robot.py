@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from tests.literature.test_oracle_welded import deviation, robot
 
-from flexapod.verification.paper.claims_welded import EXACT
+from flexapod.verification.paper.claims_variants import EXACT
 from flexapod.verification.paper.clamped_legs import welded_map
 
 ROLLS = (0.0, 1.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0)

@@ -15,9 +15,8 @@ from flexapod.analysis import open_results, save
 from flexapod.analysis.results.attributes import FORMER, TABLES, attributes, robot_of, study_of
 from flexapod.analysis.results.packed_tables import pack, unpack
 from flexapod.app.browser.document import Document, read
-from flexapod.app.browser.opening import open_source
-from flexapod.app.browser.study_files import study_download
-from flexapod.app.browser.uploads import read_upload, store_table
+from flexapod.app.browser.header import open_source
+from flexapod.app.browser.uploads import read_upload, store_table, study_download
 from flexapod.common.tables.named_files import Stored
 from flexapod.common.tables.reference import reference
 from flexapod.common.tables.toml import toml_text

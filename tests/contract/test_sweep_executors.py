@@ -14,7 +14,7 @@ from tests.sweeps import deadly, diameters, quick, start
 
 import flexapod as fx
 from flexapod.common.errors import ComputationError, InputError, Malformed
-from flexapod.design.sweeps import executors, open_sweep, run, schedule, worker
+from flexapod.design.sweeps import executors, open_sweep, run, worker
 from flexapod.design.sweeps.executors import InProcess, WorkerDied
 from flexapod.design.sweeps.worker import compute_batch, compute_packed
 
@@ -71,21 +71,21 @@ def test_only_the_deadly_point_fails(backwards, monkeypatch):
     monkeypatch.setattr(Backwards, "deadly", frozenset({25, 26}))
     made = sweep(40)
     assert np.flatnonzero(made.status.values == "failed").tolist() == [25, 26]
-    assert made.message.values[25] == schedule.DEADLY
+    assert made.message.values[25] == executors.DEADLY
     assert np.isfinite(made.com_deviation_peak.values[[24, 27]]).all()
 
 
 def test_batches_grow_to_what_is_worth_a_task_and_shrink_at_the_end():
-    batches = schedule._Batches(list(range(1000)))
+    batches = executors._Batches(list(range(1000)))
     sizes = []
     while batches.left:
         points = batches.take(2)
         sizes.append(len(points))
         batches.learn(worker.BatchResult(points=tuple(points), results=(), seconds=0.05 * len(points)))
     assert sizes[0] == 1
-    assert max(sizes) == pytest.approx(schedule.TASK / 0.05, abs=1)
+    assert max(sizes) == pytest.approx(executors.TASK / 0.05, abs=1)
     assert sum(sizes) == 1000
-    ends, least = list(itertools.accumulate(sizes)), schedule.LEAST / 0.05
+    ends, least = list(itertools.accumulate(sizes)), executors.LEAST / 0.05
     assert all(size <= max(least, -(-(1000 - end + size) // 4)) for size, end in zip(sizes, ends, strict=True))
     assert all(size >= least - 1 for size in sizes[1:-1])  # a task of less is more cost than work
 
@@ -103,7 +103,7 @@ def test_two_local_workers_one_of_which_dies(monkeypatch, tmp_path):
     made = sweep(30, workers=2, store=tmp_path / "a.sqlite", progress=progress)
     assert seen == [True]
     assert np.flatnonzero(made.status.values == "failed").tolist() == [11]
-    assert made.message.values[11] == schedule.DEADLY
+    assert made.message.values[11] == executors.DEADLY
     others = np.arange(30) != 11
     for name in ("com_deviation_peak", "com_deviation_peak_by_axis"):
         assert (made[name].values[others] == alone[name].values[others]).all()

@@ -8,7 +8,7 @@ import pytest
 
 from flexapod import model
 from flexapod.app.browser.document import Document, edited
-from flexapod.app.browser.opening import open_source
+from flexapod.app.browser.header import open_source
 from flexapod.app.browser.uploads import read_upload
 from flexapod.common.errors import InputError
 from flexapod.common.tables.columns import columns_of

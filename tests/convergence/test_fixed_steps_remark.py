@@ -6,7 +6,7 @@ import numpy as np
 from tests.runs import paper_robot
 
 from flexapod import simulate
-from flexapod.analysis.checks.fixed_steps import steps_needed
+from flexapod.analysis.checks.stability import steps_needed
 
 
 def after_the_roll(found):

@@ -7,7 +7,7 @@ import flexapod as fx
 from flexapod.analysis.solid import simulate_solid
 from flexapod.model import Rectangle
 from flexapod.solve.fem.frequencies import frequencies
-from flexapod.solve.fem.mesh import beam_mesh
+from flexapod.solve.fem.hexahedra import beam_mesh
 from flexapod.solve.fem.reduction import reduced_beam
 from flexapod.solve.fem.sliding import HubMotion, SlidingBeam, gauss_step
 

@@ -9,7 +9,7 @@ from tests.golden.refusals import READERS, rows, samples, unpacked
 import flexapod as fx
 from flexapod.analysis.results.variables import VARIABLES
 from flexapod.app.cli.cli import HOMES
-from flexapod.app.cli.examples import titles
+from flexapod.app.cli.commands_study import titles
 from flexapod.common.errors import InputError
 from flexapod.common.tables.reference import plain_path, reference
 

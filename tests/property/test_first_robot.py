@@ -16,7 +16,7 @@ from flexapod.analysis.description.robot_description import describe
 from flexapod.common.errors import InputError
 from flexapod.common.units import to_si
 from flexapod.design.first_robot import Request, first_robot, parse_request, sizing
-from flexapod.output.text.first import first_words
+from flexapod.output.text.answers import first_words
 
 RANDOM = np.random.default_rng(20240614)
 HOMES = np.geomspace(0.05, 5.0, 40)  # m

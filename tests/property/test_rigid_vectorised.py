@@ -8,8 +8,8 @@ import pytest
 import flexapod as fx
 from flexapod import kinematics
 from flexapod.kinematics.laws import Law
+from flexapod.kinematics.rotations import BLOCK
 from flexapod.kinematics.trajectory import poses_from_coordinates
-from flexapod.kinematics.vectors import BLOCK
 
 ROBOT = fx.preset("paper-robot").robot
 COUNT = 2 * BLOCK + 37

@@ -11,7 +11,7 @@ import xarray as xr
 
 import flexapod as fx
 from flexapod import control
-from flexapod.commissioning.feedforward import drive_loads, least_time
+from flexapod.commissioning.feedforward import least_time, loaded_path
 from flexapod.common.errors import InputError
 from flexapod.control import IFF, PID
 
@@ -205,7 +205,7 @@ def ends(start, end):
 
 def limits(**given):
     """What `time_optimal` takes the drives to be able to do."""
-    found = drive_loads.limits_of(SCREWS, *(given.get(name) for name in ("speed", "acceleration", "force")))
+    found = loaded_path.limits_of(SCREWS, *(given.get(name) for name in ("speed", "acceleration", "force")))
     return [getattr(found, name) or 0.0 for name in ("speed", "acceleration", "force")]
 
 

@@ -7,7 +7,7 @@ from scipy.io import savemat
 import flexapod as fx
 import flexapod.control as fc
 from flexapod.common.errors import InputError
-from flexapod.output.exchange.uff import uff
+from flexapod.output.exchange.formats import uff
 
 HZ = np.array([1.0, 2.5, 7.0, 11.0])
 

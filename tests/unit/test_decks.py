@@ -12,7 +12,7 @@ from flexapod.model import ConstantWrench, Cylinder, ForceDrive, Joint, Load, Se
 from flexapod.output.exchange.decks import Deck, Tie, cross_matrix, solved
 from flexapod.output.exchange.decks_legs import legs_at_pose
 from flexapod.output.exchange.decks_robot import point_masses
-from flexapod.output.exchange.export import abaqus_deck, left_out
+from flexapod.output.exchange.pose_deck import abaqus_deck, left_out
 
 SHARED = {
     "HEADING", "NODE", "ELEMENT", "MASS", "MATERIAL", "ELASTIC", "DENSITY", "SOLID SECTION", "SPRING", "BOUNDARY",

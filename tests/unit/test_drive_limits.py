@@ -5,7 +5,7 @@ import pytest
 from tests.machines import SCREW, study, symmetric
 
 from flexapod.analysis.results.rigid_path import RigidPath
-from flexapod.commissioning.feedforward.drive_loads import limits_of
+from flexapod.commissioning.feedforward.loaded_path import limits_of
 from flexapod.model import Limits, Rotor
 
 LEAD, RATIO, ROTOR, EFFICIENCY, G, MASS = 0.01, 3.0, 2e-3, 0.9, 9.81, 1000.0

@@ -3,7 +3,7 @@
 import numpy as np
 import scipy.linalg
 
-from flexapod.mechanics.shapes.eigen import eigh
+from flexapod.mechanics.shapes.beam_functions import eigh
 
 
 def test_values_and_vectors_are_those_of_scipy():

@@ -5,8 +5,8 @@ import pytest
 import flexapod as fx
 from flexapod.common.errors import InputError
 from flexapod.output.exchange import formats
-from flexapod.output.exchange.export import abaqus_deck
 from flexapod.output.exchange.formats import FORMATS
+from flexapod.output.exchange.pose_deck import abaqus_deck
 
 ROBOT = fx.preset("paper-robot")
 

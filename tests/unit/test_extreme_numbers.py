@@ -10,7 +10,7 @@ import flexapod as fx
 from flexapod import model
 from flexapod.common.errors import ComputationError, FlexapodError, InputError
 from flexapod.common.tables.section import Section
-from flexapod.mechanics.shapes.eigen import eigh
+from flexapod.mechanics.shapes.beam_functions import eigh
 from flexapod.model import preset_text
 from flexapod.model.file.files import read_study
 from flexapod.solve.saddle_point import saddle_solve

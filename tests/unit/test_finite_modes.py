@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from flexapod.common.errors import ComputationError
-from flexapod.solve.modal.damped import damping_ratios
-from flexapod.solve.modal.eigenproblem import count_real, natural
+from flexapod.solve.modal.eigenproblem import count_real, damping_ratios, natural
 from flexapod.solve.statics.stiffness import compliance
 
 HUGE = 1e200 * np.eye(3)[None]

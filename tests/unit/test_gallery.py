@@ -8,7 +8,7 @@ import matplotlib
 import matplotlib.pyplot as plt
 import pytest
 
-from flexapod.app.cli.examples import titles
+from flexapod.app.cli.commands_study import titles
 
 matplotlib.use("Agg")
 FOLDER = Path(__file__).parents[2] / "src" / "flexapod" / "examples/gallery"

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from flexapod.output.report.curves import MOST_POINTS, packed, thinned
 from flexapod.output.report.plotly_export import interactive
+from flexapod.output.report.replay import MOST_POINTS, packed, thinned
 
 
 def unpacked(value):

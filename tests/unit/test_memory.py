@@ -6,13 +6,13 @@ import sys
 
 import pytest
 
-from flexapod.common.memory import _glibc
+from flexapod.common.resources import _glibc
 
 #: Twice eight arrays of 2 MB each, and pages that the system had to give for the second eight.
 ROUNDS = """
 import resource
 import numpy as np
-from flexapod.common.memory import keep_freed
+from flexapod.common.resources import keep_freed
 
 def eight():
     return [np.ones(1 << 18) for _ in range(8)]

@@ -8,7 +8,7 @@ from tests.odd import NAN, refused, swinging
 
 import flexapod as fx
 from flexapod import control
-from flexapod.output.exchange.uff import uff
+from flexapod.output.exchange.formats import uff
 
 MECHANISMS = Path(__file__).parents[2] / "examples" / "mechanisms"
 

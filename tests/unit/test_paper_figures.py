@@ -12,10 +12,10 @@ from mpl_toolkits.mplot3d import proj3d
 import flexapod as fx
 from flexapod import model, plot
 from flexapod.output.figures.robot3d import beside
-from flexapod.verification.paper import figures, printed_figures, solid_figure, variant_figures, welded_figure
+from flexapod.verification.paper import clamped_legs, engine_figures, figures, printed_figures
 from flexapod.verification.paper.clamped_legs import ARMS, COLUMNS, READINGS, ROLLS
-from flexapod.verification.paper.light_pistons import PISTONS
 from flexapod.verification.paper.readings import tripod
+from flexapod.verification.paper.variants import PISTONS
 
 MARKER = 3.0  # points: radius of a joint, and its edge
 
@@ -121,13 +121,13 @@ def test_a_start_with_a_jump_is_a_band_with_its_first_swings():
     y = np.cos(90 * np.pi * time) + 0.5 * np.cos(50 * np.pi * time)
     jump = xr.Dataset({"com_deviation": (("time", "axis"), 1e-4 * np.stack([0 * y, y, np.cos(112 * np.pi * time)], 1))},
                       {"time": time, "axis": list("xyz")})  # fmt: skip
-    figure = variant_figures.start_jump(0.01 * jump, jump)
+    figure = engine_figures.start_jump(0.01 * jump, jump)
     above, beside, below, last = figure.axes
     assert len(above.collections) == len(below.collections) == 1 and not beside.collections and not last.collections
     # The largest of five neighbouring maxima is that of both together, 150 um, but for the phase of one to the other.
     _, high = (line.get_ydata() for line in above.lines[:2])
     assert high.min() > 120 and high.max() <= 150 + 1e-9
-    assert beside.lines[0].get_xdata()[-1] == pytest.approx(variant_figures.START)
+    assert beside.lines[0].get_xdata()[-1] == pytest.approx(engine_figures.START)
     names = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
     assert sorted(names) == ["Y, rate jumps at the start", "Z, rate jumps at the start", "smooth start"]
 
@@ -160,7 +160,7 @@ def test_lighter_pistons_show_their_deviation():
          "piston_mass": ("piston", np.linspace(3, 0.5, count))},
         {"inner": ("piston", [pair[1] for pair in PISTONS]), "axis": list("xyz")},
     )  # fmt: skip
-    first, *others = variant_figures.light_pistons(light).axes
+    first, *others = engine_figures.light_pistons(light).axes
     assert len(others) == 2 and "deviation [µm]" in first.get_ylabel()
     drawn = np.unique(np.concatenate([line.get_ydata() for line in first.lines]))
     np.testing.assert_allclose(drawn, np.arange(3, 3 * count + 1, 3), rtol=1e-12)
@@ -205,7 +205,7 @@ def test_what_welded_robots_do_not_reach_is_said():
     reached = data.copy(deep=True)
     reached["deviation"] = 100 * data.deviation
     for found, said in ((data, True), (reached, False)):
-        figure = welded_figure.welded_figure(found)
+        figure = clamped_legs.welded_figure(found)
         words = " ".join(text.get_text() for text in figure.axes[-1].texts)
         assert ("y 5 mm: not reached,\nat most 90 % of that" in words) == said
         assert ("z 10 mm: not reached,\nat most 30 % of that" in words) == said
@@ -213,7 +213,7 @@ def test_what_welded_robots_do_not_reach_is_said():
 
 def test_figure_2_has_the_solid_and_its_hub():
     actuator, robot = model.preset("paper-actuator").actuator, model.preset("paper-robot").robot
-    above, below = solid_figure.actuator_solid(actuator, robot.legs[0], 0.915).axes
+    above, below = figures.actuator_solid(actuator, robot.legs[0], 0.915).axes
     # 74 cells along 3.66 m, 4 across 0.15 m: tops, fronts, ends; and those of the shell.
     assert len(above.patches) == 74 * 4 + 74 + 4 + 3
     assert {text.get_text() for text in above.texts} == {"rigid hub, a shell", "deformable beam"}

@@ -25,15 +25,14 @@ from flexapod.design.maps import workspace_map
 from flexapod.model import load, preset
 from flexapod.output.figures import style
 from flexapod.output.figures.column_width import narrowed
-from flexapod.output.figures.fast_axes import Panel, _Plain
-from flexapod.output.figures.settings import settings
+from flexapod.output.figures.fast_axes import Panel, _Plain, settings
 from flexapod.output.figures.style import figure as page_figure
 from flexapod.output.figures.style import ink
 from flexapod.output.report.figures import draw
 from flexapod.output.report.plotly_export import interactive
 from flexapod.output.report.report import write_report
-from flexapod.output.scene.colours import ENERGIES
 from flexapod.output.scene.robot_scene import mode_scene, scene
+from flexapod.output.scene.style import ENERGIES
 
 SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 

@@ -14,8 +14,7 @@ from flexapod.analysis.description.robot_description import describe
 from flexapod.analysis.results.summary import summary
 from flexapod.kinematics.rotations import exponential, matrix
 from flexapod.model import loads, preset, preset_text
-from flexapod.output.report.curves import MOST_POINTS
-from flexapod.output.report.replay import FRAMES, locked_modes, replay
+from flexapod.output.report.replay import FRAMES, MOST_POINTS, locked_modes, replay
 from flexapod.output.report.report import robot_report, write_report
 from flexapod.output.text import html
 from flexapod.output.text.answers import axes_table, distances_table, run_items

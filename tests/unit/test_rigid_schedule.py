@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flexapod.kinematics import laws
-from flexapod.kinematics.schedule import load_law, motion_law, wrench
+from flexapod.kinematics.laws import load_law, motion_law, wrench
 from flexapod.model import (
     ConstantLaw,
     ConstantWrench,

@@ -13,8 +13,8 @@ from flexapod.app.browser import legend
 from flexapod.mechanics import shapes
 from flexapod.model import CombinedMotion, Guide, Piston, PistonSection, preset
 from flexapod.output.scene import geometry, skeleton
-from flexapod.output.scene.colours import LEG_COLORS, colors_of_legs
 from flexapod.output.scene.skeleton import STATIONS, Skeleton
+from flexapod.output.scene.style import LEG_COLORS, colors_of_legs
 
 
 @cache

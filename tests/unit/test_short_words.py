@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 import flexapod as fx
 from flexapod.analysis.description.robot_description import describe
-from flexapod.analysis.error_budget.counted import budget_counts, run_counts
+from flexapod.analysis.error_budget.text import budget_counts, run_counts
 from flexapod.analysis.results.idealizations import MACHINES, ideal_words
 from flexapod.app.cli.cli import app
 from flexapod.common.quantities import along_axes, brief

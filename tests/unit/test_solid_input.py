@@ -4,15 +4,14 @@ import numpy as np
 import pytest
 
 import flexapod as fx
+from flexapod.analysis.results.mode_shapes import local_vibration
 from flexapod.analysis.results.time_history import Interrupted
-from flexapod.analysis.results.vibration import local_vibration
 from flexapod.analysis.solid import simulate_solid
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.model import Rectangle, Tube
 from flexapod.output.figures.elements import solid_comparison, solid_meshes
 from flexapod.solve.fem.frequencies import banded_solver, frequencies
-from flexapod.solve.fem.hexahedra import integrals, mass, stiffness
-from flexapod.solve.fem.mesh import SolidMesh, beam_mesh
+from flexapod.solve.fem.hexahedra import SolidMesh, beam_mesh, integrals, mass, stiffness
 from flexapod.solve.fem.reduction import reduced_beam
 from flexapod.solve.fem.section_mesh import section_averages, section_mesh
 from flexapod.solve.fem.sliding import HubMotion, SlidingBeam, slide

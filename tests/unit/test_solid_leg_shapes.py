@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 from flexapod.common.errors import InputError
 from flexapod.mechanics.shapes import lateral_basis
 from flexapod.model import Rectangle, Tube
-from flexapod.solve.fem.leg_shapes import solid_leg_shapes
+from flexapod.solve.fem.reduction import solid_leg_shapes
 
 PISTON = Tube(diameter=0.027)
 

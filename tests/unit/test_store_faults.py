@@ -8,7 +8,7 @@ import xarray as xr
 from tests.sweeps import quick
 
 import flexapod as fx
-from flexapod.analysis import netcdf, open_results, save, store
+from flexapod.analysis import open_results, save, store
 from flexapod.analysis.checks import resource_limits as room
 from flexapod.analysis.description.robot_description import describe
 from flexapod.common.errors import InputError
@@ -63,7 +63,7 @@ def test_the_reason_is_that_of_the_system(data, path, monkeypatch):
     def silent(*_, **__):
         raise RuntimeError("NetCDF: HDF error")
 
-    monkeypatch.setattr(netcdf, "write", silent)
+    monkeypatch.setattr(store, "write", silent)
     with pytest.raises(InputError, match="cannot be written: the NetCDF library says NetCDF: HDF error"):
         save(data, path)  # the disk takes it: nothing else is known
     resource_limits = resource.getrlimit(resource.RLIMIT_FSIZE)

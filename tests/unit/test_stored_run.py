@@ -7,7 +7,7 @@ import xarray as xr
 
 import flexapod as fx
 from flexapod.analysis import open_results, save
-from flexapod.app.browser.opening import open_source
+from flexapod.app.browser.header import open_source
 
 
 @pytest.fixture(scope="module")

@@ -122,7 +122,7 @@ def test_results_are_replaced_whole_or_not_at_all(data, tmp_path, monkeypatch):
     def full(*args, **kwargs):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("flexapod.analysis.netcdf.write", full)
+    monkeypatch.setattr("flexapod.analysis.store.write", full)
     with pytest.raises(fx.InputError, match="No space left"):
         save(data, path)
     assert path.read_bytes() == before

@@ -16,7 +16,7 @@ import flexapod as fx
 from flexapod.common import version
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.common.tables import csv_tables
-from flexapod.design.sweeps import SweepStopped, open_sweep, run, store, unstacked, worker, writer
+from flexapod.design.sweeps import SweepStopped, open_sweep, run, store, unstacked, worker
 from flexapod.design.sweeps.plan import read_plan
 from flexapod.design.sweeps.samples import Points
 from flexapod.design.sweeps.store import Known, StoredArray, SweepStore
@@ -233,8 +233,8 @@ def test_full_disk(path, monkeypatch, more):
         with pytest.raises(ComputationError, match=r"No space left on device. Make space"):
             sweep_of_records(path)
     assert os.listdir(path.parent) == []
-    monkeypatch.setattr(writer, "OFTEN", 0.0)
-    monkeypatch.setattr(writer, "SHARE", np.inf)
+    monkeypatch.setattr(worker, "OFTEN", 0.0)
+    monkeypatch.setattr(worker, "SHARE", np.inf)
     with monkeypatch.context() as broken:
         stopping(broken, 2, KeyboardInterrupt)
         with pytest.raises(KeyboardInterrupt):

@@ -3,7 +3,7 @@
 from flexapod import model
 from flexapod.analysis.error_budget.text import Bar
 from flexapod.app.browser.budget_panel import budget_html, chart_html
-from flexapod.output.scene.colours import ERRORS
+from flexapod.output.scene.style import ERRORS
 
 
 def test_bars_are_as_long_as_the_errors_and_names_are_not_live():

@@ -14,8 +14,8 @@ from xarray import Dataset
 
 from flexapod.analysis import modes, run
 from flexapod.app.browser.document import Document
+from flexapod.app.browser.header import StudySource, open_source
 from flexapod.app.browser.network import free_port
-from flexapod.app.browser.opening import StudySource, open_source
 from flexapod.app.browser.server import GONE, View
 from flexapod.app.browser.session import Session
 from flexapod.app.cli.commands_proof import _write

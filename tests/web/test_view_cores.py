@@ -12,7 +12,7 @@ from tests.web.guests import guest, said, until
 import flexapod as fx
 from flexapod.app.browser import running
 from flexapod.app.browser.document import Document
-from flexapod.app.browser.opening import StudySource
+from flexapod.app.browser.header import StudySource
 from flexapod.app.browser.running import Cores, Turn
 
 

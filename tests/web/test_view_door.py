@@ -17,10 +17,10 @@ from tests.web.guests import CAMERA, guest, said, until
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
-from flexapod.app.browser import access, client_limits, logs
+from flexapod.app.browser import access, background, client_limits
 from flexapod.app.browser.document import Document
+from flexapod.app.browser.header import StudySource
 from flexapod.app.browser.network import has_place, is_expected, is_same_site, whose
-from flexapod.app.browser.opening import StudySource
 from flexapod.app.browser.server import View
 from flexapod.model import loads
 
@@ -51,8 +51,8 @@ def server():
 @pytest.fixture(autouse=True)
 def all_entries(monkeypatch):
     """Every entry of the log, however many there were before."""
-    monkeypatch.setattr(logs, "MOST_LINES", 1e9)
-    monkeypatch.setattr(logs.FEW, "_left", 1e9)
+    monkeypatch.setattr(background, "MOST_LINES", 1e9)
+    monkeypatch.setattr(background.FEW, "_left", 1e9)
 
 
 def asked(server, *lines: str) -> tuple[int, dict[str, str]]:
@@ -368,8 +368,8 @@ def _answers(server) -> bool:
 
 
 def test_the_log_is_bounded(monkeypatch):
-    few, written = logs.Few(), []
-    monkeypatch.setattr(logs, "MOST_LINES", 5)
+    few, written = background.Few(), []
+    monkeypatch.setattr(background, "MOST_LINES", 5)
     few._left = 5.0
     log = logging.getLogger("flexapod.test.few")
     log.addFilter(few)

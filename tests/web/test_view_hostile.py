@@ -14,11 +14,11 @@ from tests.web.conftest import SHORT, study_text
 from tests.web.guests import CAMERA, guest, said, until
 from viser import GuiButtonHandle, GuiSliderHandle, GuiTextHandle
 
-from flexapod.app.browser import logs
+from flexapod.app.browser import background
 from flexapod.app.browser.document import Document
-from flexapod.app.browser.opening import StudySource
+from flexapod.app.browser.header import StudySource
 from flexapod.app.browser.server import View
-from flexapod.common import memory
+from flexapod.common import resources
 from flexapod.model import loads
 
 NO_NUMBERS = (math.nan, math.inf, -math.inf)
@@ -33,8 +33,8 @@ TEXTS = (
 @pytest.fixture(autouse=True)
 def all_entries(monkeypatch):
     """Every entry of the log, however many there were before."""
-    monkeypatch.setattr(logs, "MOST_LINES", 1e9)
-    monkeypatch.setattr(logs.FEW, "_left", 1e9)
+    monkeypatch.setattr(background, "MOST_LINES", 1e9)
+    monkeypatch.setattr(background.FEW, "_left", 1e9)
 
 
 @pytest.fixture(scope="module")
@@ -287,7 +287,7 @@ import ctypes, sys, threading
 from flexapod.app.browser import server
 from flexapod.common import memory
 from flexapod.app.browser.document import Document
-from flexapod.app.browser.opening import StudySource
+from flexapod.app.browser.header import StudySource
 from flexapod.model import loads, preset_text
 
 if sys.argv[1] == "as before":
@@ -315,7 +315,7 @@ view.stop()
 """
 
 
-@pytest.mark.skipif(memory._glibc() is None, reason="another C library")
+@pytest.mark.skipif(resources._glibc() is None, reason="another C library")
 def test_threads_of_the_server_share_their_memory(tmp_path):
     """Each of sixteen pools, on two cores, kept what sessions had freed in it: 65 MB after 100 visits, now 10."""
     pools = {}
@@ -323,4 +323,4 @@ def test_threads_of_the_server_share_their_memory(tmp_path):
         told = tmp_path / f"{how}.xml"
         subprocess.run([sys.executable, "-c", POOLS, how, str(told)], check=True, timeout=300, capture_output=True)
         pools[how] = told.read_text().count("<heap nr=")
-    assert pools["now"] <= memory.MOST_ARENAS + 1 < pools["as before"]  # one more that was there before
+    assert pools["now"] <= resources.MOST_ARENAS + 1 < pools["as before"]  # one more that was there before

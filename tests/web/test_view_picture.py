@@ -15,7 +15,7 @@ from flexapod.analysis.store import save
 from flexapod.app.browser import preview
 from flexapod.app.browser import session as sessions
 from flexapod.app.browser.document import Document
-from flexapod.app.browser.opening import StudySource, open_source
+from flexapod.app.browser.header import StudySource, open_source
 from flexapod.app.browser.running import Turn
 from flexapod.common.errors import InputError
 from flexapod.model import preset

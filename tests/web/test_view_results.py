@@ -11,8 +11,8 @@ from tests.web.conftest import SHORT, study_text
 from tests.web.guests import guest, said, until
 from xarray import Dataset
 
-from flexapod.app.browser import kept_results
-from flexapod.app.browser.kept_results import KeptResults
+from flexapod.app.browser import running
+from flexapod.app.browser.running import KeptResults
 
 FINE = (
     *SHORT,
@@ -77,7 +77,7 @@ def test_what_nobody_holds_any_more_is_not_counted():
 def test_visitors_who_compute_and_stay_do_not_fill_the_memory(view, monkeypatch):
     """As many results as the limit holds stay; those before are gone, with all that was drawn of them."""
     with ExitStack() as guests:
-        monkeypatch.setattr(kept_results, "MOST_RESULTS", 1e12)
+        monkeypatch.setattr(running, "MOST_RESULTS", 1e12)
         server = view(study_text(*FINE))
         sessions = []
 
@@ -122,5 +122,5 @@ def test_visitors_who_compute_and_stay_do_not_fill_the_memory(view, monkeypatch)
 
 @pytest.mark.parametrize("free", [1e12, 4e6])
 def test_a_small_machine_keeps_less(free, monkeypatch):
-    monkeypatch.setattr(kept_results, "available_memory", lambda: free)
+    monkeypatch.setattr(running, "available_memory", lambda: free)
     assert KeptResults().most == min(500e6, free / 4)

@@ -17,13 +17,13 @@ from viser import _messages
 
 import flexapod as fx
 from flexapod import study as studies
-from flexapod.app.browser import files_panel, player, running, time_panel
+from flexapod.app.browser import files_panel, running, time_panel
 from flexapod.app.browser import server as pages
 from flexapod.app.browser.document import Document, read
-from flexapod.app.browser.opening import StudySource
+from flexapod.app.browser.header import StudySource
 from flexapod.app.browser.running import Cores, Turn
 from flexapod.app.browser.structure import offers
-from flexapod.common.tables.source_text import Written
+from flexapod.common.tables.toml import Written
 from flexapod.mechanics.elements import springs
 from flexapod.output.scene import robot_scene as robots
 
@@ -214,7 +214,7 @@ def test_twenty_five_frames_a_second_reach_a_client_from_a_fraction_of_one_core(
         f"a second, {spent / lasted:.2f} of a core"
     )
     assert client.frames >= 20  # a frame may carry two updates where the machine is busy
-    assert player.FRAME <= 1 / 20
+    assert time_panel.FRAME <= 1 / 20
     # Measured 0.3 s; six times as long would still leave room on the one core that drew them.
     assert spent < 1.8
 

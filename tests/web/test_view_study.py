@@ -16,7 +16,7 @@ from flexapod.app.browser.running import Turn
 from flexapod.app.browser.uploads import LARGEST
 from flexapod.common.errors import InputError
 from flexapod.output.report import figures
-from flexapod.output.text.refusal import lines_of, parts_of
+from flexapod.output.text.answers import lines_of, parts_of
 
 ANSWER = "misses its rigid path by up to"
 POINTS = """[motion]

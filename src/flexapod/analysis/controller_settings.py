@@ -21,16 +21,6 @@ if TYPE_CHECKING:
 
     AnyController = Controller | AdaptiveDamping | StateSpace | Function
 
-__all__ = [
-    "Noise",
-    "PerChannel",
-    "control_attributes",
-    "control_coords",
-    "control_remarks",
-    "control_results",
-    "sampled_controller",
-]
-
 SUMS = 1e-9  # of a pole from 1, of what it sums: less is none
 
 #: One number for all channels, or numbers by channels (``stroke:1``) and groups (``stroke``).

@@ -10,7 +10,7 @@ from flexapod import kinematics
 from flexapod.analysis.checks.checks import path_remarks
 from flexapod.analysis.results.arguments import PoseLike, RobotLike, as_pose, at_pose
 from flexapod.analysis.results.attributes import attributes
-from flexapod.analysis.results.inside import is_guided
+from flexapod.analysis.results.elongations import is_guided
 from flexapod.analysis.results.variables import dataset
 from flexapod.common.resources import one_thread
 from flexapod.solve.statics.lost_motion import lost_motion, places_with_friction
@@ -18,8 +18,6 @@ from flexapod.solve.statics.parts import guide_turning, mount_stiffness, part_st
 
 if TYPE_CHECKING:
     from xarray import Dataset
-
-__all__ = ["parts"]
 
 
 @one_thread()

@@ -23,17 +23,14 @@ from flexapod.control.state_space import StateSpace
 from flexapod.kinematics import Poses
 from flexapod.solve.linear.actuator import actuator_states
 from flexapod.solve.linear.channels import asked
-from flexapod.solve.linear.grid import grid_of
 from flexapod.solve.linear.plant import Drives, Plant, plant_at
-from flexapod.solve.linear.states import Descriptor, States, descriptor_of, states_of, units_of
+from flexapod.solve.linear.states import Descriptor, States, descriptor_of, grid_of, states_of, units_of
 from flexapod.solve.statics.assembly_mode import fallen
 from flexapod.solve.statics.locked_robot import the_equilibrium
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-
-__all__ = ["MATRICES", "LinearModel", "linearize", "model_of", "plant_of", "study_about_rest"]
 
 Friction = Literal["sliding", "stuck"]
 

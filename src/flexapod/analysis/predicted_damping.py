@@ -15,13 +15,11 @@ from flexapod.analysis.linear import linearize
 from flexapod.common.arrays import Array
 from flexapod.common.errors import FlexapodError
 from flexapod.common.quantities import text
-from flexapod.control.poles import SWINGS
+from flexapod.control.frequency_response import SWINGS
 from flexapod.control.state_space import StateSpace
 
 if TYPE_CHECKING:
     from xarray import Dataset
-
-__all__ = ["Predicted", "control_words", "predicted_damping", "static_stiffness"]
 
 NONE = 1e-6  # of the stiffness without a controller
 MOST = 12  # modes

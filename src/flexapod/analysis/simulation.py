@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 from flexapod import model
 from flexapod.analysis.actuator import simulate_actuator
 from flexapod.analysis.checks.checks import check_path
-from flexapod.analysis.checks.fixed_steps import step_warnings
 from flexapod.analysis.checks.plausibility import robot_warnings
-from flexapod.analysis.checks.stability import loop_remarks
+from flexapod.analysis.checks.stability import loop_remarks, step_warnings
 from flexapod.analysis.controller_settings import (
     Noise,
     PerChannel,
@@ -25,9 +24,8 @@ from flexapod.analysis.description.drive_limits import drive_warnings
 from flexapod.analysis.results.arguments import LoadLike, RobotLike, StartLike, as_study, read
 from flexapod.analysis.results.attributes import attributes, march_attributes
 from flexapod.analysis.results.element_outputs import element_forms
-from flexapod.analysis.results.forces import force_error, force_warnings
 from flexapod.analysis.results.lazy_arrays import Asked
-from flexapod.analysis.results.leg_results import damped_angles, drive_forms
+from flexapod.analysis.results.leg_results import damped_angles, drive_forms, force_error, force_warnings
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.analysis.results.robot_results import payload_results, rigid_force_results, robot_coords, robot_results
 from flexapod.analysis.results.time_history import Progress, Record, check_progress, collect, finished

@@ -22,8 +22,6 @@ from flexapod.solve.linear.states import states_of
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["compliance", "transmissibility"]
-
 
 @one_thread()
 def compliance(

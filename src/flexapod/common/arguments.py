@@ -9,8 +9,6 @@ from flexapod.common.arrays import Array, floats
 from flexapod.common.errors import InputError
 from flexapod.common.units import DIMENSIONS, quantities, quantity
 
-__all__ = ["flag", "frequencies", "matrix", "number", "numbers", "whole"]
-
 
 def number(
     given: object, key: str, dimension: str = "number", *, least: float = -np.inf, above: float = -np.inf,

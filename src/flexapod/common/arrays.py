@@ -5,8 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Array", "Mask", "floats"]
-
 Array = NDArray[np.float64]
 """A float64 array; SI units."""
 

@@ -7,8 +7,6 @@ from types import MappingProxyType
 
 from flexapod.common.errors import InputError, closest
 
-__all__ = ["CITATIONS", "Citation", "cite"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Citation:

@@ -15,8 +15,6 @@ from xarray.indexes import Index, PandasIndex
 
 from flexapod.common.arrays import Array
 
-__all__ = ["awaited", "composed", "labelled", "variable"]
-
 
 def variable(dims: str | tuple[str, ...], given: ArrayLike, attrs: Mapping[str, object] | None = None) -> Variable:
     """Variable of numbers or texts; xarray's own conversion would first import dask, a quarter of a second."""

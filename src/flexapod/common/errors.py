@@ -6,20 +6,6 @@ import difflib
 from collections.abc import Iterable
 from pathlib import Path
 
-__all__ = [
-    "LONGEST_QUOTE",
-    "ComputationError",
-    "FlexapodError",
-    "InputError",
-    "Malformed",
-    "check_kind",
-    "check_known",
-    "closest",
-    "names_of",
-    "nearest",
-    "quoted",
-]
-
 LONGEST_QUOTE = 80
 """Letters that a message quotes of what stands somewhere: of a cell of a table, of a value."""
 

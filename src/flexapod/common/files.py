@@ -20,24 +20,6 @@ from uuid import uuid4
 
 from flexapod.common.errors import InputError
 
-__all__ = [
-    "LARGEST_TABLE",
-    "LARGEST_TEXT",
-    "RESULTS",
-    "UNFINISHED",
-    "check_name",
-    "check_regular",
-    "path_of",
-    "read_bytes",
-    "read_text",
-    "remove_abandoned",
-    "replacing",
-    "scratch",
-    "settle",
-    "whole",
-    "write_text",
-]
-
 LARGEST_TEXT = 10_000_000
 """Of a study or a sweep file [byte]: the largest are some hundred kilobytes."""
 LARGEST_TABLE = 100_000_000

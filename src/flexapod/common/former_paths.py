@@ -36,37 +36,73 @@ MODULES = (
     (
         "",
         "common",
-        "arrays citations errors units version integration>generalized_alpha labelled>datasets ties>ranking "
+        "arrays citations errors integration>generalized_alpha labelled>datasets ties>ranking units version "
         "words>quantities",
     ),
-    ("bases", "mechanics.shapes", "catalogue>registry hermite>piecewise"),
-    ("control", "common", "arguments"),
+    (
+        "bases",
+        "mechanics.shapes",
+        "catalogue>registry eigen>beam_functions hermite>piecewise load_shapes>registry polynomials>piecewise "
+        "segments>piecewise",
+    ),
+    (
+        "cli",
+        "app.cli",
+        "commands_budget>commands_poses examples>commands_study key_names>commands_study map_options>commands_map",
+    ),
     (
         "control",
         "control",
-        "frequency>frequency_response interconnect>feedback laws>filters limits>loop_stability "
-        "measured>measurements sampling>discretization scheduled>gain_scheduling spectra>random_response",
+        "adaptive>gain_scheduling channels>state_space closing>feedback files>datasets "
+        "frequency>frequency_response function>controllers histories>discretization impedances>feedback "
+        "integrators>frequency_response interconnect>feedback laws>filters limits>loop_stability loops>loop_gain "
+        "measured>measurements poles>frequency_response reduction>norms ring_down>measurements "
+        "sampling>discretization scheduled>gain_scheduling spectra>random_response",
     ),
+    ("control", "common", "arguments"),
     (
         "description",
         "analysis.description",
         "actuator>actuator_description bodies>clearance hydraulic>hydraulic_description leg>leg_description "
         "limits>drive_limits rest>residual_vibration robot>robot_description screw>screw_description",
     ),
-    ("design", "design.first_robot", "choice>electric_choice sizes>sizing written>study_text"),
-    ("document", "output.text", "run>answers"),
-    ("elements", "mechanics.leg", "cylinder platform_joint universal carriage>joints"),
-    ("elements", "mechanics.elements", "frame>frames known>registry"),
-    ("error_budget", "analysis.error_budget", "dataset>budget_dataset motion>along_motion sentences>text"),
+    (
+        "design",
+        "design.first_robot",
+        "catalogue choice>electric_choice design electric hydraulic sizes>sizing warm written>study_text",
+    ),
+    ("document", "output.text", "first>answers maps>answers modes>answers refusal>answers run>answers"),
+    ("elements", "mechanics.leg", "carriage>joints cylinder>joints platform_joint>joints universal>joints"),
+    (
+        "elements",
+        "mechanics.elements",
+        "frame>frames known>registry rotations>frames shear>distribution summed_error>motor_loop",
+    ),
+    ("error_budget", "analysis.error_budget", "counted>text dataset>budget_dataset motion>along_motion sentences>text"),
+    (
+        "exchange",
+        "output.exchange",
+        "content>formats decks_beam>decks export>pose_deck glb>gltf state_space>formats uff>formats",
+    ),
     (
         "feedforward",
         "commissioning.feedforward",
-        "beam>actuator_inversion corrections>correction_series elastic>stable_inversion "
-        "inversion>noncausal_filter loaded>loaded_path switching>bang_bang table>command_table "
-        "vibration>modal_path way>straight_line",
+        "beam>actuator_inversion compensate>compensation corrections>correction_series drive_loads>loaded_path "
+        "elastic>stable_inversion elastic_path>stable_inversion inversion>actuator_inversion loaded>loaded_path "
+        "series>correction_series switching>bang_bang table>command_table vibration>modal_path way>straight_line",
     ),
-    ("kinematics", "kinematics", "breaks>discontinuities built>as_built limbs>leg_geometry"),
-    ("mechanics", "mechanics.leg", "assembly>kernel_functions"),
+    ("fem", "solve.fem", "leg_shapes>reduction mesh>hexahedra mouth>sliding"),
+    (
+        "kinematics",
+        "kinematics",
+        "breaks>discontinuities built>as_built ends>frames limbs>leg_geometry schedule>laws vectors>rotations",
+    ),
+    (
+        "mechanics",
+        "mechanics.leg",
+        "assembly>kernel_functions closure>payload guide_layout>leg_beam layout leg_beam leg_chain payload "
+        "sliding>kernel_functions",
+    ),
     (
         "model",
         "model.leg",
@@ -75,38 +111,57 @@ MODULES = (
     ),
     ("model", "model.study", "control disturbance home mount payload remarks robot robot_checks simulation tolerances"),
     ("model", "model.file", "fields files json_schema key_paths page plausible"),
-    ("page", "app.browser", "door>access knob>number_slider quick>preview typed>text_fields visitor>client_limits"),
+    (
+        "page",
+        "app.browser",
+        "door>access inputs>session knob>number_slider logs>background opening>header player>time_panel "
+        "quick>preview scripts>markup typed>text_fields visitor>client_limits",
+    ),
     (
         "paper",
         "verification.paper",
-        "cost>computing_time light>light_pistons printed>printed_figures printed_lines>printed_equations "
-        "welded>clamped_legs",
+        "claims_welded>claims_variants cost>computing_time light>variants printed>printed_figures "
+        "printed_lines>printed_equations solid_figure>figures variant_figures>engine_figures welded>clamped_legs "
+        "welded_figure>clamped_legs",
     ),
-    ("plot", "output.figures", "narrow>column_width panel>fast_axes twice>dual_renderer"),
+    (
+        "plot",
+        "output.figures",
+        "letters>dual_renderer narrow>column_width panel>fast_axes png>style settings>fast_axes "
+        "twice>dual_renderer vibration>linear",
+    ),
     (
         "pose_errors",
         "analysis.pose_errors",
-        "at_home>accuracy_text at_pose>error_sources imperfect>bent_legs play>backlash pose>pose_accuracy "
-        "spread>tolerances",
+        "at_home>accuracy_text at_pose>error_sources imperfect>bent_legs motion>backlash play>backlash "
+        "pose>pose_accuracy rows>error_sources spread>tolerances weight>tolerances",
     ),
-    ("report", "output.report", "interactive>plotly_export page>report"),
+    ("report", "output.report", "curves>replay interactive>plotly_export linear>report page>report"),
     (
         "results",
         "analysis.results",
-        "asked>lazy_arrays cause_words>cause_labels ideal>idealizations names>variables "
-        "of_elements>element_outputs path>rigid_path record>time_history robot>robot_results",
+        "asked>lazy_arrays cause_words>cause_labels forces>leg_results ideal>idealizations inside>elongations "
+        "names>variables of_elements>element_outputs path>rigid_path record>time_history robot>robot_results "
+        "vibration>mode_shapes",
     ),
-    ("results", "analysis", "netcdf"),
-    ("review", "analysis.checks", "reach>reachability room>resource_limits unstable_loops>stability"),
-    ("runtime", "common", "loading>lazy_imports threads>resources"),
-    ("scene", "output.scene", "drives>style robot>robot_scene"),
-    ("schema", "common.tables", "notes>field_help written>source_text"),
-    ("solve.modal", "solve.modal", "frequencies>eigenproblem loss_factor>structural_damping"),
+    ("results", "analysis", "netcdf>store"),
+    (
+        "review",
+        "analysis.checks",
+        "columns>estimates fixed_steps>stability reach>reachability room>resource_limits sliding>screws "
+        "unstable_loops>stability",
+    ),
+    ("runtime", "common", "loading>lazy_imports memory>resources threads>resources"),
+    ("scene", "output.scene", "colours>style drives>style robot>robot_scene"),
+    ("schema", "common.tables", "notes>field_help written>toml"),
+    ("solve.linear", "solve.linear", "beside>plant floor>plant gravity>plant grid>states robot>random_vibration"),
+    ("solve.modal", "solve.modal", "damped>eigenproblem frequencies>eigenproblem loss_factor>structural_damping"),
     ("solve", "solve", "saddle>saddle_point"),
     (
         "solve.statics",
         "solve.statics",
-        "arrow>block_arrow branch>assembly_mode locked>locked_robot released>ideal_robot shared>minimum_energy_forces",
+        "arrow>block_arrow branch>assembly_mode drive_forces>static_loads locked>locked_robot "
+        "released>ideal_robot shared>minimum_energy_forces substitutes>ideal_robot",
     ),
     (
         "solve.time",
@@ -119,9 +174,21 @@ MODULES = (
         "analysis",
         "controlled>controller_settings many_modes>modes_at_poses parts>elastic_parts predicted>predicted_damping",
     ),
-    ("surveys.sweeps", "design.sweeps", "batch>worker kept>outputs points>samples"),
+    (
+        "surveys.sweeps",
+        "design.sweeps",
+        "batch>worker kept>outputs points>samples records>store schedule>executors writer>worker",
+    ),
     ("surveys.sweeps", "analysis", "scalars"),
     ("surveys.workspace", "analysis", "quantities>pose_values"),
+    ("symbolic", "mechanics.symbolic", "lagrange>functions"),
+    (
+        "verify.cases",
+        "verification.cases",
+        "calculix_corrections>calculix_beams calculix_robots>calculix_beams exports>linear",
+    ),
+    ("verify.engines", "verification.engines", "exudyn_friction>exudyn_builder mujoco_model>mujoco_forces"),
+    ("verify", "verification", "locked_robot>dynamic_stiffness page>pack"),
 )
 
 

@@ -12,8 +12,6 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import Any
 
-__all__ = ["FormerPaths", "later", "lazy", "loaded", "without"]
-
 WINGS = frozenset(
     "analysis app commissioning common control design examples kinematics mechanics model output solve "
     "verification".split()

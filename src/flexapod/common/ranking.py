@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from flexapod.common.arrays import Array, Mask
 
-__all__ = ["EQUALS", "alike", "first_largest", "first_least", "most", "ranked"]
-
 T = TypeVar("T")
 ROUNDING = 1e-12
 """Values that differ by less, of the largest size among them, are the same: some thousand roundings. It is no wider,

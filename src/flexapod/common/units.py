@@ -16,8 +16,6 @@ from flexapod.common.errors import InputError
 if TYPE_CHECKING:
     from pint import UnitRegistry
 
-__all__ = ["COMMON_UNITS", "DIMENSIONS", "Dimension", "number_and_unit", "quantities", "quantity", "to_si"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Dimension:

@@ -12,9 +12,17 @@ from flexapod.common.lazy_imports import later
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from flexapod.control.adaptive import AdaptiveDamping, Tracker
-    from flexapod.control.closing import DelayedLoop
-    from flexapod.control.controllers import DVF, IFF, PID, Controller, Decentralised, Decoupled, Fused, Together
+    from flexapod.control.controllers import (
+        DVF,
+        IFF,
+        PID,
+        Controller,
+        Decentralised,
+        Decoupled,
+        Function,
+        Fused,
+        Together,
+    )
     from flexapod.control.decoupling import (
         Decoupling,
         by_jacobian,
@@ -23,6 +31,7 @@ if TYPE_CHECKING:
         centre_of_stiffness,
         robot_jacobian,
     )
+    from flexapod.control.feedback import DelayedLoop, impedance
     from flexapod.control.filters import (
         ControlLaw,
         complementary,
@@ -36,33 +45,28 @@ if TYPE_CHECKING:
         positive_feedback,
         rate,
     )
-    from flexapod.control.function import Function
-    from flexapod.control.gain_scheduling import Scheduled
-    from flexapod.control.impedances import impedance
+    from flexapod.control.gain_scheduling import AdaptiveDamping, Scheduled, Tracker
+    from flexapod.control.loop_gain import best_gain, root_locus
     from flexapod.control.loop_stability import margins
-    from flexapod.control.loops import best_gain, root_locus
-    from flexapod.control.ring_down import ring_down
+    from flexapod.control.measurements import ring_down
     from flexapod.control.state_space import StateSpace
 
 _HOMES = {
-    "flexapod.control.adaptive": ("AdaptiveDamping", "Tracker"),
-    "flexapod.control.closing": ("DelayedLoop",),
     "flexapod.control.controllers": (
-        "DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together",
+        "DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Function", "Fused", "Together",
     ),
     "flexapod.control.decoupling": (
         "Decoupling", "by_jacobian", "by_modes", "by_singular_vectors", "centre_of_stiffness", "robot_jacobian",
     ),
-    "flexapod.control.function": ("Function",),
-    "flexapod.control.impedances": ("impedance",),
+    "flexapod.control.feedback": ("DelayedLoop", "impedance"),
     "flexapod.control.filters": (
         "ControlLaw", "complementary", "gain", "high_pass", "integrator", "lead", "low_pass", "notch", "pid",
         "positive_feedback", "rate",
     ),
+    "flexapod.control.gain_scheduling": ("AdaptiveDamping", "Scheduled", "Tracker"),
+    "flexapod.control.loop_gain": ("best_gain", "root_locus"),
     "flexapod.control.loop_stability": ("margins",),
-    "flexapod.control.loops": ("best_gain", "root_locus"),
-    "flexapod.control.ring_down": ("ring_down",),
-    "flexapod.control.gain_scheduling": ("Scheduled",),
+    "flexapod.control.measurements": ("ring_down",),
     "flexapod.control.state_space": ("StateSpace",),
 }  # fmt: skip
 

@@ -1,9 +1,12 @@
-"""Controllers: laws between named sensors and actuators, alone or decoupled by matrices, (T21.12)-(T21.16)."""
+"""Controllers: laws between named sensors and actuators, alone or decoupled by matrices, (T21.12)-(T21.16).
+
+A controller that is a function of an instant and readings, in place of a linear law.
+"""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 
 import numpy as np
@@ -11,15 +14,12 @@ from scipy.linalg import block_diag
 
 from flexapod.common.arguments import matrix
 from flexapod.common.arrays import Array
-from flexapod.common.errors import InputError
+from flexapod.common.errors import InputError, names_of
 from flexapod.common.units import quantity
 from flexapod.control import filters
-from flexapod.control.channels import RATE, Names, chosen
 from flexapod.control.feedback import law_of
 from flexapod.control.filters import ControlLaw, Number
-from flexapod.control.state_space import StateSpace
-
-__all__ = ["DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Fused", "Together", "pairs"]
+from flexapod.control.state_space import RATE, Names, StateSpace, chosen
 
 NO_UNITS: Mapping[str, str] = {}
 
@@ -281,3 +281,28 @@ def pairs(sensor: Names, actuator: Names, outputs: Sequence[str], inputs: Sequen
             next_step="Name single channels, as drive:3",
         )
     return sensors, actuators
+
+
+@dataclass(frozen=True, kw_only=True)
+class Function:
+    """What a simulation asks once a sample: ``function(t, readings) -> values``, t [s].
+
+    Parameters
+    ----------
+    function : callable
+        Of an instant and the readings (p,), in the order of `inputs`; returns the values (m,) of `outputs`. Called in
+        the order of samples; after a step that fails some come again with the same instants.
+    inputs, outputs : tuples of str
+        Single channels that it reads, as ``stroke:1``, and that it moves, as ``drive:1``.
+    """
+
+    function: Callable[[float, Array], object]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        """A function, and names of channels."""
+        if not callable(self.function):
+            raise InputError("is no function", key="function", value=self.function, allowed="function(t, readings)")
+        for key in ("inputs", "outputs"):
+            object.__setattr__(self, key, tuple(names_of(getattr(self, key), key)))

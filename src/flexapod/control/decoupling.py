@@ -12,16 +12,13 @@ from numpy.typing import ArrayLike
 from flexapod.common.arguments import matrix, number, numbers, whole
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError, InputError
-from flexapod.control.channels import Names
 from flexapod.control.controllers import Decoupled
 from flexapod.control.filters import ControlLaw
-from flexapod.control.state_space import a_system
+from flexapod.control.state_space import Names, a_system
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
     from flexapod.model import Robot, Study
-
-__all__ = ["Decoupling", "by_jacobian", "by_modes", "by_singular_vectors", "centre_of_stiffness", "robot_jacobian"]
 
 INDEPENDENT = 1e-9  # smallest over largest singular value of what still has an inverse
 

@@ -1,4 +1,7 @@
-"""From continuous systems to samples: inputs held in between, delays of any length, (T21.17)-(T21.19)."""
+"""From continuous systems to samples: inputs held in between, delays of any length, (T21.17)-(T21.19).
+
+Answers of a linear system over time to steps and impulses, exact at the instants, (T21.17).
+"""
 
 from __future__ import annotations
 
@@ -11,14 +14,12 @@ from scipy.linalg import expm
 
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
-from flexapod.common.units import DIMENSIONS, to_si
-from flexapod.control.channels import RATE
-from flexapod.control.feedback import OnChannels, law_of
+from flexapod.common.units import DIMENSIONS, quantity, to_si
+from flexapod.control.frequency_response import damping_of
+from flexapod.control.state_space import RATE
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
-
-__all__ = ["LATEST", "held", "law_beside", "period_of", "without_rates"]
 
 LATEST = 1000  # samples that are remembered: of a delay, each with its states; of a function, that may come again
 NEARLY = 1e-9  # of a period: a delay so near to whole samples has them
@@ -38,12 +39,6 @@ def period_of(sample: float | str) -> float:
     if not DIMENSIONS["time"].least <= period <= DIMENSIONS["time"].most:
         raise InputError("is not a time", key="sample", value=sample, allowed='above 0 s, for example "5 kHz"')
     return period
-
-
-def law_beside(system: StateSpace, controller: OnChannels | StateSpace) -> StateSpace:
-    """A controller as a law between channels of a system, from sample to sample where that is sampled."""
-    law = law_of(controller, system.outputs, system.inputs, system.units)
-    return held(law, system.sample) if system.sample is not None and law.sample is None else law
 
 
 def held(system: StateSpace, period: float, delay: float = 0.0, delayed: Sequence[int] | None = None) -> StateSpace:
@@ -134,3 +129,48 @@ def without_rates(system: StateSpace) -> StateSpace:
         inputs=tuple(names),
         states=(*system.states, *(f"{name} before" for name in read)),
     )
+
+
+DECAYS = 5.0  # time constants of the slowest motion
+MOST = 100.0  # of its periods, where it hardly decays
+PERIOD = 40  # instants in a period of the fastest oscillation that lasts
+LONGEST = 1e7  # steps that a computer's memory takes
+COUNT = 2000  # instants at most, where none are given
+
+
+def instants(system: StateSpace, duration: float | None, step: float | None) -> Array:
+    """Instants [s] from 0 on: as long as the slowest motion needs, as fine as the fastest oscillation, or as given."""
+    if system.sample is not None:
+        step = system.sample
+    s, frequency, _ = damping_of(system.poles(), system.sample)
+    moving = (frequency > 1e-9 * frequency.max(initial=0.0)) & np.isfinite(frequency)
+    if duration is None:
+        decay = np.maximum(np.abs(s.real[moving]), 1e-300)
+        duration = float(np.minimum(MOST / frequency[moving], DECAYS / decay).max(initial=0.0)) or 1.0
+    duration = quantity(duration, "time", key="duration")
+    if not duration > 0:
+        raise InputError("is not a time", key="duration", value=duration, allowed="above 0 s")
+    if step is None:
+        swings = moving & (s.imag > 0)
+        fine = duration / COUNT
+        step = max(fine, 1 / (PERIOD * frequency[swings].max())) if swings.any() else fine
+    step = quantity(step, "time", key="step")
+    if not 0 < step <= duration:
+        raise InputError("is not a time", key="step", value=step, allowed=f"above 0 s, at most {duration:g} s")
+    if duration > LONGEST * step:
+        raise InputError("has too many steps", key="duration", value=duration, allowed=f"{LONGEST:.0e} steps at most")
+    return np.asarray(step * np.arange(int(np.floor(duration / step * (1 + 1e-12))) + 1), dtype=float)
+
+
+def histories(system: StateSpace, time: Array, *, impulse: bool) -> Array:
+    """Outputs (outputs, inputs, time) after a unit step of each input at 0, or its impulse without feed-through."""
+    n, m = system.B.shape
+    found = np.empty((len(system.outputs), m, len(time)))
+    rings = impulse and system.sample is None  # from where the impulse has thrown it
+    moves = system if system.sample is not None else held(replace(system.select(), D_rate=None), time[1] - time[0])
+    x = np.array(system.B) if rings else np.zeros((n, m))
+    for i in range(len(time)):
+        u = float(not impulse or (i == 0 and not rings)) * np.eye(m)
+        found[:, :, i] = system.C @ x + system.D @ u
+        x = moves.A @ x + moves.B @ u
+    return found

@@ -15,21 +15,6 @@ from flexapod.common.errors import InputError
 from flexapod.common.units import DIMENSIONS
 from flexapod.control.frequency_response import divided
 
-__all__ = [
-    "ControlLaw",
-    "a_law",
-    "complementary",
-    "gain",
-    "high_pass",
-    "integrator",
-    "lead",
-    "low_pass",
-    "notch",
-    "pid",
-    "positive_feedback",
-    "rate",
-]
-
 Number = float | str
 
 

@@ -1,19 +1,114 @@
-"""Frequency response of a state space from its poles and residues, checked against solving, (T21.2)-(T21.3)."""
+"""Frequency response of a state space from its poles and residues, checked against solving, (T21.2)-(T21.3).
+
+Integrators of a system, found by what is 0 in its matrices, taken apart from all else exactly, (T21.33)-(T21.34).
+
+Poles of a state space, their frequencies and damping ratios, (T21.4).
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy.linalg
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
 
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import ComputationError
-from flexapod.control.integrators import moved_and_shown, without_integrators
-
-__all__ = ["divided", "response"]
 
 Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Integrated:
+    """A system as A (n, n), B (n, m), C (p, n) beside powers (k, p, m) of 1/s, 1/s^2, ..., Eq. (T21.34).
+
+    ``most`` (k, p, m): what the powers could add up to without cancelling.
+    """
+
+    A: Array
+    B: Array
+    C: Array
+    powers: Array
+    most: Array
+
+    def drifting(self, s: Complex) -> Complex:
+        """What the integrators answer at points s (f,), (p, m, f)."""
+        found = np.zeros((*self.powers.shape[1:], len(s)), dtype=complex)
+        for k, power in enumerate(self.powers, start=1):
+            found += power[:, :, None] * s**-k
+        return found
+
+
+def moved_and_shown(A: Array, B: Array, C: Array) -> tuple[Array, Array, Array]:
+    """The states that some input moves and some output shows, by what is 0 in the matrices."""
+    links = A != 0
+    kept = np.flatnonzero(reached(links, (B != 0).any(axis=1)) & reached(links.T, (C != 0).any(axis=0)))
+    return A[kept][:, kept], B[kept], C[:, kept]
+
+
+def reached(links: Mask, start: Mask) -> Mask:
+    """States that lie behind those of the start, which are among them."""
+    while True:
+        further = start | (links @ start)
+        if (further == start).all():
+            return start
+        start = further
+
+
+def integrators(A: Array) -> Mask:
+    """States that nothing but others moves and that no circle of states holds."""
+    _, circle = connected_components(A != 0, directed=True, connection="strong")
+    return (np.bincount(circle, minlength=1)[circle] == 1) & (np.diag(A) == 0)
+
+
+def without_integrators(A: Array, B: Array, C: Array) -> Integrated:
+    """Integrators that only drive all else, and those that all else only drives, apart from it, Eq. (T21.33)."""
+    links, drift = A != 0, integrators(A)
+    others = ~drift
+    drives, driven = reached(links.T, others) & drift, reached(links, others) & drift
+    between = drives & driven
+    main = np.flatnonzero(others | between)
+    up, down = np.flatnonzero(drives & ~between), np.flatnonzero(drift & ~drives)
+    N = np.concatenate([down, up])
+    part = lambda rows, columns: A[rows][:, columns]  # noqa: E731
+    if not len(N) or not len(main):
+        return _as_powers(A, B, C, N, main, (np.abs(B), np.abs(C)))
+    # (T21.33)  x_main + X x_up and x_down + Y x_main are apart
+    X = scipy.linalg.solve_sylvester(part(main, main), -part(up, up), -part(main, up)) if len(up) else None
+    Y = scipy.linalg.solve_sylvester(part(down, down), -part(main, main), -part(down, main)) if len(down) else None
+    change, back = np.eye(len(A)), np.eye(len(A))
+    if X is not None:
+        change[main[:, None], up], back[main[:, None], up] = X, -X
+    if Y is not None:
+        second, undone = np.eye(len(A)), np.eye(len(A))
+        second[down[:, None], main], undone[down[:, None], main] = Y, -Y
+        change, back = change @ second, undone @ back
+    if not (np.isfinite(change).all() and np.isfinite(back).all()):
+        none = np.zeros((0, len(C), B.shape[1]))
+        return Integrated(A=A, B=B, C=C, powers=none, most=none)
+    most = np.abs(back) @ np.abs(B), np.abs(C) @ np.abs(change)
+    return _as_powers(back @ A @ change, back @ B, C @ change, N, main, most)
+
+
+def _as_powers(
+    A: Array, B: Array, C: Array, N: NDArray[np.int_], main: NDArray[np.int_], sizes: tuple[Array, Array]
+) -> Integrated:
+    """Integrators as powers of 1/s: their matrix to some power is 0; ``sizes``: of B and C without cancelling."""
+    inner, shape = A[N][:, N], (len(C), B.shape[1])
+    powers, most = [], []
+    power, size = B[N], sizes[0][N]
+    while power.any():
+        powers.append(C[:, N] @ power)
+        most.append(sizes[1][:, N] @ size)
+        power, size = inner @ power, np.abs(inner) @ size
+    return Integrated(
+        A=A[main][:, main], B=B[main], C=C[:, main], powers=np.array(powers).reshape(len(powers), *shape),
+        most=np.array(most).reshape(len(powers), *shape),
+    )  # fmt: skip
+
 
 UPON = 1e-15  # distance from a pole over its size at which a point lies upon it
 CHECKED = 12  # frequencies at which poles and residues are compared with solving
@@ -149,3 +244,42 @@ def divided(matrices: NDArray[Any], B: NDArray[Any]) -> Complex:
         raise ComputationError(
             "the response has no finite size at a frequency: a pole lies there", next_step=ADVICE
         ) from None
+
+
+INTEGRATES = 1e-7  # of the largest pole: a double pole at 0 splits that far
+SWINGS = 1e-6  # imaginary part over the size of a pole that oscillates
+
+
+def poles_of(A: Array) -> Complex:
+    """Eigenvalues, the slowest first; of a pair the one below the real axis first, (n,)."""
+    values = np.linalg.eigvals(A).astype(complex)
+    return values[np.lexsort((np.imag(values), np.real(values), np.abs(values)))]
+
+
+def damping_of(poles: Complex, sample: float | None) -> tuple[Complex, Array, Array]:
+    """Those of `swings_of` of positive or no imaginary part, by frequency."""
+    s, frequency, ratio = swings_of(poles, sample)
+    upper = np.flatnonzero(s.imag >= 0)
+    order = upper[np.lexsort((s.real[upper], frequency[upper]))]
+    return s[order], frequency[order], ratio[order]
+
+
+def swings_of(poles: Complex, sample: float | None) -> tuple[Complex, Array, Array]:
+    """Poles [1/s], their frequencies [Hz] and damping ratios, arrays of one shape, Eq. (T21.4).
+
+    Of a sampled system the poles log(z) / T of the continuous one behind it.
+    """
+    if sample is not None:
+        with np.errstate(divide="ignore"):
+            behind = np.log(np.asarray(poles, dtype=complex))
+        poles = np.real(behind) / sample + 1j * (np.imag(behind) / sample)  # by parts: of a pole at 0 it is -inf
+    size = np.abs(poles)
+    ratio = np.divide(-poles.real, size, out=np.zeros(poles.shape), where=(size > 0) & np.isfinite(size))
+    return poles, size / (2 * np.pi), np.where(np.isinf(size), 1.0, ratio)
+
+
+def middle_rate(poles: Complex) -> float:
+    """A rate amid those of the poles [1/s], so that numbers of the equations are of one size."""
+    size = np.abs(poles)
+    size = size[size > INTEGRATES * size.max(initial=0.0)]
+    return float(np.exp(np.log(size).mean())) if size.size else 1.0

@@ -14,10 +14,8 @@ from flexapod.common.arguments import number
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.common.units import DIMENSIONS
-from flexapod.control.closing import DelayedLoop
-from flexapod.control.discretization import law_beside
-from flexapod.control.feedback import closed
-from flexapod.control.poles import damping_of, swings_of
+from flexapod.control.feedback import DelayedLoop, closed, law_beside
+from flexapod.control.frequency_response import damping_of, swings_of
 from flexapod.control.state_space import a_system
 
 if TYPE_CHECKING:
@@ -26,7 +24,6 @@ if TYPE_CHECKING:
     from flexapod.control.controllers import Controller
     from flexapod.control.state_space import StateSpace
 
-__all__ = ["margins"]
 
 Complex = NDArray[np.complex128]
 Gains = Callable[[Array], Complex]  # around all loops at frequencies [Hz], (f, k, k)

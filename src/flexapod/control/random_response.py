@@ -11,15 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod.common.arrays import Array, floats
 from flexapod.common.errors import InputError
-from flexapod.control.channels import chosen
-from flexapod.control.integrators import moved_and_shown
+from flexapod.control.frequency_response import moved_and_shown
+from flexapod.control.state_space import chosen
 from flexapod.model.study.disturbance import Disturbance, Floor, Spectrum, check_density
 from flexapod.solve.linear.random_vibration import FLOOR_RATES, SOURCES, RandomVibration, Source, with_error
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
-
-__all__ = ["Sources", "shaken"]
 
 Complex = NDArray[np.complex128]
 

@@ -13,8 +13,6 @@ from flexapod.common.errors import InputError
 from flexapod.common.tables.csv_tables import table_lines
 from flexapod.common.units import COMMON_UNITS, to_si
 
-__all__ = ["Response", "table_responses"]
-
 #: Words of a column, by what it holds; letters of both cases.
 WORDS: dict[str, tuple[str, ...]] = {
     "frequency": ("frequency", "frequencies", "freq", "f", "hz"),

@@ -1,8 +1,11 @@
-"""A linear system with named channels: matrices A, B, C, D and what can be asked of them."""
+"""A linear system with named channels: matrices A, B, C, D and what can be asked of them.
+
+Channels by name: ``drive:3`` is one, ``drive`` stands for all that begin with ``drive:``.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
@@ -12,23 +15,74 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod.common.arguments import frequencies, number
 from flexapod.common.arrays import Array, floats
-from flexapod.common.errors import InputError, names_of
+from flexapod.common.errors import InputError, closest, names_of
+from flexapod.common.lazy_imports import lazy
 from flexapod.common.units import quantity
-from flexapod.control.channels import Names, chosen, groups
-from flexapod.control.frequency_response import response
-from flexapod.control.histories import histories, instants
-from flexapod.control.norms import h2_norms, hinf_norm, relative_gains
-from flexapod.control.poles import damping_of, poles_of
+from flexapod.control.frequency_response import damping_of, poles_of, response
+from flexapod.control.norms import h2_norms, hinf_norm, reduced, relative_gains
 from flexapod.control.zeros import zeros_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from flexapod.control.closing import DelayedLoop
+    from flexapod.control import datasets, discretization, feedback, random_response
     from flexapod.control.controllers import Controller
+    from flexapod.control.feedback import DelayedLoop
     from flexapod.control.random_response import Sources
+else:
+    datasets = lazy("flexapod.control.datasets")
+    discretization = lazy("flexapod.control.discretization")
+    feedback = lazy("flexapod.control.feedback")
+    random_response = lazy("flexapod.control.random_response")
 
-__all__ = ["StateSpace", "a_system"]
+RATE = "rate:"  # before the name of a reading: its rate of change
+NOISE = "noise:"  # before the name of a sensor: what is added to its reading
+
+Names = str | Sequence[str] | None
+
+
+def chosen(given: Names, among: Sequence[str], key: str) -> list[int]:
+    """Places of channels by names or groups, in the order of the names; all for None.
+
+    Parameters
+    ----------
+    given : str or sequence of str, optional
+        Names (``tool:z``) and groups (``tool``).
+    among : sequence of str
+        All names of channels there are.
+    key : str
+        What a refusal calls the argument.
+
+    Raises
+    ------
+    InputError
+        No channel of this name, with the nearest.
+    """
+    if given is None:
+        return list(range(len(among)))
+    found: list[int] = []
+    for name in names_of(given, key):
+        places = [i for i, known in enumerate(among) if known == name or known.startswith(f"{name}:")]
+        if not places:
+            raise _unknown(name, among, key)
+        found += [i for i in places if i not in found]
+    return found
+
+
+def groups(names: Sequence[str]) -> list[str]:
+    """Groups that channels belong to, in their order: what stands before the last colon."""
+    return list(dict.fromkeys(name.rpartition(":")[0] or name for name in names))
+
+
+def _unknown(name: str, among: Sequence[str], key: str) -> InputError:
+    return InputError(
+        "is not a channel",
+        key=key,
+        value=name,
+        allowed=", ".join(groups(among)) + f", or a single one as {among[0]}" if among else "none",
+        next_step=closest(name, [*groups(among), *among]),
+    )
+
 
 Complex = NDArray[np.complex128]
 
@@ -119,11 +173,9 @@ class StateSpace:
 
         Rates of inputs are their last differences, Eq. (T21.19).
         """
-        from flexapod.control.discretization import held, period_of
-
         if self.sample is not None:
             raise InputError("is sampled already", key="sample", value=self.sample, allowed="a continuous system")
-        return held(self, period_of(period), quantity(delay, "time", key="delay"))
+        return discretization.held(self, discretization.period_of(period), quantity(delay, "time", key="delay"))
 
     @overload
     def close(self, controller: Controller | StateSpace) -> StateSpace: ...
@@ -153,9 +205,7 @@ class StateSpace:
             With inputs ``noise:SENSOR``, which are added to readings, and outputs ``control:ACTUATOR``. A continuous
             loop with a delay has no finite number of states: a `DelayedLoop` has its response and its margins.
         """
-        from flexapod.control.closing import close
-
-        return close(self, controller, delay, sample)
+        return feedback.close(self, controller, delay, sample)
 
     def _square(self, key: str, inputs: Names, outputs: Names) -> StateSpace:
         part = self.select(inputs, outputs)
@@ -175,9 +225,7 @@ class StateSpace:
 
     def frequency_response(self, hz: ArrayLike) -> Dataset:
         """Response at frequencies [Hz] as a Dataset: `frequency_response` (output, input, frequency, part)."""
-        from flexapod.control.datasets import response_dataset
-
-        return response_dataset(self, hz, self.at(hz))
+        return datasets.response_dataset(self, hz, self.at(hz))
 
     def poles(self) -> Complex:
         """Eigenvalues of A, the slowest first, (n,) [1/s]; of a sampled system in the plane of z."""
@@ -197,27 +245,21 @@ class StateSpace:
         Of a sampled system rms under white samples of the variance 1, without the unit Hz**0.5.
         Infinite where something follows what has no end of frequencies or never decays; `reason` says what.
         """
-        from flexapod.control.datasets import h2_dataset
-
         part = self.select(inputs, outputs)
-        return h2_dataset(part, *h2_norms(part))
+        return datasets.h2_dataset(part, *h2_norms(part))
 
     def hinf(self, inputs: Names = None, outputs: Names = None) -> Dataset:
         """`hinf_norm`, the largest singular value of the response of the channels, and its `frequency`, Eq. (T21.27).
 
         Channels of several units are added as they are: choose one unit, or one of each.
         """
-        from flexapod.control.datasets import hinf_dataset
-
-        return hinf_dataset(*hinf_norm(self.select(inputs, outputs)))
+        return datasets.hinf_dataset(*hinf_norm(self.select(inputs, outputs)))
 
     def rga(self, hz: ArrayLike, inputs: Names = None, outputs: Names = None) -> Dataset:
         """`relative_gain` (output, input, frequency, part) at frequencies [Hz], Eq. (T21.29), of as many of each."""
-        from flexapod.control.datasets import response_dataset
-
         part = self._square("rga", inputs, outputs)
         words = ("relative_gain", "relative gain: 1 where other loops change nothing", "1")
-        return response_dataset(part, hz, relative_gains(part.at(hz)), words)
+        return datasets.response_dataset(part, hz, relative_gains(part.at(hz)), words)
 
     def psd(self, sources: Sources, outputs: Names = None) -> Dataset:
         """Random vibration of outputs by independent sources: the integral of `flexapod.vibration`, (T18.6)-(T18.11).
@@ -234,48 +276,38 @@ class StateSpace:
         xarray.Dataset
             `psd` and `cumulative_rms` (spectrum_frequency, output), `rms` (output), `covariance`.
         """
-        from flexapod.control.datasets import vibration_dataset
-        from flexapod.control.random_response import shaken
-
         part = self.select(outputs=outputs)
-        return vibration_dataset(part, *shaken(part, sources))
+        return datasets.vibration_dataset(part, *random_response.shaken(part, sources))
 
     def by_source(self, sources: Sources, outputs: Names = None) -> Dataset:
         """`rms_by_source` (source, output) as of `psd`; squares add up to those of `rms`."""
-        from flexapod.control.datasets import source_dataset
-        from flexapod.control.random_response import shaken
-
         part = self.select(outputs=outputs)
-        return source_dataset(part, *shaken(part, sources))
+        return datasets.source_dataset(part, *random_response.shaken(part, sources))
 
     def step(self, duration: float | None = None, step: float | None = None) -> Dataset:
         """`step_response` (output, input, time) after unit steps at 0, exact; by itself as long as motions last.
 
         Without impulses at 0, where outputs follow rates of inputs.
         """
-        from flexapod.control.datasets import history_dataset
-
-        time = instants(self, duration, step)
-        return history_dataset(self, time, histories(self, time, impulse=False), "step_response")
+        time = discretization.instants(self, duration, step)
+        return datasets.history_dataset(
+            self, time, discretization.histories(self, time, impulse=False), "step_response"
+        )
 
     def impulse(self, duration: float | None = None, step: float | None = None) -> Dataset:
         """`impulse_response` (output, input, time) after unit impulses at 0, exact; without that of feed-through."""
-        from flexapod.control.datasets import history_dataset
-
-        time = instants(self, duration, step)
-        return history_dataset(self, time, histories(self, time, impulse=True), "impulse_response")
+        time = discretization.instants(self, duration, step)
+        return datasets.history_dataset(
+            self, time, discretization.histories(self, time, impulse=True), "impulse_response"
+        )
 
     def to_control(self) -> Any:
         """The same as `control.StateSpace` of python-control, with its names."""
-        from flexapod.control.files import to_control
-
-        return to_control(self)
+        return datasets.to_control(self)
 
     def save(self, path: str | Path) -> Path:
         """Matrices, names, units, sample time as ``.mat`` (MATLAB 5), ``.npz``, ``.json``, ``.nc``; replaces a file."""
-        from flexapod.control.files import save
-
-        return save(self, path)
+        return datasets.save(self, path)
 
     def reduce(
         self, modes: int | None = None, *, below: float | str | None = None, residual: bool = True
@@ -284,15 +316,11 @@ class StateSpace:
 
         `residual`: what is left out still gives way as at rest. Without that zeros move.
         """
-        from flexapod.control.reduction import reduced
-
         return reduced(self, modes, below, residual)
 
     def damp(self) -> Dataset:
         """Frequencies [Hz], damping ratios and poles, by frequency, Eq. (T21.4); of a pair the pole above the axis."""
-        from flexapod.control.datasets import damping_dataset
-
-        return damping_dataset(*damping_of(self.poles(), self.sample))
+        return datasets.damping_dataset(*damping_of(self.poles(), self.sample))
 
 
 def _names(given: object, key: str) -> tuple[str, ...]:

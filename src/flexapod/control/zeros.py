@@ -11,9 +11,7 @@ from numpy.typing import NDArray
 
 from flexapod.common.arrays import Array
 from flexapod.common.resources import one_thread
-from flexapod.control.poles import middle_rate
-
-__all__ = ["zeros_of"]
+from flexapod.control.frequency_response import middle_rate
 
 Complex = NDArray[np.complex128]
 

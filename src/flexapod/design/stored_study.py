@@ -7,8 +7,6 @@ from pathlib import Path
 from flexapod import model
 from flexapod.common.files import RESULTS, path_of
 
-__all__ = ["load"]
-
 _SWEEPS = (".sqlite", ".zarr")
 
 

@@ -21,7 +21,7 @@ from flexapod.kinematics.forward import Postures
 from flexapod.kinematics.frames import Placed, base_law, base_placed, placed
 from flexapod.kinematics.inverse import LegState, joint_angles, leg_frames, leg_lengths, leg_rotations
 from flexapod.kinematics.jacobian import NearestSingularity, SingularityPath, length_jacobian
-from flexapod.kinematics.laws import Law
+from flexapod.kinematics.laws import Law, load_law, motion_law, wrench
 from flexapod.kinematics.leg_geometry import ABSENT, COORDINATES, DRIVEN, FREE, HELD, Limbs, limbs
 from flexapod.kinematics.mechanism import Reach, lost_words
 from flexapod.kinematics.mobility import Mobility, Posture, displaced, mobility
@@ -59,7 +59,6 @@ from flexapod.kinematics.robot import (
     singularity,
     strokes,
 )
-from flexapod.kinematics.schedule import load_law, motion_law, wrench
 from flexapod.kinematics.trajectory import Poses, coordinates, poses_from_coordinates, rotation_matrix
 from flexapod.kinematics.workspace import Excess, WorkspaceMap, reachable_map
 

@@ -26,21 +26,6 @@ if TYPE_CHECKING:
 
     from flexapod.model import Heat, Leg, Robot
 
-__all__ = [
-    "GEOMETRY",
-    "BuiltPart",
-    "added",
-    "added_by_all",
-    "built_limbs",
-    "built_parts",
-    "built_poses",
-    "expansion",
-    "is_plate",
-    "nearby",
-    "plate_grows",
-    "shifts",
-]
-
 GEOMETRY = ("base_joints", "platform_joints", "leg_offset", "lead")
 CHI, L = COORDINATES.index("chi"), COORDINATES.index("l")
 STEPS = 20

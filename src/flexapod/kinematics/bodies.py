@@ -8,9 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod.common.arrays import Array, Mask
-from flexapod.kinematics.vectors import blocks, dot
-
-__all__ = ["Nearest", "nearest_legs", "turned_by"]
+from flexapod.kinematics.rotations import blocks, dot
 
 Index = NDArray[np.intp]
 

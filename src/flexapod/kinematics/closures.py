@@ -15,10 +15,9 @@ from numpy.typing import NDArray
 from flexapod.common.arrays import Array, Mask
 from flexapod.kinematics.laws import Law
 from flexapod.kinematics.leg_geometry import COORDINATES, Limbs
-from flexapod.kinematics.rotations import exponential, quaternion, rotation_vector
+from flexapod.kinematics.rotations import blocks, exponential, quaternion, rotation_vector
 from flexapod.kinematics.screws import Screws, screws
 from flexapod.kinematics.trajectory import Poses, poses_from_coordinates, turning_axes
-from flexapod.kinematics.vectors import blocks
 
 STRIDE = 0.35  # rad, or of a leg's length: the longest way in one step from home to a pose
 NEWTON = 25

@@ -19,8 +19,8 @@ import numpy as np
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError
 from flexapod.kinematics.inverse import JointTurn, LegState, leg_rotations
+from flexapod.kinematics.rotations import Vector, blocks, cross, matrix_vector, time_first, time_last
 from flexapod.kinematics.trajectory import Poses
-from flexapod.kinematics.vectors import Vector, blocks, cross, time_first, time_last, turned
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -174,12 +174,15 @@ def _payload_balance(payload: PayloadBody, gravity: Array, poses: Poses, wrench:
     """What the legs must bring about at the payload's CoM: force and moment (6, T), Eqs. (T2.32)-(T2.33)."""
     turn, w, alpha = time_last(poses.rotation), time_last(poses.omega), time_last(poses.alpha)
     back = turn.swapaxes(0, 1)
-    inertia, w_local = payload.inertia[..., None], turned(back, w)
-    spin = np.add(turned(inertia, turned(back, alpha)), cross(w_local, turned(inertia, w_local)))
-    arm, lever = turned(turn, payload.com), turned(turn, payload.tool - payload.com)
+    inertia, w_local = payload.inertia[..., None], matrix_vector(back, w)
+    spin = np.add(
+        matrix_vector(inertia, matrix_vector(back, alpha)),
+        cross(w_local, matrix_vector(inertia, w_local)),
+    )
+    arm, lever = matrix_vector(turn, payload.com), matrix_vector(turn, payload.tool - payload.com)
     acceleration = poses.acceleration.T + cross(alpha, arm) + np.array(cross(w, cross(w, arm)))
     force = payload.mass * (acceleration - gravity[:, None]) - wrench[:3]
-    return np.concatenate([force, turned(turn, spin) - wrench[3:] - cross(lever, wrench[:3])])
+    return np.concatenate([force, matrix_vector(turn, spin) - wrench[3:] - cross(lever, wrench[:3])])
 
 
 def _along_the_legs(balance: Array, arms: Vector, axes: Vector, sides: Vector) -> Array:
@@ -262,9 +265,9 @@ def _forces(
     motion, home = leg_motion(bodies, legs), np.moveaxis(frames, 0, -1)[..., None]  # (3, 3, n, 1)
 
     def in_world(vector: Vector) -> tuple[Array, Array, Array]:
-        return turned(home, legs.turn.out_of_leg(vector))
+        return matrix_vector(home, legs.turn.out_of_leg(vector))
 
-    leg_gravity = legs.turn.into_leg(turned(home.swapaxes(0, 1), gravity))
+    leg_gravity = legs.turn.into_leg(matrix_vector(home.swapaxes(0, 1), gravity))
     across, moment = across_the_leg(bodies, legs, motion, leg_gravity)
     sides = [-x for x in in_world(across)]
     none = np.zeros_like(legs.length)

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
+from flexapod.kinematics.rotations import Vector, blocks, cross, time_last
 from flexapod.kinematics.trajectory import Poses
-from flexapod.kinematics.vectors import Vector, blocks, cross, time_last
 
 BETA_LIMIT = np.deg2rad(85.0)  # 5 deg from the universal joint's own singularity
 

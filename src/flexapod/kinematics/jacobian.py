@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.common.arrays import Array
+from flexapod.kinematics.rotations import cross, dot, time_first, time_last
 from flexapod.kinematics.trajectory import Poses
-from flexapod.kinematics.vectors import cross, dot, time_first, time_last
 
 STRIDES = (64, 8, 1)  # every so many poses of a path are looked at, where the last look leaves a doubt
 ALIKE = 1e-12  # singular values of scaled Jacobians, of order 1, that are equal but for rounding

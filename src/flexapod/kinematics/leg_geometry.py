@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod.common.arrays import Array, Mask
-from flexapod.kinematics.ends import base_frame, platform_frame
+from flexapod.kinematics.frames import base_frame, platform_frame
 from flexapod.kinematics.jacobian import characteristic_length
 
 if TYPE_CHECKING:

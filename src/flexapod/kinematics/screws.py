@@ -8,7 +8,7 @@ import numpy as np
 
 from flexapod.common.arrays import Array
 from flexapod.kinematics.leg_geometry import COORDINATES, Limbs
-from flexapod.kinematics.vectors import Vector, cross, dot, time_last
+from flexapod.kinematics.rotations import Vector, cross, dot, time_last
 
 _BODY = COORDINATES.index("l") + 1  # coordinates that move the tip; the later ones turn the joint frame alone
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.kinematics.laws import Law, rest_to_rest, spline, spline_law
-from flexapod.kinematics.vectors import cross, time_first, time_last
+from flexapod.kinematics.rotations import cross, time_first, time_last
 from flexapod.model import CsvMotion, Motion, WaypointMotion
 
 

@@ -42,9 +42,10 @@ from flexapod.model.leg.hydraulic import HydraulicDrive, HydraulicLimits
 from flexapod.model.leg.joint import Carriage, Joint, Travel
 from flexapod.model.leg.leg import Leg, Stroke
 from flexapod.model.leg.material import MATERIALS, Material, Rectangle, Tube
+from flexapod.model.leg.motor import Ripple
 from flexapod.model.leg.piston import Piston, Strut
 from flexapod.model.leg.rolling import RollingLaw
-from flexapod.model.leg.screw import Bearing, Brake, Drive, Encoder, Limits, Loop, Motor, Nut, Ripple, Rotor, ScrewDrive
+from flexapod.model.leg.screw import Bearing, Brake, Drive, Encoder, Limits, Loop, Motor, Nut, Rotor, ScrewDrive
 from flexapod.model.leg.sections import PistonSection
 from flexapod.model.leg.spring import AxialSpring
 from flexapod.model.motion import (

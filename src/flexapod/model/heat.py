@@ -19,8 +19,6 @@ from flexapod.model.motion import check_times
 if TYPE_CHECKING:
     from flexapod.common.tables.section import Section
 
-__all__ = ["HEAT_PARTS", "LEG_PARTS", "Expansion", "Gradient", "Heat"]
-
 LEG_PARTS = ("piston", "cylinder", "screw")
 HEAT_PARTS = ("base", "platform", *LEG_PARTS)
 COLDEST = -273.15

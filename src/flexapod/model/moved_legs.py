@@ -13,8 +13,6 @@ from flexapod.common.tables.base import array_of
 from flexapod.model.leg.joint import Carriage, Joint, arm_of
 from flexapod.model.leg.leg import Leg
 
-__all__ = ["moved_legs"]
-
 
 def moved_legs(*, legs: Any, base_joints: Any, platform_joints: Any, plane: Any = None, **_: Any) -> Any:
     """Legs of a robot with these fields, at its joints; as they are where one of these is not what a robot may have.

@@ -13,8 +13,6 @@ from flexapod.model.leg.leg import Leg
 from flexapod.model.study.robot import Robot
 from flexapod.model.study.study import ActuatorStudy, Study
 
-__all__ = ["files_of", "stored_tables"]
-
 
 def stored_tables(study: Study | ActuatorStudy) -> dict[str, Stored]:
     """All tables of a study that stand in files, or were given in Python, by key: ``leg[3].drive.file``."""

@@ -11,17 +11,6 @@ from flexapod.kinematics.rotations import turned
 from flexapod.solve.kernel import evaluate
 from flexapod.solve.system import Index, State, System
 
-__all__ = [
-    "Rates",
-    "RestMatrices",
-    "RestStates",
-    "matrices_at_rest",
-    "port_forces",
-    "residual",
-    "residual_at_rest",
-    "tips",
-]
-
 
 @dataclass(frozen=True, kw_only=True)
 class RestStates:

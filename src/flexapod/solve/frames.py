@@ -11,8 +11,6 @@ from flexapod.mechanics.leg.layout import FRAMES
 from flexapod.model import Robot
 from flexapod.solve.system import System
 
-__all__ = ["as_drawn", "base_on_mount", "floor", "in_world", "of_platform", "on_plates", "shared_by_legs"]
-
 
 def shared_by_legs(system: System, q: Array, name: str) -> Array:
     """Displacement and angles (..., 6) of a frame, "g", "f" or "m", in coordinates (..., legs, n); zeros without it."""

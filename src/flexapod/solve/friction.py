@@ -12,8 +12,6 @@ from flexapod.solve.batch import RestMatrices, RestStates
 from flexapod.solve.kernel import evaluate
 from flexapod.solve.system import System
 
-__all__ = ["numbers", "sliding", "with_friction"]
-
 
 def sliding(system: System, q: Array) -> Array:
     """Derivatives of the rates of sliding by those of coordinates (P, legs, n), (P, legs, bristles, n), Eq. (T19.7)."""

@@ -11,15 +11,12 @@ from flexapod.common.arrays import Array
 from flexapod.kinematics.leg_geometry import COORDINATES, HELD, Limbs
 from flexapod.kinematics.mechanism import leg_state
 from flexapod.kinematics.robot import once
-from flexapod.kinematics.rotations import quaternion
+from flexapod.kinematics.rotations import cross, quaternion
 from flexapod.kinematics.screws import screws
-from flexapod.kinematics.vectors import cross
 from flexapod.mechanics.leg.layout import Shapes
 from flexapod.model import Robot
 from flexapod.solve.batch import Rates, RestStates
 from flexapod.solve.system import Index, State, System
-
-__all__ = ["built_state", "leg_coordinates", "rigid_motion", "rigid_rates", "rigid_rest", "rigid_state"]
 
 GAMMA = slice(COORDINATES.index("gamma1"), None)
 

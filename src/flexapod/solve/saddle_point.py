@@ -4,9 +4,7 @@ import numpy as np
 
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import ComputationError
-from flexapod.mechanics.shapes.eigen import finite
-
-__all__ = ["cholesky_each", "inverse_each", "saddle_solve", "solve_each"]
+from flexapod.mechanics.shapes.beam_functions import finite
 
 
 def saddle_solve(A: Array, G: Array, r: Array, g: Array) -> tuple[Array, Array]:

@@ -22,20 +22,6 @@ from flexapod.mechanics.leg.leg_chain import LegChain
 from flexapod.mechanics.shapes.lateral import LateralBasis
 from flexapod.model import Actuator, Rectangle, Robot, Simulation, Tube
 
-__all__ = [
-    "SPACE_NAMES",
-    "actuator_shapes",
-    "amplitudes",
-    "beam_shapes",
-    "home",
-    "lateral_signs",
-    "leg_shapes",
-    "places",
-    "planar_shapes",
-    "robot_shapes",
-    "space_shapes",
-]
-
 SOLID = "solid"
 #: Coordinates of an actuator in space by the motions that drive them.
 SPACE_NAMES = {"extension": "l", "rotation": "alpha", "elevation": "beta"}
@@ -158,7 +144,7 @@ def _ratios(actuator: Actuator, basis: str, rate: float) -> tuple[float, ...]:
 @lru_cache(maxsize=16)
 def _solid(section: Tube | Rectangle, length: float, count: int, moment: bool = False) -> LateralBasis:
     """Without lateral contraction, as a beam: no study file gives Poisson's ratio."""
-    from flexapod.solve.fem.leg_shapes import solid_leg_shapes  # scikit-fem loads on use
+    from flexapod.solve.fem.reduction import solid_leg_shapes  # scikit-fem loads on use
 
     return solid_leg_shapes(section, length, count, moment=moment)
 

@@ -12,8 +12,6 @@ from flexapod.kinematics.rotations import turned
 from flexapod.mechanics.leg.layout import LOAD_SIZE, columns, leg_parameters
 from flexapod.solve.kernel import Kernel, evaluate
 
-__all__ = ["COLUMNS", "Flow", "Friction", "Index", "Matrices", "State", "System"]
-
 Index = NDArray[np.intp]
 ENDS = ("base", "platform")
 COLUMNS = 4  # of a port in a table: value, rate, acceleration, force

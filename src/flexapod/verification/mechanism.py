@@ -19,10 +19,9 @@ from flexapod.mechanics.leg.layout import COMMAND_SIZE, LEG_PARAMETERS, Shapes, 
 from flexapod.mechanics.leg.leg_beam import LegBeam
 from flexapod.mechanics.leg.leg_chain import LegChain
 from flexapod.mechanics.shapes import axial_basis, lateral_basis
-from flexapod.mechanics.symbolic import lagrange, vocabulary
+from flexapod.mechanics.symbolic import functions, vocabulary
 from flexapod.mechanics.symbolic.compiler import compiler
-from flexapod.mechanics.symbolic.functions import NamedFunction
-from flexapod.mechanics.symbolic.lagrange import Lagrangian, inverse_dynamics, mass_matrix
+from flexapod.mechanics.symbolic.functions import Lagrangian, NamedFunction, inverse_dynamics, mass_matrix
 from flexapod.mechanics.symbolic.vocabulary import (
     SX,
     dot,
@@ -176,7 +175,7 @@ def _kernel(mechanism: Mechanism, shapes: Shapes, general: int) -> Kernel:
             next_step="Install gcc or clang, or `pip install ziglang`.",
         )
     texts = [
-        Path(str(file)).read_bytes() for file in (__file__, mechanism.file, lagrange.__file__, vocabulary.__file__)
+        Path(str(file)).read_bytes() for file in (__file__, mechanism.file, functions.__file__, vocabulary.__file__)
     ]
     return loaded_kernel(
         shapes,

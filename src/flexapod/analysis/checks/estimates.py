@@ -1,4 +1,7 @@
-"""Estimates before a simulation: thick pistons (T8.19)-(T8.21), Euler loads, stresses, vibration (T8.11)-(T8.18)."""
+"""Estimates before a simulation: thick pistons (T8.19)-(T8.21), Euler loads, stresses, vibration (T8.11)-(T8.18).
+
+Buckling of legs whose pistons have sections, Eq. (T8.23).
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod import kinematics
-from flexapod.analysis.checks.columns import stepped_buckling
 from flexapod.analysis.results.legs import base_motion, of_drives
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.arrays import Array, Mask
@@ -21,8 +23,46 @@ from flexapod.model import Actuator, Leg, Piston, Robot, Tube
 from flexapod.solve.modal.modes import RobotModes
 from flexapod.solve.rigid_motion import rigid_rates
 from flexapod.solve.statics.buckling import leg_loads
-from flexapod.solve.statics.drive_forces import feed_forward
+from flexapod.solve.statics.static_loads import feed_forward
 from flexapod.solve.system import System
+
+HALVINGS = 60
+
+
+def stepped_buckling(leg: Leg, free: Array) -> Array:
+    """Least thrust under which a leg between pinned ends buckles, rigid to the mouth, (T,) [N]; free lengths (T,) [m].
+
+    Of a strip in its weaker direction.
+    """
+    steps = leg.piston.steps[::-1]  # from the tip
+    starts = np.concatenate([[0.0], np.cumsum([step.length for step in steps])[:-1]])
+    out = np.clip(free - starts[:, None], 0.0, np.array([[step.length] for step in steps]))[::-1]  # from the mouth
+    found = [_least(leg.cylinder.mouth, out, np.array([step.EI[k] for step in steps[::-1]])) for k in (0, 1)]
+    return np.minimum(*found)
+
+
+def _least(mouth: float, out: Array, EI: Array) -> Array:
+    """Least thrust at which the deflection comes back to the line of the joints, by halving."""
+    whole = out.sum(axis=0)
+    low, high = np.zeros_like(whole), EI.max() * (np.pi / whole) ** 2
+    for _ in range(HALVINGS):
+        thrust = 0.5 * (low + high)
+        back = _phase(mouth, out, EI, thrust) >= np.pi
+        low, high = np.where(back, low, thrust), np.where(back, thrust, high)
+    return 0.5 * (low + high)
+
+
+def _phase(mouth: float, out: Array, EI: Array, thrust: Array) -> Array:
+    """Phase p at the tip of v = r sin p, v' = k r cos p, k^2 = P / EI, which grows with the thrust."""
+    wave = np.sqrt(thrust / EI[:, None])
+    phase, turns, before = np.arctan(wave[0] * mouth), np.zeros_like(thrust), wave[0]
+    for k, length in zip(wave, out, strict=True):
+        phase = np.arctan(k / before * np.tan(phase))  # (T8.23)  deflection and slope go on
+        phase = phase + k * length
+        half = np.round(phase / np.pi)
+        turns, phase, before = turns + half, phase - half * np.pi, k
+    return phase + turns * np.pi
+
 
 POISSON = 0.3  # of metals; materials give none
 

@@ -1,24 +1,25 @@
-"""What catalogues ask of a screw: buckling, critical speed, torque, back-driving, life, Eqs. (T15.41)-(T15.49)."""
+"""What catalogues ask of a screw: buckling, critical speed, torque, back-driving, life, Eqs. (T15.41)-(T15.49).
+
+Friction of drives that slide steadily, as catalogues have it.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
-from flexapod.analysis.checks.sliding import steady_friction
 from flexapod.common.arrays import Array
-from flexapod.model import Nut, ScrewDrive
+from flexapod.model import Nut, ScrewDrive, ScrewFriction, StrokeFriction
 from flexapod.model.leg.screw import UNLOADS
 
-__all__ = [
-    "back_efficiency",
-    "buckling_thrust",
-    "critical_speed",
-    "drag_torque",
-    "half_loads",
-    "mean_load",
-    "motor_torque",
-    "turns_of_life",
-]
+
+def steady_friction(friction: ScrewFriction | StrokeFriction, rate: Array) -> Array:
+    """Torque of a screw [N m] or force of a stroke [N] at a rate of sliding [rad/s, m/s], with its sign, Eq. (T19.19).
+
+    Nothing where it rests.
+    """
+    sliding, _, _, excess, slower, viscous, _ = friction.numbers
+    return np.asarray(np.sign(rate) * sliding * (1 + excess * np.exp(-((rate * slower) ** 2))) + viscous * rate)
+
 
 _EULER = {"fixed-free": 0.25, "fixed-supported": 2.0, "fixed-fixed": 4.0}  # pi^2 E I / l^2 times this
 _ROOT = {"fixed-free": 1.8751040687, "fixed-supported": 3.9266023120, "fixed-fixed": 4.7300407449}  # of a beam's mode 1

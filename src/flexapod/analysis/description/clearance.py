@@ -14,8 +14,6 @@ from flexapod.common.errors import FlexapodError
 from flexapod.common.ranking import first_largest, first_least
 from flexapod.model import Robot
 
-__all__ = ["LegClearance", "StrokeEnd", "TurnedJoint", "joint_turns", "leg_clearance", "stroke_ends"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class TurnedJoint:

@@ -11,8 +11,6 @@ from flexapod.analysis.results.time_history import Record
 from flexapod.model import Robot
 from flexapod.solve.system import System
 
-__all__ = ["drive_warnings"]
-
 FEWEST = 3  # instants of which a rate and an acceleration are told
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod.analysis.checks.plausibility import worst_of_each
-from flexapod.analysis.checks.sliding import steady_friction
+from flexapod.analysis.checks.screws import steady_friction
 from flexapod.analysis.description.leg_description import Extreme, largest, least
 from flexapod.analysis.pose_errors.sensitivity import sensitivity
 from flexapod.analysis.results.rigid_path import RigidPath
@@ -18,11 +18,6 @@ from flexapod.kinematics.leg_geometry import COORDINATES
 from flexapod.kinematics.rotations import matrix, quaternion
 from flexapod.mechanics.elements.springs import springs_along
 from flexapod.model import Leg, Robot
-
-__all__ = [
-    "HydraulicDescription", "describe_hydraulic", "describe_hydraulics", "hydraulic_remarks", "hydraulic_table",
-    "oil_words",
-]  # fmt: skip
 
 BAR, LITRES = 1e-5, 6e4  # bar per Pa, l/min per m^3/s
 INSTANTS = 200  # at which the frequency on the oil is sought

@@ -38,8 +38,8 @@ from flexapod.analysis.description.residual_vibration import RestingRobot, Vibra
 from flexapod.analysis.description.screw_description import ScrewDescription, back_words, describe_screws, screw_remarks
 from flexapod.analysis.pose_errors.accuracy_text import accuracy_words, rest_words
 from flexapod.analysis.pose_errors.disturbances import vibration_words
+from flexapod.analysis.results.elongations import guide_results
 from flexapod.analysis.results.idealizations import held, ideal_words
-from flexapod.analysis.results.inside import guide_results
 from flexapod.analysis.results.mode_shapes import mode_kinds
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.arrays import Array

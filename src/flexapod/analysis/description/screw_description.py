@@ -25,8 +25,6 @@ from flexapod.common.quantities import number, text
 from flexapod.common.ranking import first_largest, most
 from flexapod.model import Leg, Robot, ScrewDrive
 
-__all__ = ["ScrewDescription", "back_words", "describe_screw", "describe_screws", "screw_remarks", "screw_table"]
-
 SAFE = 1.0  # static load rating over load
 RPM = 30 / math.pi  # per rad/s
 

@@ -9,7 +9,7 @@ import numpy as np
 from flexapod import kinematics
 from flexapod.analysis.error_budget.rows import Moved, at_rest, moved, rows, without_rounding
 from flexapod.analysis.error_budget.rules import Budget
-from flexapod.analysis.pose_errors.rows import ErrorRow
+from flexapod.analysis.pose_errors.error_sources import ErrorRow
 from flexapod.analysis.pose_errors.sensitivity import sensitivity
 from flexapod.analysis.results.causes import cause_names
 from flexapod.analysis.results.elongations import in_gap
@@ -20,8 +20,6 @@ from flexapod.common.arrays import Array
 from flexapod.kinematics.leg_geometry import COORDINATES
 from flexapod.model import Robot, Study
 from flexapod.solve.system import Index, System
-
-__all__ = ["AlongMotion", "along_motion"]
 
 SAME = 1e-6  # static deviations that differ by less are alike
 MOST = 400  # intervals at whose ends poses are looked at at rest

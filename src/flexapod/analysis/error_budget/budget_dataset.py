@@ -24,8 +24,6 @@ from flexapod.model import Study
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["budget"]
-
 
 @one_thread()
 def budget(

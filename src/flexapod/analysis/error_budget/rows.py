@@ -10,8 +10,8 @@ import numpy as np
 from flexapod import kinematics
 from flexapod.analysis.modes_at_poses import poses_of
 from flexapod.analysis.pose_errors.disturbances import vibration_rows
-from flexapod.analysis.pose_errors.rows import ErrorRow
-from flexapod.analysis.pose_errors.rows import rows as built_rows
+from flexapod.analysis.pose_errors.error_sources import ErrorRow
+from flexapod.analysis.pose_errors.error_sources import rows as built_rows
 from flexapod.analysis.pose_errors.sensitivity import Sensitivity, sensitivity
 from flexapod.analysis.results.causes import cause_names, errors_of
 from flexapod.analysis.results.poses import batches
@@ -30,8 +30,6 @@ from flexapod.solve.statics.equilibrium import FOUND
 from flexapod.solve.statics.locked_robot import LockedPoses, the_equilibrium
 from flexapod.solve.statics.lost_motion import places_with_friction, reversal
 from flexapod.solve.system import System
-
-__all__ = ["Moved", "at_rest", "elastic_causes", "moved", "names_of_rows", "rows", "rows_of_poses", "without_rounding"]
 
 ROUNDING = 1e-9  # of the largest row, in place and in rotation
 

@@ -8,11 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from flexapod.analysis.pose_errors.rows import ErrorRow
+from flexapod.analysis.pose_errors.error_sources import ErrorRow
 from flexapod.common.arrays import Array
 from flexapod.common.ranking import most
-
-__all__ = ["KINDS", "Budget", "combined"]
 
 KINDS = ("systematic", "hysteretic", "random", "dynamic_peak", "dynamic_rms")
 SIGMAS = 3.0  # of random rows, in the worst case and in accuracies

@@ -1,4 +1,7 @@
-"""An error budget in sentences: the largest culprit first, then the words of the standards."""
+"""An error budget in sentences: the largest culprit first, then the words of the standards.
+
+What a run counts and a budget does not, and the other way round, a sentence each.
+"""
 
 from __future__ import annotations
 
@@ -7,15 +10,15 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from flexapod.analysis.error_budget.rules import PLACE, Budget
+from flexapod.analysis.pose_errors.backlash import half_play
 from flexapod.analysis.results.cause_labels import cause_in_words
 from flexapod.common.arrays import Array
 from flexapod.common.quantities import along_axes, cleared, column, text
 from flexapod.common.ranking import ranked
+from flexapod.model import Robot
 
 if TYPE_CHECKING:
     from xarray import Dataset
-
-__all__ = ["KIND_WORDS", "Bar", "bars", "part_words", "sentences", "table"]
 
 SMALLEST = 0.005  # share below which parts go into one bar
 MOST_LEFT = 0.05  # of the static deviation, beyond which rows of first order are a hint
@@ -194,3 +197,25 @@ def _sizes(data: Dataset, chosen: list[int]) -> dict[str, float]:
             name = str(data.nature.values[i]) or "repeatable" if kind == "systematic" else kind.removesuffix("_peak")
             found[name] = found.get(name, 0.0) + (3 if kind == "random" else 1) * size
     return {name: size for name, size in found.items() if size > 0}
+
+
+def run_counts(robot: Robot) -> str | None:
+    """What a run counts, and what it leaves to the budget; None where it leaves nothing."""
+    rubs = any(x.friction for leg in robot.legs for x in (leg.base_joint, leg.platform_joint, leg.drive))
+    others = {
+        "tolerances": robot.tolerances is not None,
+        "play": bool(half_play(robot).any()),
+        "what friction leaves behind": rubs,
+    }
+    named = [name for name, there in others.items() if there]
+    if not named or robot.platform_fixed:
+        return None
+    listed = " and ".join(filter(None, (", ".join(named[:-1]), named[-1])))
+    warm = "" if robot.heat is None else "warm, "
+    return f"Counted: one machine as drawn, {warm}under load and in motion; {listed}: flexapod budget."
+
+
+def budget_counts(robot: Robot) -> str:
+    """What a budget counts, and what it leaves to a run."""
+    made = "one machine" if robot.tolerances is None else "all machines made to these tolerances"
+    return f"Counted: {made}, at rest; what one of them does on its way: flexapod run."

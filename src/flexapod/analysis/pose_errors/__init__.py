@@ -1,6 +1,6 @@
 """How accurate a pose is: errors of the machine as built and warm, tolerances, play."""
 
-from flexapod.analysis.pose_errors.motion import play
+from flexapod.analysis.pose_errors.backlash import play
 from flexapod.analysis.pose_errors.pose_accuracy import accuracy
 
 __all__ = ["accuracy", "play"]

@@ -17,8 +17,6 @@ from flexapod.common.quantities import UNSAID, along_axes, signed, text
 from flexapod.common.ranking import first_largest, most
 from flexapod.model import Robot, Study
 
-__all__ = ["accuracy_words", "is_real", "rest_words"]
-
 NOTHING = 1e-12  # turn that is rounding [rad]
 
 

@@ -17,8 +17,6 @@ from flexapod.common.ranking import EQUALS, first_largest
 from flexapod.kinematics.leg_geometry import COORDINATES
 from flexapod.model import Leg, Robot
 
-__all__ = ["Bent", "bent", "by_bending_stiffness", "by_bow", "crookedness", "is_crooked", "softness", "thrust"]
-
 L = COORDINATES.index("l")
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod.analysis.checks.checks import path_remarks
-from flexapod.analysis.pose_errors.rows import ErrorRow
+from flexapod.analysis.pose_errors.error_sources import ErrorRow
 from flexapod.analysis.results.arguments import PoseLike, RobotLike, as_pose, at_pose
 from flexapod.analysis.results.attributes import attributes
 from flexapod.analysis.results.mode_shapes import mode_values
@@ -28,9 +28,7 @@ from flexapod.solve.statics.locked_robot import LockedPoses
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from flexapod.solve.linear.robot import LinearRobot
-
-__all__ = ["vibration", "vibration_rows", "vibration_words", "words_of"]
+    from flexapod.solve.linear.random_vibration import LinearRobot
 
 BEYOND = "the floor's spectrum ends at"
 HOW = "spectra through the linear model about the static equilibrium"
@@ -110,7 +108,7 @@ def _locked(study: Study, path: Poses) -> LockedPoses:
 
 
 def _linear(study: Study, locked: LockedPoses) -> tuple[LinearRobot, list[Source]]:
-    from flexapod.solve.linear.robot import linear_robot  # what checks do not load
+    from flexapod.solve.linear.random_vibration import linear_robot  # what checks do not load
 
     model = linear_robot(locked)
     return model, sources_of(study.disturbance or Disturbance(), model)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from flexapod import kinematics
 from flexapod.analysis.pose_errors.backlash import PLACES
 from flexapod.analysis.pose_errors.error_sources import AtPose
-from flexapod.analysis.pose_errors.tolerances import displacement, drift, samples
+from flexapod.analysis.pose_errors.tolerances import drift, samples, tool_displacement
 from flexapod.analysis.results.arguments import PoseLike, RobotLike, as_pose, at_pose
 from flexapod.analysis.results.attributes import attributes
 from flexapod.analysis.results.variables import AT_A_POSE, dataset
@@ -20,8 +20,6 @@ from flexapod.common.resources import one_thread
 
 if TYPE_CHECKING:
     from xarray import Dataset
-
-__all__ = ["accuracy"]
 
 MOST_DRAWS = 10_000_000
 
@@ -89,7 +87,7 @@ def _errors(at: AtPose) -> tuple[_Named, _Named, list[str]]:
     values["pose_error_by_part"], labels["error"] = np.array(list(parts.values())), list(parts)
     bent = 0.0 if at.bent is None else parts["bent_legs"].sum(axis=0)
     try:
-        values["pose_error"] = displacement(robot, at.pose, kinematics.built_poses(robot, at.pose))[0] + bent
+        values["pose_error"] = tool_displacement(robot, at.pose, kinematics.built_poses(robot, at.pose))[0] + bent
         if robot.heat is not None and robot.heat.time is not None:
             values["pose_drift"], labels["drift_time"] = drift(robot, at.pose, robot.heat.time) + bent, robot.heat.time
     except ComputationError as error:

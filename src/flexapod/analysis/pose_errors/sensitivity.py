@@ -16,8 +16,6 @@ from flexapod.kinematics.screws import screws
 from flexapod.model import Robot
 from flexapod.solve.statics.ideal_robot import is_hexapod, rigid_errors
 
-__all__ = ["Sensitivity", "sensitivity", "systematic"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Sensitivity:

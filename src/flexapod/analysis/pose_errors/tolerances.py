@@ -1,9 +1,12 @@
-"""Tolerances at the tool: covariance, worst case over a box, samples with exact kinematics, (T16.10)-(T16.12)."""
+"""Tolerances at the tool: covariance, worst case over a box, samples with exact kinematics, (T16.10)-(T16.12).
+
+What pistons that are heavier than drawn do to the tool at rest, Eq. (T16.23).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,9 +16,13 @@ from flexapod.analysis.pose_errors.sensitivity import Sensitivity
 from flexapod.common.arrays import Array
 from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN
 from flexapod.kinematics.rotations import quaternion, rotation_vector
-from flexapod.model import Robot
-
-__all__ = ["Spreading", "displacement", "drift", "samples", "spreading"]
+from flexapod.mechanics.leg.layout import columns, leg_parameters
+from flexapod.model import Robot, Study
+from flexapod.solve.batch import residual
+from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.statics.locked_robot import LockedPoses, the_equilibrium
+from flexapod.solve.statics.stiffness import displacement, tool_motion
+from flexapod.solve.system import System
 
 CHI, L = COORDINATES.index("chi"), COORDINATES.index("l")
 BLOCK = 2000  # machines whose poses are sought side by side
@@ -149,12 +156,12 @@ def samples(
                 q = q + drawn * _weights(robot, name, at, push)
         start = path.part(np.zeros(size, dtype=int))
         found, gap = kinematics.nearby(legs, q, start, shift["base"], shift["platform"])
-        moved = displacement(robot, start, found) + more
+        moved = tool_displacement(robot, start, found) + more
         parts.append(np.where((gap < kinematics.TAKEN * legs.L_c)[:, None], moved, np.nan))
     return np.concatenate(parts)
 
 
-def displacement(robot: Robot, before: kinematics.Poses, after: kinematics.Poses) -> Array:
+def tool_displacement(robot: Robot, before: kinematics.Poses, after: kinematics.Poses) -> Array:
     """Displacement of the tool and rotation vector from poses to others, world axes, (T, 6)."""
     turn = rotation_vector(quaternion(after.rotation @ before.rotation.swapaxes(1, 2)))
     return np.concatenate([after.place(robot.tool) - before.place(robot.tool), turn], axis=1)
@@ -163,4 +170,37 @@ def displacement(robot: Robot, before: kinematics.Poses, after: kinematics.Poses
 def drift(robot: Robot, pose: kinematics.Poses, times: Array) -> Array:
     """Displacement of the tool at a pose by errors and by the temperatures of instants, (t, 6)."""
     many = pose.part(np.zeros(len(times), dtype=int))
-    return displacement(robot, many, kinematics.built_poses(robot, many, times))
+    return tool_displacement(robot, many, kinematics.built_poses(robot, many, times))
+
+
+def by_density(study: Study, pose: kinematics.Poses) -> Array:
+    """Displacement and rotation of the tool by more density of the piston of each leg, relative to it, (n, 6).
+
+    Raises
+    ------
+    ComputationError
+        There is no equilibrium.
+    """
+    locked = locked_poses(study.robot, study.simulation, pose, study.load)
+    pose_there = the_equilibrium(locked).state.pose
+    heavier = _balance(locked, locked.system) - _balance(locked, _twice_as_heavy(locked.system))
+    count = len(heavier)
+    loads = np.zeros((1, *heavier.shape, count))
+    loads[0, np.arange(count), :, np.arange(count)] = heavier  # of each leg alone
+    y = displacement(locked, loads, np.zeros((1, 6, count)))
+    return (tool_motion(study.robot, pose_there[None]) @ y)[0].T
+
+
+def _balance(locked: LockedPoses, system: System) -> Array:
+    """Balance of the leg coordinates at the equilibrium, (n, any) [N, N m], but for what drives do."""
+    states = locked.equilibria.states
+    still = np.zeros((1, system.legs, len(system.ports)))
+    return residual(system, states, still, still, np.zeros(6))[0].reshape(system.legs, -1)
+
+
+def _twice_as_heavy(system: System) -> System:
+    layout, leg_p = leg_parameters(system.kernel.shapes), system.leg_p.copy()
+    for name in ("rhoA", "section_rhoA"):
+        if name in dict(layout):
+            leg_p[:, columns(layout, name)] *= 2.0
+    return replace(system, leg_p=leg_p)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.analysis.results.inside import bushing_words
+from flexapod.analysis.results.elongations import bushing_words
 from flexapod.analysis.results.lazy_arrays import Made
 from flexapod.analysis.results.legs import base_points
 from flexapod.common.arrays import Array
@@ -26,18 +26,6 @@ if TYPE_CHECKING:
     from flexapod.analysis.results.time_history import Record
     from flexapod.solve.batch import RestStates
     from flexapod.solve.system import System
-
-__all__ = [
-    "CYLINDER",
-    "axes_as_drawn",
-    "bodies_words",
-    "body_results",
-    "clearance",
-    "flexible_axes",
-    "largest_turns",
-    "pairs_of_legs",
-    "turns",
-]
 
 Pairs = list[tuple[int, int]]
 CYLINDER = 1.6  # radius of a cylinder over that of its piston, where it is not known

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from flexapod import kinematics
 from flexapod.analysis.results.cause_labels import CAUSES
-from flexapod.analysis.results.elongations import elongations, frame_names, in_gap, part_names
-from flexapod.analysis.results.inside import tip_moves
+from flexapod.analysis.results.elongations import elongations, frame_names, in_gap, part_names, tip_moves
 from flexapod.analysis.results.legs import stretch
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.analysis.results.time_history import Record

@@ -18,8 +18,6 @@ from flexapod.solve.system import System
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["by_name", "element_forms", "element_results", "of_elements"]
-
 
 def element_forms(robot: Robot) -> dict[str, Variable]:
     """Results of the elements of a robot: dimensions, unit, meaning."""

@@ -6,8 +6,6 @@ import math
 
 from flexapod.model import Robot
 
-__all__ = ["MACHINES", "held", "ideal_words"]
-
 #: Shares of joints, drives and plates in the compliance of a leg, in per cent, by the length of a leg [m] of presets.
 MACHINES = {
     "small-hexapod": (0.164, {"joints": 58, "drives": 33, "plates": 5}),

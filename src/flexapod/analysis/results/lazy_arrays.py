@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from flexapod.common.arrays import Array
 from flexapod.common.resources import one_thread
 
-__all__ = ["Asked", "Made"]
-
 #: An array, or what makes it.
 Made = Array | Callable[[], NDArray[Any]]
 

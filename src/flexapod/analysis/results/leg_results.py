@@ -1,4 +1,7 @@
-"""Results of the legs by name: lengths, angles, deflections, forces and moments, whatever their kind."""
+"""Results of the legs by name: lengths, angles, deflections, forces and moments, whatever their kind.
+
+How exact the forces of a run within a tolerance are: estimate over peak, Eq. (T6.34), and remarks on it.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.analysis.results import legs as by_name
-from flexapod.analysis.results.bodies import axes_as_drawn, body_results, largest_turns, pairs_of_legs
+from flexapod.analysis.results.bodies import axes_as_drawn, body_results, flexible_axes, largest_turns, pairs_of_legs
 from flexapod.analysis.results.causes import cause_names
 from flexapod.analysis.results.element_outputs import element_results
-from flexapod.analysis.results.elongations import elongations, in_gap
-from flexapod.analysis.results.inside import GUIDED, guide_results, is_guided, tip_moves
+from flexapod.analysis.results.elongations import GUIDED, elongations, guide_results, in_gap, is_guided, tip_moves
 from flexapod.analysis.results.lazy_arrays import Made
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.analysis.results.time_history import Record
@@ -25,7 +27,7 @@ from flexapod.kinematics.robot import rigid_limbs, robot_limbs
 from flexapod.kinematics.rotations import exponential, matrix
 from flexapod.mechanics.elements.springs import twist_share
 from flexapod.mechanics.leg.layout import columns, leg_parameters
-from flexapod.model import Robot
+from flexapod.model import Robot, Study
 from flexapod.solve.batch import RestStates
 from flexapod.solve.frames import as_drawn, in_world
 from flexapod.solve.friction import sliding
@@ -318,3 +320,37 @@ def _springs(system: System, k: int, angle: Array, rate: Array | float) -> Array
 def _of_base(system: System, name: str) -> Array:
     """A parameter of the angles at the base joints, (legs, 3)."""
     return system.leg_p[:, columns(leg_parameters(system.kernel.shapes), f"base_{name}")]
+
+
+BEYOND = 10.0  # tolerances that forces may be off by without a remark
+INSTANTS = 200  # of a record that tell the peak
+FINEST = 1e-8  # tolerance that is advised at most: rounding is not far
+
+
+def force_error(robot: Robot, system: System, record: Record) -> float | None:
+    """Estimated error of the legs' forces over their peak, as of a run within a tolerance; None where none is known."""
+    if record.force_error is None or system.rows < 3:
+        return None
+    some = record.part(slice(None, None, max(1, len(record.time) // INSTANTS)))
+    along = np.einsum("tli,tli->tl", some.lam[..., :3], flexible_axes(robot, system, some))
+    peak = float(np.abs(along).max())
+    return record.force_error / peak if peak > 0 else None
+
+
+def force_warnings(study: Study, error: float | None) -> list[str]:
+    """A remark where forces are beyond ten times the tolerance, with the one that would do.
+
+    Errors of vibrations that steps begin to follow fall with the root of the tolerance, later with the tolerance.
+    """
+    tolerance = study.simulation.tolerance
+    if error is None or tolerance is None or error <= BEYOND * tolerance:
+        return []
+    finer = tolerance * (BEYOND * tolerance / error) ** 2
+    digit = 10.0 ** np.floor(np.log10(max(finer, FINEST)))
+    advised = np.floor(max(finer, FINEST) / digit * (1 + 1e-9)) * digit
+    number = f"{advised:.0e}".replace("e-0", "e-")
+    return [
+        f"forces of the legs may be off by {100 * error:.2g} % of their peak, {error / tolerance:.0f} times the "
+        "tolerance: steps pass over vibrations that hardly move the payload. Where forces matter set "
+        f"simulation.tolerance = {number}"
+    ]

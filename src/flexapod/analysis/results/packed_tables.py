@@ -23,8 +23,6 @@ from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import InputError
 from flexapod.common.tables.named_files import Stored
 
-__all__ = ["as_text", "pack", "unpack"]
-
 Whole = NDArray[np.signedinteger[Any]]
 Bytes = NDArray[np.uint8]
 

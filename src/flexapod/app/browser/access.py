@@ -17,8 +17,8 @@ from websockets.asyncio import server as websockets_server
 from websockets.asyncio.server import ServerConnection, serve
 from websockets.http11 import Request, Response
 
+from flexapod.app.browser.background import CONNECTIONS, LOG
 from flexapod.app.browser.client_limits import LARGEST_MESSAGE, Visitor
-from flexapod.app.browser.logs import CONNECTIONS, LOG
 from flexapod.app.browser.network import has_place, is_expected, is_same_site, names_in_words, whose
 
 MOST_VISITORS = 64

@@ -12,7 +12,7 @@ from flexapod import model
 from flexapod.app.browser import markup
 from flexapod.app.browser.background import Latest, Threads
 from flexapod.common.errors import FlexapodError
-from flexapod.output.scene.colours import ERRORS
+from flexapod.output.scene.style import ERRORS
 
 if TYPE_CHECKING:
     from xarray import Dataset

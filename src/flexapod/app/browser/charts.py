@@ -15,9 +15,8 @@ from flexapod.analysis.results.element_outputs import of_elements
 from flexapod.analysis.results.summary import POINT_WORDS, tip_size
 from flexapod.common.arrays import Array
 from flexapod.common.quantities import NOTHING, capital, cleared_lines, number, scale
-from flexapod.output.scene.colours import AXIS_COLORS, ENERGIES, colors_of_legs
 from flexapod.output.scene.geometry import nearest
-from flexapod.output.scene.style import drives
+from flexapod.output.scene.style import AXIS_COLORS, ENERGIES, colors_of_legs, drives
 
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset

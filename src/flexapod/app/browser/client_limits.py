@@ -13,7 +13,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.frames import DATA_OPCODES, Frame
 from websockets.protocol import Event
 
-from flexapod.app.browser.logs import LOG
+from flexapod.app.browser.background import LOG
 from flexapod.app.browser.network import has_place, whose
 
 LARGEST_MESSAGE = 2_000_000

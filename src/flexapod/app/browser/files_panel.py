@@ -15,8 +15,7 @@ from viser import ClientHandle, Icon, IconName
 from flexapod.app.browser import markup
 from flexapod.app.browser.background import Threads
 from flexapod.app.browser.document import Document, read
-from flexapod.app.browser.study_files import study_download
-from flexapod.app.browser.uploads import LARGEST, Sent, limit_uploads, read_upload, store_table
+from flexapod.app.browser.uploads import LARGEST, Sent, limit_uploads, read_upload, store_table, study_download
 from flexapod.common.errors import FlexapodError
 from flexapod.common.files import scratch
 

@@ -10,8 +10,7 @@ import numpy as np
 from flexapod import model
 from flexapod.common.arrays import Array
 from flexapod.common.quantities import NOTHING, cleared_lines, number, scale
-from flexapod.output.scene.colours import colors_of_legs
-from flexapod.output.scene.style import drives
+from flexapod.output.scene.style import colors_of_legs, drives
 
 if TYPE_CHECKING:
     from xarray import Dataset

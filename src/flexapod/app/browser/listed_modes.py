@@ -14,9 +14,9 @@ from viser import Icon
 
 from flexapod.app.browser import markup
 from flexapod.app.browser.background import Latest, Threads
-from flexapod.app.browser.player import Player
 from flexapod.app.browser.scene import PageScene
 from flexapod.app.browser.text_fields import Dial, by_user
+from flexapod.app.browser.time_panel import Player
 from flexapod.common.errors import FlexapodError
 from flexapod.common.quantities import text
 

@@ -1,14 +1,23 @@
-"""What people are told: errors, answers and remarks as HTML in which nothing that comes from a file is live."""
+"""What people are told: errors, answers and remarks as HTML in which nothing that comes from a file is live.
+
+Scripts of ours in the page of one client (`assets`), each a function of one argument.
+"""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
+from functools import cache
 from html import escape
+from importlib.resources import files
 from pathlib import Path
+from typing import Any
+
+from viser import ClientHandle
 
 from flexapod.common.errors import FlexapodError
 from flexapod.common.version import __version__
-from flexapod.output.text.refusal import lines_of, parts_of
+from flexapod.output.text.answers import lines_of, parts_of
 
 _LIGHT = {"error": "#c0392b", "warning": "#9a6700", "good": "#2c6e49", "soft": "#666666"}
 _COLOURS = {kind: f"var(--flexapod-{kind}, {colour})" for kind, colour in _LIGHT.items()} | {"plain": "inherit"}
@@ -80,3 +89,17 @@ def _box(inner: str, kind: str) -> str:
 def framed(inner: str) -> str:
     """HTML at the margins and in the size of the panel's other words."""
     return f"<div style='padding:0 0.75em 0.5em;font-size:0.8rem;line-height:1.35;overflow-wrap:anywhere'>{inner}</div>"
+
+
+def run_script(client: ClientHandle, name: str, argument: Any) -> None:
+    """Call the function of a script, ``name.js``, in the browser of a client."""
+    from viser import _messages
+
+    source = f"({_function(name)})({json.dumps(argument, allow_nan=False)})"
+    client._websock_connection.queue_message(_messages.RunJavascriptMessage(source=source))
+
+
+@cache
+def _function(name: str) -> str:
+    text = files("flexapod.app.browser").joinpath("assets", f"{name}.js").read_text(encoding="utf-8")
+    return text[text.index("\n(") + 1 :].rstrip().rstrip(";")

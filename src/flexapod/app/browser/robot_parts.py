@@ -14,9 +14,9 @@ from flexapod.app.browser.legend import rgb
 from flexapod.common.arrays import Array
 from flexapod.common.quantities import number, text
 from flexapod.kinematics.rotations import exponential, quaternion
-from flexapod.output.scene.colours import colors_of_legs
 from flexapod.output.scene.geometry import ROUNDING, Instant, orientation, plate, round_down, strip, tube, tube_faces
 from flexapod.output.scene.skeleton import STATIONS, Scene, Skeleton
+from flexapod.output.scene.style import colors_of_legs
 
 
 class SceneNodes:

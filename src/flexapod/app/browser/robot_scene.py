@@ -17,10 +17,10 @@ from flexapod.app.browser.robot_parts import LABELS, Deviation, Ghost, RobotPart
 from flexapod.app.browser.scene import OF_RESULTS, STRAIGHT, PageScene, mode_note
 from flexapod.common.arrays import Array
 from flexapod.common.quantities import number
-from flexapod.output.scene.colours import colors_of_legs
 from flexapod.output.scene.geometry import RobotMotion
 from flexapod.output.scene.robot_scene import mode_scene
 from flexapod.output.scene.skeleton import Skeleton
+from flexapod.output.scene.style import colors_of_legs
 
 if TYPE_CHECKING:
     from xarray import Dataset

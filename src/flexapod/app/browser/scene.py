@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import viser
 
-from flexapod.app.browser.scripts import run_script
+from flexapod.app.browser.markup import run_script
 from flexapod.common.arrays import Array
 from flexapod.common.quantities import number, text
 

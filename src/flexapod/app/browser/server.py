@@ -13,17 +13,15 @@ from typing import TYPE_CHECKING, Any, cast
 import viser
 
 from flexapod.app.browser.access import Door
-from flexapod.app.browser.background import Latest, Threads
+from flexapod.app.browser.background import LOG, Latest, Threads
 from flexapod.app.browser.client_limits import Pool
-from flexapod.app.browser.kept_results import KeptResults
-from flexapod.app.browser.logs import LOG
-from flexapod.app.browser.running import Cores
+from flexapod.app.browser.running import Cores, KeptResults
 from flexapod.common.lazy_imports import loaded
-from flexapod.common.memory import collect, few_arenas
+from flexapod.common.resources import collect, few_arenas
 
 if TYPE_CHECKING:
     from flexapod.app.browser.client_limits import Visitor
-    from flexapod.app.browser.opening import StudySource
+    from flexapod.app.browser.header import StudySource
     from flexapod.app.browser.session import Session
 
 GONE = "Queued a .* on a closed connection"

@@ -83,7 +83,7 @@ HOMES = {
     "modes": "poses",
     "frf": "linear",
     "damp": "linear",
-    "budget": "budget",
+    "budget": "poses",
     "map": "map",
     "converge": "surveys",
     "sweep": "surveys",

@@ -92,7 +92,7 @@ def export(
     json: Json = False,
 ) -> None:
     """Write the robot for other programs: a deck, a unit that runs, a model, its motion to look at, matrices."""
-    from flexapod.app.cli.map_options import parse_pose
+    from flexapod.app.cli.commands_map import parse_pose
     from flexapod.common.units import quantity
     from flexapod.output.exchange.formats import FORMATS, check_options, check_place, format_of, written
 
@@ -149,7 +149,7 @@ def _written(found: Exported) -> list[str]:
 
 def _as_dict(format: str, found: Exported, elements: int | None, count: int | None) -> dict[str, object]:
     if format == "abaqus":
-        from flexapod.output.exchange.export import ELEMENTS, MODES
+        from flexapod.output.exchange.pose_deck import ELEMENTS, MODES
 
         return {"file": found.path, "format": format, "elements": elements or ELEMENTS, "modes": count or MODES}
     return {"file": found.path, "format": format, "files": list(found.files), "left_out": list(found.left_out)}

@@ -97,7 +97,7 @@ def _model(
 ) -> LinearModel:
     """The model with these channels; without any such that every robot has."""
     from flexapod.analysis.linear import linearize
-    from flexapod.app.cli.map_options import parse_pose
+    from flexapod.app.cli.commands_map import parse_pose
 
     with as_options(**OPTIONS):
         if friction not in (None, "sliding", "stuck"):
@@ -145,7 +145,7 @@ def _write(
         files.append(save(data, folder / "frf.nc"))
         files += _figure(data, folder) if figure else ()
     if uff is not None:
-        from flexapod.output.exchange.uff import uff as text_of
+        from flexapod.output.exchange.formats import uff as text_of
 
         write_text(uff, text_of(data), encoding="ascii", errors="replace")
         files.append(uff)

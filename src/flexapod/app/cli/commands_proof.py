@@ -105,33 +105,33 @@ def verify(
 
 def _verified(outcomes: list[Outcome]) -> Iterator[Item]:
     """The table of the cases, sources of their references, how many agree."""
-    from flexapod.verification import page
+    from flexapod.verification import pack
 
-    yield TextTable(page.HEAD, page.rows(outcomes), left=(0, 1))
+    yield TextTable(pack.HEAD, pack.rows(outcomes), left=(0, 1))
     yield ""
     yield "Sources of the references"
     for o in outcomes:
         yield f"  {o.case.name}: {o.case.source}"
-        yield from (f"    {fault}" for fault in page.faults(o))
+        yield from (f"    {fault}" for fault in pack.faults(o))
     yield ""
-    yield page.sentence(outcomes)
+    yield pack.sentence(outcomes)
 
 
 def _write(outcomes: list[Outcome], html: Path | None, markdown: Path | None) -> None:
     from flexapod.output.text.html import page as whole
     from flexapod.output.text.html import section
-    from flexapod.verification import page
+    from flexapod.verification import pack
 
     if markdown is not None:
-        write_text(markdown, page.markdown(outcomes))
+        write_text(markdown, pack.markdown(outcomes))
     if html is not None:
         marks = {"pass": "good", "fail": "bad", "not computed": "bad", "not run": "open"}
         cases = [
-            section(o.case.name, o.case.name, [f"{o.case.statement}.", Bullets(page.notes(o)), _checks(o)])
+            section(o.case.name, o.case.name, [f"{o.case.statement}.", Bullets(pack.notes(o)), _checks(o)])
             for o in outcomes
         ]
-        table = TextTable(page.HEAD, page.rows(outcomes), marks=marks)
-        write_text(html, whole("flexapod: verification", page.sentence(outcomes), [table, *cases]))
+        table = TextTable(pack.HEAD, pack.rows(outcomes), marks=marks)
+        write_text(html, whole("flexapod: verification", pack.sentence(outcomes), [table, *cases]))
 
 
 def _checks(outcome: Outcome) -> TextTable:

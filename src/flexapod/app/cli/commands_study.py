@@ -1,9 +1,15 @@
-"""Commands about study files: `new` writes one, `keys` says what it may contain, `check` describes it in words."""
+"""Commands about study files: `new` writes one, `keys` says what it may contain, `check` describes it in words.
+
+The examples of the gallery, and the notebooks: files that `flexapod new --example` writes and `--list` names.
+
+Names of tables and keys of a study file, read without the model: answers about wrong ones come at once.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,8 +17,9 @@ import typer
 
 from flexapod.app.cli.failures import guarded
 from flexapod.app.cli.options import Force, Json, StudyFile, Verbose, as_options, refuse_existing
-from flexapod.common.errors import InputError
+from flexapod.common.errors import InputError, closest, nearest
 from flexapod.common.files import write_text
+from flexapod.common.tables.reference import Entry, reference
 from flexapod.output.text import parts
 from flexapod.output.text.terminal import tell
 
@@ -93,7 +100,7 @@ def new(
 
 
 def _list(*, json: bool) -> None:
-    from flexapod.app.cli.examples import titles
+    pass  # FOLD
     from flexapod.model import PRESETS
 
     found = {
@@ -105,7 +112,7 @@ def _list(*, json: bool) -> None:
 
 
 def _example(option: str, wanted: str, name: Path | None, *, force: bool, json: bool) -> None:
-    from flexapod.app.cli.examples import place, text
+    pass  # FOLD
 
     written, path = text(option, wanted), place(option, wanted, name)
     refuse_existing(path, force)
@@ -124,7 +131,7 @@ def _preset(name: str) -> tuple[str, dict[str, object], list[str]]:
 def _first_robot(request: str, preset: str | None, *, ideal: bool) -> tuple[str, dict[str, object], list[str]]:
     """Text of a first robot, what it is from, and what there is to say about it."""
     from flexapod.design.first_robot import IDEAL, first_robot, parse_request
-    from flexapod.output.text.first import first_words
+    from flexapod.output.text.answers import first_words
 
     if preset is not None:
         raise InputError("is given together with --from", key="--preset", value=preset, allowed="one of the two")
@@ -150,7 +157,7 @@ def keys(table: Table = None, markdown: Markdown = None, schema: Schema = None, 
     """Show every key of a study file: what it is, unit, what it is if left out, what is allowed, an example."""
     from dataclasses import asdict
 
-    from flexapod.app.cli.key_names import check_table
+    pass  # FOLD
 
     if table is not None:
         check_table(table)
@@ -200,3 +207,86 @@ def check(file: StudyFile, verbose: Verbose = False, json: Json = False) -> None
         control = control_words(study)
     data = lambda: found.as_dict() | ({"control": control} if control else {})  # noqa: E731
     tell(check_items(found, control), data, json=json, verbose=verbose)
+
+
+_FOLDERS = {"--example": "examples/gallery", "--notebook": "examples/notebooks"}
+
+
+def titles(option: str) -> dict[str, str]:
+    """Title of each example, or of each notebook, by name."""
+    found = {x.name.removesuffix(".py"): x for x in files("flexapod").joinpath(_FOLDERS[option]).iterdir()}
+    return {name: _title(x.read_text(encoding="utf-8")) for name, x in sorted(found.items()) if x.name.endswith(".py")}
+
+
+def text(option: str, name: str) -> str:
+    """The file of an example.
+
+    Raises
+    ------
+    InputError
+        A name that is not known.
+    """
+    known = titles(option)
+    if name not in known:
+        next_step = closest(name, known) or "flexapod new --list names them"
+        raise InputError("is not known", key=option, value=name, allowed=", ".join(known), next_step=next_step)
+    return files("flexapod").joinpath(_FOLDERS[option], f"{name}.py").read_text(encoding="utf-8")
+
+
+def place(option: str, name: str, given: Path | None) -> Path:
+    """Where an example is written: NAME.py here, unless another place is given."""
+    if given is not None and (given.is_dir() or given.suffix not in ("", ".py")):
+        words = "is a folder" if given.is_dir() else "is no name of a Python file"
+        raise InputError(words, file=given, allowed="FILE.py", next_step=f"{option} {name} alone writes {name}.py")
+    return (given or Path(name)).with_suffix(".py")
+
+
+def _title(written: str) -> str:
+    """The first line of words: of an example its heading, of a notebook that of its first cell."""
+    lines = (line for line in written.splitlines() if not line.startswith(("# %%", "# ---", "# jupyter:", "#   ")))
+    words = (line.removeprefix('r"""').strip('"# ') for line in lines)
+    return next(line for line in words if line)
+
+
+MOST = 3  # names that are suggested
+
+
+def check_table(wanted: str) -> None:
+    """Refuse what is not a table of a study file, nor above one.
+
+    Raises
+    ------
+    InputError
+        With the table that is meant: of that last name, with a key of that name, or of a similar name.
+    """
+    entries = reference().entries
+    tables = list(dict.fromkeys(entry.table for entry in entries))
+    if any(f"{table}.".startswith(f"{wanted}.") for table in tables):
+        return
+    raise InputError(
+        "is not a table of a study file",
+        key="TABLE",
+        value=wanted,
+        allowed=f"{', '.join(dict.fromkeys(table.split('.')[0] for table in tables))}, or a table in one of them",
+        next_step=_meant(wanted, tables, entries),
+    )
+
+
+def _meant(wanted: str, tables: list[str], entries: tuple[Entry, ...]) -> str:
+    table, _, last = wanted.rpartition(".")
+    ends = [name for name in tables if name.rpartition(".")[2] == last]
+    if ends:
+        return f"Did you mean {' or '.join(map(repr, ends[:MOST]))}?"
+    named = [name for name in tables if table in (name, "")]
+    holders = [name for name in named if any(last in entry.data for entry in entries if entry.table == name)]
+    if holders:
+        which = " or ".join(f"`flexapod keys {name}`" for name in holders[:MOST])
+        return f"{last} is a key of a table: {which}"
+    lasts = {name.rpartition(".")[2]: name for name in reversed(tables)}
+    keys = {f"{entry.table}.{key}": entry.table for entry in entries for key in entry.data}
+    keys = {name: table for name, table in keys.items() if name not in tables}
+    close = nearest(wanted, [*tables, *keys])
+    if close in keys:
+        return f"Did you mean the key {close}? `flexapod keys {keys[close]}`"
+    close = close or lasts.get(nearest(last, lasts) or "")
+    return f"Did you mean {close!r}?" if close else "`flexapod keys` lists all tables with their keys"

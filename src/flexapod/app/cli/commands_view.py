@@ -46,8 +46,8 @@ def view(
 ) -> None:
     """Look at a study or its results in the browser: 3D, charts, modes, every number to turn. Ctrl-C ends it."""
     _check_packages()
+    from flexapod.app.browser.header import open_source
     from flexapod.app.browser.network import address, free_port
-    from flexapod.app.browser.opening import open_source
 
     source, free = open_source(file), free_port(host, port)
     from flexapod.app.browser.server import View

@@ -21,7 +21,7 @@ import typer
 
 from flexapod.common.errors import FlexapodError, InputError
 from flexapod.common.version import __version__
-from flexapod.output.text.refusal import lines_of, parts_of
+from flexapod.output.text.answers import lines_of, parts_of
 
 _received: list[int] = []
 

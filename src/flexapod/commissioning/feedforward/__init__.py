@@ -1,6 +1,6 @@
 """Commands that a study should follow instead of its own: compensated, shaped, of least time."""
 
-from flexapod.commissioning.feedforward.compensate import compensate
+from flexapod.commissioning.feedforward.compensation import compensate
 from flexapod.commissioning.feedforward.least_time import time_optimal
 from flexapod.commissioning.feedforward.shaping import shape
 

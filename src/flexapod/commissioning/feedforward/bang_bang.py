@@ -12,9 +12,7 @@ from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.common.quantities import number, text
 from flexapod.control import StateSpace
-from flexapod.control.reduction import apart
-
-__all__ = ["Switched", "switched"]
+from flexapod.control.norms import apart
 
 PIECES = 200  # of constant input, by which the order of switches is found
 CLOSE = 1e-6  # of the time, up to which pieces are made shorter

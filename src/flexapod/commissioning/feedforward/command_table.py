@@ -20,8 +20,6 @@ from flexapod.model import AXES, ActuatorStudy, CsvLaw, CsvMotion, Motion, Study
 from flexapod.model.motion import Axis
 from flexapod.model.stored import stored_tables
 
-__all__ = ["Tabled", "check_out", "named", "saved", "tabled"]
-
 FEWEST, MOST = 100, 3200  # rows between first and last knot
 ENOUGH = 1e-5  # of the largest acceleration of each kind, by which that of the table may be off in the mean
 JUMPS = 1e-2  # mean error of accelerations above which the law's rate jumps

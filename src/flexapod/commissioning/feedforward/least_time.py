@@ -15,7 +15,7 @@ from flexapod.analysis.results.arguments import FileLike, PoseLike, RobotLike, a
 from flexapod.analysis.results.poses import coordinates_of
 from flexapod.commissioning.feedforward.bang_bang import Switched, switched
 from flexapod.commissioning.feedforward.command_table import check_out, saved
-from flexapod.commissioning.feedforward.drive_loads import Given, limits_of
+from flexapod.commissioning.feedforward.loaded_path import Given, limits_of
 from flexapod.commissioning.feedforward.modal_path import PERIODS, vibration_along
 from flexapod.commissioning.feedforward.straight_line import StraightWay
 from flexapod.common.arguments import flag, number
@@ -26,8 +26,6 @@ from flexapod.common.resources import one_thread
 from flexapod.common.units import quantity
 from flexapod.control import StateSpace
 from flexapod.model import Study
-
-__all__ = ["Fastest", "fastest", "time_optimal"]
 
 RESIDUAL = "1 um"  # how much vibration is left where nothing else is asked for
 

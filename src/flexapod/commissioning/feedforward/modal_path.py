@@ -20,8 +20,6 @@ from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.statics.locked_robot import LockedPoses
 from flexapod.solve.statics.stiffness import tool_motion
 
-__all__ = ["LinearPath", "PathVibration", "followed", "forces", "linear_path", "vibration_along"]
-
 POSES = 25  # along a path, between which matrices follow cubic splines
 FINE, OF = 24, 3  # steps in a period of the third mode: the first may be far below what a path shakes
 LEAST, MOST = 100, 20_000  # steps

@@ -11,8 +11,6 @@ from numpy.typing import ArrayLike
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError, check_known
 
-__all__ = ["KINDS", "Shaper", "insensitivity", "shaper"]
-
 TOLERATED = 0.05  # vibration left, over that of one impulse, which EI and 2HEI allow at the frequency they are made for
 WIDE = 4.0  # times that frequency: how far insensitivity is looked for
 

@@ -25,8 +25,6 @@ from flexapod.model import ActuatorStudy, AxisMotion, CombinedMotion, CsvMotion,
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.modal.modes import modes_of
 
-__all__ = ["Shaped", "shape", "shaping"]
-
 ON_PATH = 1e-4  # of the way: a shaped path that is no farther beside the own one is on it
 LOOKS = 2001
 SLOWEST, FASTEST = 0.01, 1e4  # of the first mode: frequencies that somebody may mean

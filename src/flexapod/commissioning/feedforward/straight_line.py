@@ -12,14 +12,12 @@ from flexapod.analysis.results.leg_results import drive_forces
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.analysis.simulation import simulated
 from flexapod.commissioning.feedforward.command_table import named
-from flexapod.commissioning.feedforward.drive_loads import DriveLimits
+from flexapod.commissioning.feedforward.loaded_path import DriveLimits
 from flexapod.commissioning.feedforward.modal_path import LinearPath, followed, forces, linear_path
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import ComputationError
 from flexapod.kinematics import Law
 from flexapod.model import CsvMotion, Study
-
-__all__ = ["StraightWay"]
 
 ROWS = 48  # of the table of the way: cubic acceleration between them
 LOOKS = 4  # instants between two rows at which limits hold

@@ -22,8 +22,6 @@ import numpy as np
 
 from flexapod.common.files import LARGEST_TABLE
 
-__all__ = ["json_arrays", "mat_arrays", "npz_arrays", "texts_of"]
-
 MOST = LARGEST_TABLE // 8  # numbers, or texts, of all arrays together
 MOST_LISTS = 200_000  # in JSON: rows of matrices
 MOST_MEMBERS = 10_000  # arrays of a file, cells of an array

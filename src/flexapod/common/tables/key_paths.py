@@ -8,8 +8,6 @@ from typing import Any
 
 from flexapod.common.errors import InputError, closest
 
-__all__ = ["Step", "copied", "key_text", "leaves", "parse_key", "similar_key"]
-
 Step = str | int
 _NAME = re.compile(r"([A-Za-z_][\w-]*)((?:\[\d+\])*)")
 

@@ -10,8 +10,6 @@ from typing import Any
 
 from flexapod.common.errors import InputError
 
-__all__ = ["Content", "NamedFiles", "Stored", "Unreadable", "columns_of_table"]
-
 #: Columns of a table, or parts of a linear system, by name: dimension (see `flexapod.common.units`) and values in SI
 Content = Mapping[str, tuple[str, Any]]
 LONGEST = 100  # letters of a name in a folder that is all there is

@@ -15,8 +15,6 @@ from flexapod.common.files import LARGEST_TABLE, read_bytes
 from flexapod.common.tables.array_files import json_arrays, mat_arrays, npz_arrays, texts_of
 from flexapod.common.tables.named_files import Content, Unreadable
 
-__all__ = ["SYSTEM_FILES", "read_system"]
-
 MATRICES, NAMES = ("A", "B", "C", "D"), ("inputs", "outputs")
 MOST_CHANNELS = 10_000
 

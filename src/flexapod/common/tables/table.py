@@ -7,13 +7,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from flexapod.common.tables.base import FileKey, Frozen, same
-from flexapod.common.tables.source_text import Written, together
+from flexapod.common.tables.toml import Written, together
 
 if TYPE_CHECKING:
     from flexapod.common.tables.named_files import Content
     from flexapod.common.tables.section import Section
-
-__all__ = ["Place", "Table", "plain"]
 
 _WRITTEN = "written"  # where an object keeps the table that it was read from
 _HELD = "held"  # where a study keeps that its tables are all there is

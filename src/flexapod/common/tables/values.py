@@ -13,8 +13,8 @@ from flexapod.common.tables.columns import Kind
 from flexapod.common.tables.field_help import Notes
 from flexapod.common.tables.named_files import NamedFiles
 from flexapod.common.tables.reference import advice, example_line
-from flexapod.common.tables.source_text import Written
 from flexapod.common.tables.table import Table
+from flexapod.common.tables.toml import Written
 from flexapod.common.units import to_si
 
 M = TypeVar("M", bound=Table)

@@ -10,8 +10,6 @@ from dataclasses import dataclass
 
 from flexapod.model.leg.rolling import RollingLaw
 
-__all__ = ["CYLINDERS", "MOTORS", "SCREWS", "Screw", "joint_stiffness", "motor_inertia", "motor_mass", "speed_limit"]
-
 UM = 1e6  # N/m of an N/um
 DOUBLE = 1.33  # rigidity of a double nut over that of a single one: R32-10K5, R25-05K4 and R32-05K4, -FDC over -FSC
 OF_ONE = f"ours: {DOUBLE:g} times that of the single nut, as between R32-10K5-FDC and -FSC"

@@ -13,8 +13,6 @@ from flexapod.design.first_robot.study_text import Plan, given, length, material
 from flexapod.design.first_robot.warm import tables
 from flexapod.model import MATERIALS
 
-__all__ = ["FREE", "OUTER", "TUBE", "Electric", "electric_leg", "longest_stroke"]
-
 TUBE = 1.7  # diameter of the piston over that of its screw, at least
 HOLLOW = 1.25, 0.65  # inner diameter of the piston: over the screw's, over its own, at least
 OUTER, INSIDE = 1.5, 1.17  # diameters of the cylinder over the piston's

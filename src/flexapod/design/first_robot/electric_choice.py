@@ -23,8 +23,6 @@ from flexapod.design.first_robot.sizing import OPTION, Joints, Request, SizedLeg
 from flexapod.design.first_robot.study_text import Plan, written
 from flexapod.model.leg.screw import HIGHEST, UNLOADS
 
-__all__ = ["electric"]
-
 STIFF = 33.0  # leg at home over diameter of its screw, at most where one fits: 28 in machine-hexapod
 PRELOAD = 0.05  # of the dynamic load rating, at least
 SPARE = 1.1  # of loads that choose preload and motor

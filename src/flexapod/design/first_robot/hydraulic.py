@@ -21,8 +21,6 @@ from flexapod.design.first_robot.study_text import Plan, given, length, material
 from flexapod.design.first_robot.warm import tables
 from flexapod.model import MATERIALS
 
-__all__ = ["Hydraulic", "hydraulic"]
-
 SUPPLY = 140e5  # pressure [Pa]
 SHARE = 0.25  # of the supply that the largest thrust takes: room for the valve, and stiff
 FASTEST = 1.0  # of the piston [m/s]

@@ -7,8 +7,6 @@ from collections.abc import Mapping
 from flexapod.common.quantities import number
 from flexapod.design.first_robot.study_text import Plan, words
 
-__all__ = ["tables"]
-
 PLACE, PER_METRE = 5e-6, 12.5e-6  # standard deviation of bored joints: of any plate [m], and by its diameter
 
 

@@ -33,8 +33,6 @@ if TYPE_CHECKING:
 
     from flexapod.analysis.results.packed_tables import Bytes
 
-__all__ = ["ACTUATOR_SCALARS", "Kept", "kept"]
-
 _LABELS = {"axis": 3, "direction": 2, "quaternion": 4, "plane_axis": 2, "end": 2}
 _SHAPES = ("shape", "axial_shape", "mode")  # dimensions whose size is a setting of the study
 

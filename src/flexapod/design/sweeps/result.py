@@ -51,7 +51,7 @@ def store_file(path: Path) -> Path:
 def as_dataset(store: SweepStore) -> Dataset:
     """The Dataset of an open store: whole records of one on disk stay there until they are used."""
     from flexapod.common.datasets import composed
-    from flexapod.design.sweeps.records import lazy
+    from flexapod.design.sweeps.store import lazy
 
     known = store.known
     made: dict[str, Any] = {}

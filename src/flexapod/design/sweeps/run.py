@@ -21,16 +21,14 @@ from flexapod.analysis.results.arguments import read
 from flexapod.analysis.results.time_history import Report
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.common.version import this_version
-from flexapod.design.sweeps.executors import check_place, executor, local_cores
+from flexapod.design.sweeps.executors import check_place, executor, local_cores, results
 from flexapod.design.sweeps.outputs import Kept, kept, known
 from flexapod.design.sweeps.plan import read_plan
 from flexapod.design.sweeps.refusals import check_header, no_store, only_to_read
 from flexapod.design.sweeps.result import as_dataset, store_file
 from flexapod.design.sweeps.samples import Points, Resolved
-from flexapod.design.sweeps.schedule import results
 from flexapod.design.sweeps.store import COMPUTED, Known, SweepStore, locked
-from flexapod.design.sweeps.worker import BatchResult, PointResult
-from flexapod.design.sweeps.writer import Writer
+from flexapod.design.sweeps.worker import BatchResult, PointResult, Writer
 from flexapod.design.sweeps.zarr_folder import is_sweep, save_zarr
 from flexapod.model import ActuatorStudy, Study
 from flexapod.solve.robot_system import robot_system

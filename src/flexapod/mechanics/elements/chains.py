@@ -12,8 +12,6 @@ import numpy as np
 from flexapod.mechanics.elements.steps import Piece, StepNodes, nodes, on_pieces, pieces_of
 from flexapod.mechanics.shapes import LateralBasis
 
-__all__ = ["chain", "is_chain"]
-
 _FROM = 5  # loads: a uniform mass, one that rises, those of three deflections; with fewer all go to frequencies
 _KINK = 30.0  # of the thrust's load over that of a second degree, which takes its place where the beam is uniform
 

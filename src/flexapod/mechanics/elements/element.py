@@ -25,22 +25,6 @@ if TYPE_CHECKING:
     from flexapod.mechanics.symbolic.vocabulary import SX
     from flexapod.model import Leg, Robot, Simulation
 
-__all__ = [
-    "Along",
-    "Contribution",
-    "Element",
-    "Moving",
-    "Named",
-    "Output",
-    "Physics",
-    "SeriesSprings",
-    "Standing",
-    "asked_beside",
-    "register",
-    "registered",
-    "source_of",
-]
-
 Named = tuple[tuple[str, int], ...]
 
 

@@ -1,16 +1,17 @@
-"""What passes from part to part along a leg: a moving frame; and what a part adds: energies."""
+"""What passes from part to part along a leg: a moving frame; and what a part adds: energies.
+
+Rotation matrices, Eqs. (T3.4), (T4.1)-(T4.2) and (T13.2).
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from flexapod.mechanics.symbolic.vocabulary import cross, dot, mtimes, zeros
+from flexapod.mechanics.symbolic.vocabulary import cos, cross, dot, identity, mtimes, sin, zeros
 
 if TYPE_CHECKING:
     from flexapod.mechanics.symbolic.vocabulary import SX
-
-__all__ = ["Energies", "Frame"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,3 +77,54 @@ class Energies:
             strain=self.strain + other.strain,
             dissipation=self.dissipation + other.dissipation,
         )
+
+
+def about_x(angle: SX) -> SX:
+    """Rotation about the first axis."""
+    R, c, s = identity(3), cos(angle), sin(angle)
+    R[1, 1], R[1, 2], R[2, 1], R[2, 2] = c, -s, s, c
+    return R
+
+
+def about_y(angle: SX) -> SX:
+    """Rotation about the second axis."""
+    R, c, s = identity(3), cos(angle), sin(angle)
+    R[0, 0], R[0, 2], R[2, 0], R[2, 2] = c, s, -s, c
+    return R
+
+
+def about_z(angle: SX) -> SX:
+    """Rotation about the third axis."""
+    R, c, s = identity(3), cos(angle), sin(angle)
+    R[0, 0], R[0, 1], R[1, 0], R[1, 1] = c, -s, s, c
+    return R
+
+
+def hat(x: SX) -> SX:
+    """Matrix of the vector product with x."""
+    S = zeros(3, 3)
+    S[0, 1], S[0, 2], S[1, 2] = -x[2], x[1], -x[0]
+    S[1, 0], S[2, 0], S[2, 1] = x[2], -x[1], x[0]
+    return S
+
+
+def about_axis(axis: SX, angle: SX) -> SX:
+    """Rotation about a unit vector, Eq. (T13.2)."""
+    c = cos(angle)
+    return c * identity(3) + sin(angle) * hat(axis) + (1 - c) * (axis @ axis.T)
+
+
+def small_rotation(theta: SX) -> SX:
+    """exp(theta^) to second order: exact for first and second derivatives at theta = 0, Eq. (T4.2)."""
+    S = hat(theta)
+    return identity(3) + S + 0.5 * (S @ S)
+
+
+def from_quaternion(e: SX) -> SX:
+    """Rotation matrix of a unit quaternion (w, x, y, z), platform to world, Eq. (T4.1)."""
+    w, x, y, z = e[0], e[1], e[2], e[3]
+    R = zeros(3, 3)
+    R[0, 0], R[0, 1], R[0, 2] = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
+    R[1, 0], R[1, 1], R[1, 2] = 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)
+    R[2, 0], R[2, 1], R[2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
+    return R

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from flexapod.mechanics.symbolic.vocabulary import SX
     from flexapod.model import Leg, Robot, Simulation
 
-__all__ = ["BaseFriction", "DriveFriction", "PlatformFriction", "Rubbing", "forgetting", "rubbing", "turning"]
-
 #: Of a place without friction: nothing rubs, and what could bend is a unit long.
 NO_FRICTION = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
 

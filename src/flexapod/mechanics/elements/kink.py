@@ -16,8 +16,6 @@ from flexapod.common.arrays import Array
 from flexapod.mechanics.shapes import LateralBasis
 from flexapod.mechanics.shapes.beam_functions import gauss_unit
 
-__all__ = ["LEAST", "Powers", "kink", "polynomials"]
-
 Powers = list[float]  # coefficients of a polynomial of 2 eta - 1, ascending
 
 LEAST = 1e-3  # the kink stays this far from either end, as a share of the beam: there its shape is among the others

@@ -10,8 +10,7 @@ import numpy as np
 from flexapod.common.arrays import Array
 from flexapod.mechanics.elements.element import Along, Named, Physics, Standing
 from flexapod.mechanics.elements.flexure import flexure
-from flexapod.mechanics.elements.frames import Energies, Frame
-from flexapod.mechanics.elements.rotations import about_x, about_y, about_z
+from flexapod.mechanics.elements.frames import Energies, Frame, about_x, about_y, about_z
 from flexapod.mechanics.elements.springs import viscous
 from flexapod.mechanics.symbolic.vocabulary import dot, identity, matrix33, vertcat, zeros
 
@@ -19,9 +18,6 @@ if TYPE_CHECKING:
     from flexapod.mechanics.symbolic.vocabulary import SX
     from flexapod.model import Leg, Robot, Simulation
     from flexapod.model.study.mount import Mount
-
-__all__ = ["BaseMounting", "MovedBase", "PlatformMounting", "displaced", "mount", "plate", "turn", "world"]
-
 
 #: Mass of a plate in motion, over that of the payload, at least: between springs nothing else says how it moves
 LIGHT = 1e-6

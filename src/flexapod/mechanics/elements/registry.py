@@ -7,27 +7,24 @@ from typing import TYPE_CHECKING, Any
 
 from flexapod.common.errors import InputError
 from flexapod.mechanics.elements.clearance import Clearance
+from flexapod.mechanics.elements.distribution import RotaryInertia
 from flexapod.mechanics.elements.drive_train import DriveTrain
 from flexapod.mechanics.elements.element import Element, Physics, registered
 from flexapod.mechanics.elements.encoder import Resolution
 from flexapod.mechanics.elements.flexure import Flexures
 from flexapod.mechanics.elements.friction import BaseFriction, DriveFriction, PlatformFriction
 from flexapod.mechanics.elements.gap import Gap
-from flexapod.mechanics.elements.motor_loop import MotorLoop
+from flexapod.mechanics.elements.motor_loop import MotorLoop, SummedError
 from flexapod.mechanics.elements.mount import BaseMounting, MovedBase, PlatformMounting
 from flexapod.mechanics.elements.oil import Oil
 from flexapod.mechanics.elements.ripple import Ripple
-from flexapod.mechanics.elements.shear import RotaryInertia
 from flexapod.mechanics.elements.slot import Slot
 from flexapod.mechanics.elements.soft_joint import SoftBase, SoftPlatform
-from flexapod.mechanics.elements.summed_error import SummedError
 from flexapod.mechanics.elements.turning_nut import TurningNut
 
 if TYPE_CHECKING:
     from flexapod.common.tables.section import Section
     from flexapod.model import Leg, Robot, Simulation
-
-__all__ = ["element_at", "elements_of", "kinds_of", "read_elements", "refuse_tables", "slots_of", "told_elements"]
 
 GROUP = "flexapod.mechanics.elements"
 OURS: tuple[type[Physics], ...] = (

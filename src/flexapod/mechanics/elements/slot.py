@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from flexapod.mechanics.symbolic.vocabulary import SX
     from flexapod.model import Leg
 
-__all__ = ["Slot"]
-
 T = TypeVar("T", Along, Moving)
 
 

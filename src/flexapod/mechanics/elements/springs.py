@@ -13,21 +13,6 @@ from flexapod.common.arrays import Array
 if TYPE_CHECKING:
     from flexapod.model import HydraulicDrive, Joint, Leg, ScrewDrive
 
-__all__ = [
-    "Place",
-    "Spring",
-    "before_piston",
-    "before_stroke",
-    "in_series",
-    "of_servo",
-    "oil_shares",
-    "softening",
-    "springs_along",
-    "twist_share",
-    "twist_with_length",
-    "viscous",
-]
-
 Place = Literal["base", "nut", "platform"]
 KEPT = 64  # legs whose springs are remembered: a simulation asks for them a hundred times
 _known: dict[int, tuple[Leg, tuple[Spring, ...]]] = {}

@@ -16,9 +16,15 @@ from typing import Any
 import numpy as np
 
 from flexapod.mechanics.elements.chains import chain, is_chain
-from flexapod.mechanics.elements.distribution import Distribution, PistonMotion, gravity_energy, kinetic_energy
+from flexapod.mechanics.elements.distribution import (
+    Distribution,
+    PistonMotion,
+    gravity_energy,
+    kinetic_energy,
+    rotary_energy,
+    shear_energy,
+)
 from flexapod.mechanics.elements.frames import Energies
-from flexapod.mechanics.elements.shear import rotary_energy, shear_energy
 from flexapod.mechanics.elements.steps import Piece, StepNodes, Uniform, held, law, nodes, pieces, sheared
 from flexapod.mechanics.shapes import AxialBasis, LateralBasis
 from flexapod.mechanics.symbolic.vocabulary import (
@@ -326,18 +332,6 @@ def _gram(left: SX, weight: SX, right: SX) -> SX:
 
 def _each(row: SX, like: SX) -> SX:
     return vertcat(*[row] * like.shape[0])
-
-
-def of_planes(planes: Sequence[str], x: SimpleNamespace) -> SimpleNamespace:
-    """Coordinates, or rates, whose lateral parts count the shapes of bending and shear of all planes."""
-    a, b = x.a, x.b
-    if hasattr(x, "shear_b"):
-        b = vertcat(b, x.shear_b)
-        a = vertcat(a, x.shear_a) if hasattr(x, "shear_a") else 0 * b
-    found = {"a": a, "b": b} | ({"ha": x.ha, "hb": x.hb} if hasattr(x, "ha") else {})
-    if len(planes) > 1:
-        found = {name: vertcat(*(y if name.endswith(of) else 0 * y for of in planes)) for name, y in found.items()}
-    return SimpleNamespace(**vars(x) | found)
 
 
 def stepped_piston(f: PistonMotion, p: SimpleNamespace) -> Energies:

@@ -20,8 +20,6 @@ from flexapod.common.arrays import Array
 from flexapod.mechanics.shapes import LateralBasis
 from flexapod.mechanics.shapes.beam_functions import gauss_unit
 
-__all__ = ["Piece", "StepNodes", "Uniform", "held", "law", "nodes", "on_pieces", "pieces", "pieces_of", "sheared"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Uniform:

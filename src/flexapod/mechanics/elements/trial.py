@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from flexapod.mechanics.elements.element import Physics
     from flexapod.mechanics.elements.slot import Slot
 
-__all__ = ["asking", "refuse_declared", "refuse_numbers", "refused", "source_of"]
-
 
 def source_of(element: type[Physics]) -> Path | None:
     """File of the module of a class; None of one that was typed into a console."""

@@ -1,13 +1,19 @@
-"""What carries a base joint: a slider on a rail or a crank on a shaft, Eqs. (T13.1)-(T13.3)."""
+"""What carries a base joint: a slider on a rail or a crank on a shaft, Eqs. (T13.1)-(T13.3).
+
+The cylinder: a rigid body that turns about the base joint, Eqs. (T3.12) and (T13.5).
+
+The platform joint: three successive angles about axes fixed in the leg, in the cross, in the platform.
+
+The base joint: a universal joint, and with a spin about the leg's axis a spherical one, Eqs. (T3.4)-(T3.5).
+"""
 
 from __future__ import annotations
 
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
-from flexapod.mechanics.elements.frames import Energies, Frame
-from flexapod.mechanics.elements.rotations import about_axis
-from flexapod.mechanics.symbolic.vocabulary import cross, dot, matrix33, zeros
+from flexapod.mechanics.elements.frames import Energies, Frame, about_axis, about_x, about_y, about_z
+from flexapod.mechanics.symbolic.vocabulary import cos, cross, dot, matrix33, sin, vertcat, zeros
 
 if TYPE_CHECKING:
     from flexapod.mechanics.symbolic.vocabulary import SX
@@ -70,3 +76,27 @@ def _body(frame: Frame, mass: SX, gravity: SX) -> Energies:
     """A mass at the origin of a frame."""
     kinetic = 0.5 * mass * dot(frame.velocity, frame.velocity)
     return Energies(kinetic=kinetic, gravity=-mass * dot(gravity, frame.origin))
+
+
+def cylinder(frame: Frame, p: SimpleNamespace, vs: SimpleNamespace) -> Energies:
+    """Energies of a body whose CoM lies on the leg's axis; under a cylindrical joint it does not spin along."""
+    m, d, w, u = p.cylinder_mass, p.cylinder_com, frame.omega, frame.velocity
+    spin = w[2] - (1 - p.cylinder_spins) * vs.spin if hasattr(vs, "spin") else w[2]
+    transverse = p.cylinder_inertia + m * d**2
+    turning = transverse * (w[0] ** 2 + w[1] ** 2) + p.cylinder_axial_inertia * spin**2  # (T3.12)
+    carried = m * (0.5 * dot(u, u) + d * (u[0] * w[1] - u[1] * w[0]))  # (T13.5)
+    return Energies(kinetic=0.5 * turning + carried, gravity=frame.weight(p.gravity, m, vertcat(0, 0, m * d)))
+
+
+def gimbal(axes: SX, qs: SimpleNamespace) -> SX:
+    """Axes behind the joint: those before it, turned by gamma1, gamma2, gamma3 one after the other, Eq. (T13.9)."""
+    return axes @ about_x(qs.gamma1) @ about_y(qs.gamma2) @ about_z(qs.gamma3)
+
+
+def universal(frame: Frame, qs: SimpleNamespace, vs: SimpleNamespace) -> Frame:
+    """Frame of the cylinder; a planar leg has no alpha, a leg that cannot spin no spin."""
+    has_alpha, has_spin = hasattr(qs, "alpha"), hasattr(qs, "spin")
+    alpha, alpha_dot = (qs.alpha, vs.alpha) if has_alpha else (zeros(1), zeros(1))
+    rate = vertcat(alpha_dot * cos(qs.beta), vs.beta, alpha_dot * sin(qs.beta))  # (T3.5)
+    turned = frame.turned(about_x(alpha), zeros(3)).turned(about_y(qs.beta), rate)  # (T3.4)
+    return turned.turned(about_z(qs.spin), vertcat(0, 0, vs.spin)) if has_spin else turned  # (T13.4)

@@ -13,20 +13,21 @@ from flexapod.mechanics.elements.mount import plate
 from flexapod.mechanics.elements.servo import Servo
 from flexapod.mechanics.elements.slot import Slot
 from flexapod.mechanics.elements.trial import refused
-from flexapod.mechanics.leg.closure import ball_closure, load_force, pose_closure
 from flexapod.mechanics.leg.layout import LOAD_SIZE, Shapes, leg_parameters, payload_parameters
 from flexapod.mechanics.leg.leg import leg
 from flexapod.mechanics.leg.own_elements import parts_without_number, refuse_unfit
 from flexapod.mechanics.leg.payload import (
+    ball_closure,
     displaced_pose,
     joint_point,
     joint_wrench,
+    load_force,
     newton_euler,
     plate_balance,
     plate_frame,
+    pose_closure,
 )
-from flexapod.mechanics.symbolic.functions import NamedFunction
-from flexapod.mechanics.symbolic.lagrange import inverse_dynamics, mass_matrix
+from flexapod.mechanics.symbolic.functions import NamedFunction, inverse_dynamics, mass_matrix
 from flexapod.mechanics.symbolic.vocabulary import (
     SX,
     Through,

@@ -1,6 +1,6 @@
 """One leg as a chain of elements, from its carriage to its tip."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import cast
@@ -12,7 +12,7 @@ from flexapod.mechanics.elements.element import Along
 from flexapod.mechanics.elements.flexible_cylinder import flexible_cylinder, head, hole, mouth
 from flexapod.mechanics.elements.flexure import Flexures, base_angles, platform_angles, springs
 from flexapod.mechanics.elements.flexure import displaced as three
-from flexapod.mechanics.elements.frames import Energies
+from flexapod.mechanics.elements.frames import Energies, small_rotation
 from flexapod.mechanics.elements.guide import (
     bushings,
     inner_end,
@@ -23,24 +23,20 @@ from flexapod.mechanics.elements.guide import (
     stepped_inner_part,
     stepped_shortening,
 )
-from flexapod.mechanics.elements.rotations import small_rotation
 from flexapod.mechanics.elements.sliding_piston import sliding_piston, tip_place, tip_turn
 from flexapod.mechanics.elements.slot import Slot
 from flexapod.mechanics.elements.stepped_piston import (
     Part,
     SteppedShapes,
-    of_planes,
     stepped_piston,
     stepped_shapes,
     straight,
 )
-from flexapod.mechanics.leg.cylinder import cylinder
-from flexapod.mechanics.leg.joints import carriage
+from flexapod.mechanics.leg.joints import carriage, cylinder, universal
 from flexapod.mechanics.leg.layout import Shapes
 from flexapod.mechanics.leg.leg_beam import LegBeam
-from flexapod.mechanics.leg.universal import universal
 from flexapod.mechanics.shapes import LateralBasis
-from flexapod.mechanics.symbolic.lagrange import Lagrangian
+from flexapod.mechanics.symbolic.functions import Lagrangian
 from flexapod.mechanics.symbolic.vocabulary import SX, expanded, symbol, vertcat, zeros
 
 INNER = ("cuts", "rhoA", "load", "place", "shrink")
@@ -87,7 +83,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     a, b, present = beam.a if beam.a.count else beam.b, beam.b, (zeros(0), zeros(0))
     inner: LateralBasis | SteppedShapes | None = beam.guide
     if beam.sections:
-        qs, vs = (of_planes(beam.planes, part) for part in (qs, vs))
+        qs, vs = (_stack_planes(beam.planes, part) for part in (qs, vs))
         a, inner, present = _of_sections(beam, p, s, qs.l)
         b = a
     line = _line(beam, p, qs, vs)
@@ -198,3 +194,15 @@ def _joints(p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Ene
     """Springs and dampers of the joints at both ends."""
     e = springs(p.base_stiffness, p.base_damping, base_angles(qs) - p.base_home, base_angles(vs))
     return e + springs(p.gamma_stiffness, p.gamma_damping, platform_angles(qs) - p.gamma_home, platform_angles(vs))
+
+
+def _stack_planes(planes: Sequence[str], x: SimpleNamespace) -> SimpleNamespace:
+    """Coordinates, or rates, whose lateral parts count the shapes of bending and shear of all planes."""
+    a, b = x.a, x.b
+    if hasattr(x, "shear_b"):
+        b = vertcat(b, x.shear_b)
+        a = vertcat(a, x.shear_a) if hasattr(x, "shear_a") else 0 * b
+    found = {"a": a, "b": b} | ({"ha": x.ha, "hb": x.hb} if hasattr(x, "ha") else {})
+    if len(planes) > 1:
+        found = {name: vertcat(*(y if name.endswith(of) else 0 * y for of in planes)) for name, y in found.items()}
+    return SimpleNamespace(**vars(x) | found)

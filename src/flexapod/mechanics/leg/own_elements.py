@@ -26,8 +26,6 @@ from flexapod.mechanics.symbolic.vocabulary import (
     zeros,
 )
 
-__all__ = ["parts_without_number", "refuse_unfit"]
-
 PARTS = ("kinetic", "gravity", "strain", "dissipation")
 TRIALS, LEFT = 5, 1e-9  # random states; share of a force that counts as none
 BEGUN, JUMPS = 1e-9, 1e-2  # share of the rates, and of the force at these that it may have there: roots have 3e-5

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod.common.arrays import Array
-from flexapod.mechanics.shapes.beam_functions import gauss_pieces
-from flexapod.mechanics.shapes.eigen import eigh
+from flexapod.mechanics.shapes.beam_functions import eigh, gauss_pieces
 
 Shape = Callable[..., Array]
 

@@ -10,8 +10,6 @@ from typing import NamedTuple
 
 import casadi
 
-__all__ = ["FUNCTIONS", "CFunction", "call", "constant_text", "definitions", "without_text"]
-
 
 class CFunction(NamedTuple):
     """A function by its name in C, and what it is of x and y [of x alone where it takes one number]."""

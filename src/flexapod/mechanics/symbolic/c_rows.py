@@ -10,8 +10,6 @@ import casadi
 
 from flexapod.mechanics.symbolic.c_functions import FUNCTIONS, constant_text
 
-__all__ = ["row_table"]
-
 #: Rows that are no sum of products, by the number that stands for them in the table; sums by their number of terms.
 KINDS = {"quotient": 100, "root": 101, "exponential": 102, "sine": 103, "cosine": 104}
 MOST = 99  # terms of a row

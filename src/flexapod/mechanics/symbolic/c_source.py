@@ -9,8 +9,6 @@ from flexapod.mechanics.symbolic.c_functions import FUNCTIONS, call, constant_te
 from flexapod.mechanics.symbolic.c_rows import row_table
 from flexapod.mechanics.symbolic.functions import NamedFunction
 
-__all__ = ["c_source", "of_one_unit"]
-
 #: Statements beyond which a C function is written in parts, and those of a part: the time and memory of a compiler grow
 #: faster than the text, while a residual in parts takes some per cent longer.
 WHOLE, LONGEST = 6000, 2500

@@ -18,21 +18,6 @@ from pathlib import Path
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.common.files import UNFINISHED, read_bytes, whole
 
-__all__ = [
-    "CacheContent",
-    "cache_content",
-    "cache_directory",
-    "clear_cache",
-    "intact_libraries",
-    "kept_text",
-    "known_text",
-    "open_cache",
-    "remember_text",
-    "size_limit",
-    "store_library",
-    "warn_unused",
-]
-
 #: A kernel takes 0.1 to 1 MB: room for some hundred sets of shapes, and little on any disk.
 DEFAULT_MEGABYTES = 256.0
 LIMIT = "FLEXAPOD_CACHE_MEGABYTES"

@@ -37,8 +37,6 @@ from flexapod.mechanics.symbolic.cache import (
 #: C text that every generated function needs before it.
 PRELUDE = Path(__file__).parent / "lanes.h"
 
-__all__ = ["CompiledFunction", "compiled_library", "compiler", "lanes", "shared_object", "written_library"]
-
 #: Without contraction of products and sums numbers do not depend on the processor.
 COMMON = ("-fPIC", "-std=gnu11", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off")
 #: -O1 runs straight-line code as fast as -O2 and compiles it in half the time; what is written by hand has loops.

@@ -1,4 +1,9 @@
-"""Named functions of dense arrays: the only thing that leaves the symbolic layer."""
+"""Named functions of dense arrays: the only thing that leaves the symbolic layer.
+
+Lagrange's equations by differentiation, Eqs. (T3.1)-(T3.3).
+"""
+
+from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,6 +13,7 @@ import numpy as np
 from casadi import SX
 
 from flexapod.common.arrays import Array
+from flexapod.mechanics.symbolic.vocabulary import gradient, jacobian, time_derivative
 
 
 @dataclass(frozen=True)
@@ -92,3 +98,29 @@ def operations(function: casadi.Function) -> dict[str, int]:
             raise ValueError(f"an operation that is not counted: {operation}")
         found[_KINDS[operation]] = found.get(_KINDS[operation], 0) + 1
     return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lagrangian:
+    """Energies of a body in coordinates q and rates v."""
+
+    q: SX
+    v: SX
+    kinetic: SX
+    potential: SX
+    dissipation: SX
+
+
+def inverse_dynamics(e: Lagrangian, v_dot: SX) -> SX:
+    """Residual M v_dot + h of the free body, without forces, Eq. (T3.2)."""
+    p = gradient(e.kinetic, e.v)  # (T3.1)  p = dT/dv
+    return (
+        time_derivative(p, (e.q, e.v), (e.v, v_dot))  # (T3.2)  dp/dt
+        - gradient(e.kinetic - e.potential, e.q)  #                - dL/dq
+        + gradient(e.dissipation, e.v)  #                          + dR/dv
+    )
+
+
+def mass_matrix(e: Lagrangian) -> SX:
+    """M = d2T/dv2, Eq. (T3.3)."""
+    return jacobian(gradient(e.kinetic, e.v), e.v)

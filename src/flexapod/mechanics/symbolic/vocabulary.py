@@ -18,40 +18,6 @@ if TYPE_CHECKING:
 else:
     casadi = lazy("casadi")
 
-__all__ = [
-    "SX",
-    "Through",
-    "bilinear",
-    "constant",
-    "cos",
-    "cross",
-    "depends_on",
-    "diagcat",
-    "dot",
-    "exp",
-    "expanded",
-    "gradient",
-    "hessian",
-    "horzcat",
-    "identity",
-    "jacobian",
-    "jtimes",
-    "matrix33",
-    "mtimes",
-    "quadratic",
-    "reshape",
-    "sin",
-    "split",
-    "sqrt",
-    "substitute",
-    "symbol",
-    "symbols",
-    "time_derivative",
-    "trace",
-    "vertcat",
-    "zeros",
-]
-
 
 def __getattr__(name: str) -> Any:
     if name == "SX":

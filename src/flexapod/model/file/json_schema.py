@@ -20,8 +20,6 @@ from flexapod.common.units import DIMENSIONS
 from flexapod.model.file.fields import NotedField, Notes, listened
 from flexapod.model.file.page import study_data, words_of
 
-__all__ = ["json_schema"]
-
 DRAFT = "http://json-schema.org/draft-07/schema#"
 _NUMBER = {"type": ["number", "string"]}
 _LIMITS = {"above": "exclusiveMinimum", "at least": "minimum", "below": "exclusiveMaximum", "at most": "maximum"}

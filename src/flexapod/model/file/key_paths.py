@@ -12,8 +12,6 @@ from flexapod.common.units import to_si
 from flexapod.model.leg.circle import Circle
 from flexapod.model.leg.material import MATERIALS
 
-__all__ = ["leg_count", "overlap", "put", "value_at"]
-
 _SHORT = [
     {"joints", "radius"},
     {"joints", "half_angle"},

@@ -12,8 +12,6 @@ from flexapod.common.quantities import number, text
 from flexapod.common.units import to_si
 from flexapod.model.motion import AXES
 
-__all__ = ["size_remarks"]
-
 BEYOND = 100.0  # times the robot's size, from which a length is no length of it
 WIDE = 3.0  # the same of widths
 SLOW = 1e-3  # of the robot's size that it moves in a second, below which a long motion is remarked on

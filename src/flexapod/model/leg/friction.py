@@ -11,9 +11,6 @@ from flexapod.common.quantities import number
 from flexapod.common.tables.base import Key, Quantity
 from flexapod.common.tables.table import Table
 
-__all__ = ["JointFriction", "Rubs", "ScrewFriction", "StrokeFriction"]
-
-
 SHORTEST, LEAST = 1e-10, 1e-8  # m, less than an atom; rad, that on a radius of 10 mm
 STICKIEST = 2.0  # coefficient of friction: plain joints have 0.02 to 0.25
 

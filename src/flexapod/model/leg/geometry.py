@@ -16,8 +16,6 @@ from flexapod.common.tables.table import Table
 if TYPE_CHECKING:
     from flexapod.common.tables.section import Section
 
-__all__ = ["Geometry", "PerLeg", "check_legs"]
-
 
 def _per_leg(value: object) -> Array:
     return array_of((None,))([value] if isinstance(value, int | float) else value)

@@ -19,8 +19,6 @@ from flexapod.model.leg.friction import Rubs
 if TYPE_CHECKING:
     from flexapod.common.tables.section import Section
 
-__all__ = ["HydraulicDrive", "HydraulicLimits"]
-
 
 def _pair(value: object) -> Array:
     """One volume for both sides, or two."""

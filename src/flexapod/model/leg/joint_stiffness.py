@@ -16,8 +16,6 @@ from flexapod.model.leg.spring import read_spring
 if TYPE_CHECKING:
     from flexapod.common.tables.section import Section
 
-__all__ = ["AlongLeg", "InRows", "read_stiffness"]
-
 _TRANSLATIONS, _FORCES = ("stiffness",) * 3, ("force",) * 3
 
 

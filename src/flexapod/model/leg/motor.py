@@ -16,8 +16,6 @@ from flexapod.model.leg.drive import Feedback
 if TYPE_CHECKING:
     from flexapod.common.tables.section import Section
 
-__all__ = ["Brake", "Encoder", "Limits", "Loop", "Motor", "Ripple", "Rotor", "summing"]
-
 
 class Rotor(Table):
     """What turns with the motor: `inertia` [kg m^2] at the motor, which turns `ratio` times as fast as the screw."""

@@ -10,8 +10,6 @@ from flexapod.common.errors import InputError
 from flexapod.common.tables.base import Key, Loss, Quantity
 from flexapod.common.tables.table import Table
 
-__all__ = ["AXIAL", "RollingLaw"]
-
 EXPONENT = 0.84  # of the load, for lines of contact
 Series = Literal[
     "NA48", "NA49", "NA69", "NKIS", "NKI", "HK", "BK", "NU10", "NJ2-E", "K811", "K812", "K893", "K894"

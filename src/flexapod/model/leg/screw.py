@@ -17,14 +17,12 @@ from flexapod.model.leg.drive import ForceDrive, PrescribedDrive, ServoDrive, re
 from flexapod.model.leg.friction import ScrewFriction
 from flexapod.model.leg.hydraulic import HydraulicDrive
 from flexapod.model.leg.material import OF_MATERIAL, SPELLS, Material, read_material, spelled
-from flexapod.model.leg.motor import Brake, Encoder, Limits, Loop, Motor, Ripple, Rotor, summing
+from flexapod.model.leg.motor import Brake, Encoder, Limits, Loop, Motor, Rotor, summing
 from flexapod.model.leg.spring import check_lossy
 from flexapod.model.motion import check_times
 
 if TYPE_CHECKING:
     from flexapod.common.tables.section import Section
-
-__all__ = ["Bearing", "Brake", "Drive", "Encoder", "Limits", "Loop", "Motor", "Nut", "Ripple", "Rotor", "ScrewDrive"]
 
 UNLOADS = 2 * math.sqrt(2)  # thrust over preload beyond which one half of a preloaded nut carries nothing
 HIGHEST = 0.1  # preload over dynamic load rating of a double nut, at most (HIWIN 3.6)

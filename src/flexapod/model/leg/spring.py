@@ -16,8 +16,6 @@ from flexapod.model.heat import HEAT_PARTS
 if TYPE_CHECKING:
     from flexapod.common.tables.section import Section
 
-__all__ = ["RESERVED", "AxialSpring", "check_lossy", "read_spring", "read_springs"]
-
 LEAST = 1e-9  # N/m, as of other springs
 
 #: Names of other parts, and of other causes and rows of a budget.

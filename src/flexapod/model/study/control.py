@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from flexapod.model.motion import Motion
     from flexapod.model.study.robot import Robot
 
-__all__ = ["Control", "DampedControl", "FileControl", "ForceControl", "StrokeControl", "ToolControl"]
-
 Matrix = Annotated[
     Array, PlainValidator(array_of((None, None))), PlainSerializer(lambda rows: rows.tolist()), Quantity("number")
 ]

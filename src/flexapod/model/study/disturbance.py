@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from flexapod.common.tables.section import Section
     from flexapod.model.study.robot import Robot
 
-__all__ = ["CURVES", "Curve", "Disturbance", "Floor", "Spectrum", "check_density"]
-
 Curve = Literal["VC-A", "VC-B", "VC-C", "VC-D", "VC-E", "VC-F", "VC-G"]
 #: Nominal rms velocity in a third of an octave [m/s]: each half of the one before it. Amick, Gendreau, Busch & Gordon,
 #: Evolving criteria for research facilities: I. Vibration (Proc. SPIE 5933, 2005).

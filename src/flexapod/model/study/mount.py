@@ -19,8 +19,6 @@ from flexapod.model.motion import check_times
 if TYPE_CHECKING:
     from flexapod.common.tables.section import Section
 
-__all__ = ["BASE_ACCELERATION", "BaseMotion", "Mount"]
-
 BASE_ACCELERATION = {
     axis: "acceleration" if dimension == "length" else "angular acceleration" for axis, dimension in POSE.items()
 }

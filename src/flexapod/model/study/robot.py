@@ -14,8 +14,8 @@ from flexapod.common.errors import InputError
 from flexapod.common.quantities import number, text
 from flexapod.common.tables.axes import Plane, axis_of, diagonal, normal_of
 from flexapod.common.tables.base import Joints, Quantity, Vec3
-from flexapod.common.tables.source_text import Written
 from flexapod.common.tables.table import Table, plain
+from flexapod.common.tables.toml import Written
 from flexapod.model.heat import Heat
 from flexapod.model.leg.chain import chains_of
 from flexapod.model.leg.circle import read_places

@@ -14,8 +14,6 @@ from flexapod.common.tables.table import Table
 if TYPE_CHECKING:
     from flexapod.common.tables.section import Section
 
-__all__ = ["CLASSES", "LengthSpread", "RatioSpread", "Spread", "Tolerances"]
-
 #: Accuracy classes of screws: largest error of the travel over the travel. THK, Ball screw, point of selection:
 #: 0.018, 0.05 and 0.21 mm in 300 mm.
 CLASSES = {"C5": 0.018 / 300, "C7": 0.05 / 300, "C10": 0.21 / 300}

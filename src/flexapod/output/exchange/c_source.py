@@ -12,13 +12,11 @@ from flexapod import model
 from flexapod.common.generalized_alpha import GeneralizedAlpha
 from flexapod.mechanics.symbolic.compiler import PRELUDE, STRAIGHT
 from flexapod.output.exchange.c_source_data import OF_PAYLOAD, Channel, Marched, marched
-from flexapod.output.exchange.content import Content
+from flexapod.output.exchange.formats import Content
 from flexapod.solve.kernel import FOR_LOOPS, Equations, text_of_one_unit
 from flexapod.solve.time import native
 from flexapod.solve.time.piecewise_chebyshev import NODES
 from flexapod.solve.time.recording import record_places
-
-__all__ = ["FLAGS", "c", "texts"]
 
 HERE = Path(__file__).parent / "c"
 #: What the numbers rest on, and what makes a run as fast as those of flexapod.

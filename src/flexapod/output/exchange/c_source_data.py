@@ -16,15 +16,13 @@ from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.common.units import quantity
 from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN
-from flexapod.solve.statics.drive_forces import force_ports, push_ports
+from flexapod.solve.statics.static_loads import force_ports, push_ports
 from flexapod.solve.system import Flow
 from flexapod.solve.time.chebyshev import Series
 from flexapod.solve.time.command_tables import Law
 from flexapod.solve.time.march import first_record
 from flexapod.solve.time.recording import record_places, unpack
 from flexapod.solve.time.robot_march import RobotMarch, prepare
-
-__all__ = ["Channel", "Marched", "marched"]
 
 OF_LEGS = ("drive_position", "drive_force", "joint_force")
 ENERGIES = ("energy_kinetic", "energy_potential", "energy_strain", "energy_dissipated", "work_drive", "work_external")

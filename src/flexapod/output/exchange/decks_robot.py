@@ -18,7 +18,7 @@ from flexapod.common.arrays import Array
 from flexapod.model import Rectangle
 from flexapod.output.exchange.decks import Deck, Term, Tie, cross_matrix, number, solved
 from flexapod.output.exchange.decks_legs import LegAtPose, PayloadAtPose
-from flexapod.solve.fem.mesh import extruded
+from flexapod.solve.fem.hexahedra import extruded
 from flexapod.solve.fem.section_mesh import section_mesh
 
 Carriers = dict[Term, Array]

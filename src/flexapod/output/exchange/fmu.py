@@ -17,9 +17,7 @@ from flexapod.common.version import __version__
 from flexapod.mechanics.symbolic.compiler import shared_object
 from flexapod.output.exchange.c_source import FLAGS, texts
 from flexapod.output.exchange.c_source_data import Channel, Marched, marched
-from flexapod.output.exchange.content import Content
-
-__all__ = ["fmu"]
+from flexapod.output.exchange.formats import Content
 
 WRAPPER = Path(__file__).parent / "c" / "fmi3.c"
 NAME = "robot"

@@ -1,34 +1,71 @@
-"""What a study can be written as, and the one way to write it."""
+"""What a study can be written as, and the one way to write it.
+
+What the writer of a format hands back.
+
+A robot about rest as matrices with named channels.
+
+Frequency responses as a universal file of datasets 58, ASCII: one for each input and output.
+"""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from flexapod import model
 from flexapod.analysis.results.arguments import LoadLike, PoseLike, RobotLike, at_pose
+from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError, closest
-from flexapod.common.files import path_of, replacing
-from flexapod.common.lazy_imports import loaded
-from flexapod.output.exchange.content import Content
+from flexapod.common.files import path_of, replacing, scratch
+from flexapod.common.lazy_imports import lazy
 
 if TYPE_CHECKING:
-    from xarray import Dataset
+    from xarray import DataArray, Dataset
+
+    from flexapod.analysis import linear
+    from flexapod.output.exchange import c_source, fmu, gltf, mjcf, pose_deck, vtk
+else:
+    linear = lazy("flexapod.analysis.linear")
+    c_source = lazy("flexapod.output.exchange.c_source")
+    fmu = lazy("flexapod.output.exchange.fmu")
+    gltf = lazy("flexapod.output.exchange.gltf")
+    mjcf = lazy("flexapod.output.exchange.mjcf")
+    pose_deck = lazy("flexapod.output.exchange.pose_deck")
+    vtk = lazy("flexapod.output.exchange.vtk")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Content:
+    """A study in some format.
+
+    `files`: contents by name, that of the file itself is "", others are beside it, or in the folder where the format is
+    one; a text is ASCII or UTF-8. `left_out`: what the files do not have, in words. `remarks`: what their reader must
+    know, for instance how to run them.
+    """
+
+    files: Mapping[str, str | bytes]
+    left_out: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
+
+
+Writer = Callable[..., Content]  # of a study and the options that are given, by their names
 
 
 @dataclass(frozen=True)
 class Format:
-    """A format: its `writer`, as "module.function" below `flexapod.output.exchange`, which returns what is `Content`.
+    """A format: `writer` gives the function that returns what is `Content`; its module is loaded with the first call.
 
     The writer takes the study, and of the `options` of `export` those that are given, by their names. `endings` of the
     file, none: it is a folder; `noun`, `words`: what it is; `named`: how it has to be named; `by_name`: what is written
     depends on that, which the writer takes as `name`.
     """
 
-    writer: str
+    writer: Callable[[], Writer]
     endings: tuple[str, ...]
     noun: str
     words: str
@@ -39,30 +76,31 @@ class Format:
 
 FORMATS: Mapping[str, Format] = {
     "abaqus": Format(
-        "export.abaqus", (".inp",), "a deck", "a deck that CalculiX reads as well",
+        lambda: pose_deck.abaqus, (".inp",), "a deck", "a deck that CalculiX reads as well",
         "FILE.inp: both programs ask for it", ("pose", "load", "title", "elements", "modes"),
     ),
     "fmu": Format(
-        "fmu.fmu", (".fmu",), "a functional mock-up unit", "a unit for co-simulation, FMI 3.0, with its sources",
+        lambda: fmu.fmu, (".fmu",), "a functional mock-up unit", "a unit for co-simulation, FMI 3.0, with its sources",
         "FILE.fmu", ("commands", "step"),
     ),
     "c": Format(
-        "c_source.c", (), "a folder of C", "a folder with the robot's steps in C", "a folder", ("commands", "step")
+        lambda: c_source.c, (), "a folder of C", "a folder with the robot's steps in C",
+        "a folder", ("commands", "step"),
     ),
     "mjcf": Format(
-        "mjcf.mjcf", (".xml", ".mjcf"), "a model for MuJoCo", "a model for MuJoCo with closed loops",
+        lambda: mjcf.mjcf, (".xml", ".mjcf"), "a model for MuJoCo", "a model for MuJoCo with closed loops",
         "FILE.xml or FILE.mjcf", ("fidelity",),
     ),
     "gltf": Format(
-        "gltf.gltf", (".glb",), "a GLB file", "the motion for viewers of glTF, with pistons that bend",
+        lambda: gltf.gltf, (".glb",), "a GLB file", "the motion for viewers of glTF, with pistons that bend",
         "FILE.glb", ("data", "magnify"),
     ),
     "vtk": Format(
-        "vtk.vtk", (".pvd",), "a time series for ParaView", "the motion as a time series for ParaView",
+        lambda: vtk.vtk, (".pvd",), "a time series for ParaView", "the motion as a time series for ParaView",
         "FILE.pvd", ("data",), by_name=True,
     ),
     "mat": Format(
-        "state_space.state_space", (".mat", ".npz", ".nc"), "a file of matrices",
+        lambda: state_space, (".mat", ".npz", ".nc"), "a file of matrices",
         "matrices A, B, C, D about rest, of MATLAB, NumPy or NetCDF", "FILE.mat, FILE.npz or FILE.nc",
         ("pose", "load", "inputs", "outputs"), by_name=True,
     ),
@@ -160,8 +198,7 @@ def written(study: model.Study, format: str, path: Path, given: Mapping[str, obj
     check_options(format, given)
     check_place(format, path)
     named = {"name": path.name} if kind.by_name else {}
-    module, _, function = kind.writer.partition(".")
-    found: Content = getattr(loaded(f"flexapod.output.exchange.{module}"), function)(study, **named, **given)
+    found = kind.writer()(study, **named, **given)
     beside = path.parent if kind.endings else path
     places = {beside / name if name else path: content for name, content in found.files.items()}
     for place, content in sorted(places.items(), key=lambda each: each[0] == path):  # last what names the others
@@ -201,3 +238,116 @@ def check_place(format: str, path: Path) -> None:
         raise InputError(f"is not named as {kind.noun}", key="out", value=str(path), allowed=kind.named)
     if not endings and path.exists() and not path.is_dir():
         raise InputError("is a file", key="out", value=str(path), next_step="Give the name of a folder")
+
+
+def state_space(
+    study: model.Study,
+    *,
+    name: str,
+    pose: PoseLike = None,
+    load: LoadLike = None,
+    inputs: Sequence[str] | None = None,
+    outputs: Sequence[str] | None = None,
+) -> Content:
+    """A, B, C, D with names and units of `flexapod.linearize`, in the format that `name` ends in.
+
+    Without names all of a robot's own: wrench, commands and floor in, tool, strokes and drive forces out. Drives that
+    are forces are released, and their forces are inputs in place of commands.
+    """
+    robot = study.robot
+    pushed = any(leg.driven and leg.drive.pushes for leg in robot.legs)
+    of_platform, in_space = not robot.platform_fixed, robot.plane is None
+    into = ["wrench"] * of_platform + ["drive" if pushed else "command"] + ["floor"] * in_space
+    screws = any(leg.screw is not None for leg in robot.legs)  # drive_force of results is a torque there
+    out = ["tool"] * of_platform + ["stroke", "force-sensor:drive" if screws else "drive-force"]
+    found = linear.linearize(
+        study,
+        pose,
+        inputs=into if inputs is None else inputs,
+        outputs=out if outputs is None else outputs,
+        drives="force" if pushed else "given",
+        load=load,
+    )
+    with scratch() as folder:
+        content = found.save(folder / Path(name).name).read_bytes()
+    left = ["all that is not linear about the equilibrium", "frequencies above those of the shapes"]
+    left += ["[control]: the loop of a controller"] * (study.control is not None)
+    return Content(files={"": content}, left_out=tuple(left))
+
+
+RESPONSE, COMPLEX_DOUBLE, FREQUENCY = 4, 6, 18  # function type, ordinate data type, abscissa data type
+QUANTITIES = {"m": 8, "m/s": 11, "m/s^2": 12, "N": 9, "m s-1": 11, "m s-2": 12}  # specific data types of outputs
+EXCITATION, GENERAL = 13, 1
+DIRECTIONS = {axis: k for k, axis in enumerate(("x", "y", "z", "rx", "ry", "rz"), start=1)}
+DIRECTIONS |= {axis: k for k, axis in enumerate(("fx", "fy", "fz", "mx", "my", "mz"), start=1)}
+DIMS = ("output", "input", "frequency", "part")
+EVEN = 1e-9  # of the spacing: how uneven a grid may be
+
+
+def uff(data: Dataset) -> str:
+    """A response (output, input, frequency, part) as text, dataset after dataset.
+
+    The first line of each says output and input by name, the axes their units. Entity names are cut to ten characters;
+    a channel with a number, as ``drive:3``, is that node, one with an axis, as ``tool:z``, that direction of node 1.
+    Spacing is even where the frequencies are; of uneven ones the format keeps six digits.
+
+    InputError: no such response among the variables.
+    """
+    found = next((x for x in getattr(data, "data_vars", {}).values() if set(x.dims) == set(DIMS)), None)
+    if found is None:
+        allowed = "a result of frequency_response, compliance or transmissibility"
+        raise InputError("has no response over frequency", key="data", allowed=allowed)
+    return "".join(
+        f"{line}\n"
+        for i in range(found.sizes["output"])
+        for j in range(found.sizes["input"])
+        for line in _set(found, i, j)
+    )
+
+
+def _set(found: DataArray, i: int, j: int) -> Iterator[str]:
+    one = found.transpose(*DIMS).isel(output=i, input=j)
+    frequency, values = one.frequency.values, one.values
+    names = str(one.output.values), str(one.input.values)
+    units = str(one.output_units.values), str(one.input_units.values)
+    start, step = _spacing(frequency)
+    yield from ("    -1", "    58")
+    yield from (f"{' / '.join(names)}", "flexapod: frequency response", "NONE", "NONE", "NONE")
+    yield f"{RESPONSE:5d}{0:10d}{0:5d}{0:10d}{_place(names[0])}{_place(names[1])}"
+    even = step is not None
+    yield f"{COMPLEX_DOUBLE:10d}{len(frequency):10d}{int(even):10d}{start:13.5E}{step or 0.0:13.5E}{0.0:13.5E}"
+    yield _axis(FREQUENCY, "Frequency", "Hz")
+    yield _axis(QUANTITIES.get(units[0], GENERAL), names[0], units[0])
+    yield _axis(EXCITATION if units[1] == "N" else QUANTITIES.get(units[1], GENERAL), names[1], units[1])
+    yield _axis(0, "NONE", "NONE")
+    yield from _values(frequency, values, even=even)
+    yield "    -1"
+
+
+def _spacing(frequency: Array) -> tuple[float, float | None]:
+    """First frequency and spacing; that is None where it is not the same throughout."""
+    start = float(frequency[0]) if len(frequency) else 0.0
+    if len(frequency) < 2:
+        return start, None
+    step = float(frequency[-1] - start) / (len(frequency) - 1)
+    even = start + step * np.arange(len(frequency))
+    return start, step if np.abs(frequency - even).max() <= EVEN * abs(step) else None
+
+
+def _place(name: str) -> str:
+    """Entity, node and direction of a channel."""
+    entity, _, last = name.rpartition(":")
+    node = int(last) if last.isdigit() else 1
+    return f" {(entity or last)[:10]:<10}{node:10d}{DIRECTIONS.get(last, 0):4d}"
+
+
+def _axis(kind: int, label: str, unit: str) -> str:
+    return f"{kind:10d}{0:5d}{0:5d}{0:5d} {label[:20]:<20} {unit[:20]:<20}"
+
+
+def _values(frequency: Array, values: Array, *, even: bool) -> Iterator[str]:
+    texts = [f"{x:20.12E}{y:20.12E}" for x, y in values]
+    if even:
+        yield from ("".join(texts[k : k + 2]) for k in range(0, len(texts), 2))
+    else:
+        yield from (f"{f:13.5E}{text}" for f, text in zip(frequency, texts, strict=True))

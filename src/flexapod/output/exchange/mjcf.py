@@ -11,7 +11,7 @@ from flexapod import kinematics, model
 from flexapod.analysis.results.arguments import as_pose
 from flexapod.kinematics.rotations import quaternion
 from flexapod.mechanics.elements.registry import refuse_tables
-from flexapod.output.exchange.content import Content
+from flexapod.output.exchange.formats import Content
 from flexapod.output.exchange.mjcf_springs import Drive, LegSprings, flexible_springs, rigid_springs
 from flexapod.output.exchange.mjcf_trees import LEAST, Gives, leg_body, numbers, payload_inertia
 from flexapod.solve.statics.ideal_robot import rigid_forces

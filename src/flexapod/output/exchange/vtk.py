@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod import model
 from flexapod.common.arrays import Array
-from flexapod.output.exchange.content import Content
 from flexapod.output.exchange.drawn import motion_of
+from flexapod.output.exchange.formats import Content
 from flexapod.output.scene.geometry import RobotMotion, plate
 from flexapod.output.scene.skeleton import Scene, Skeleton
 

@@ -10,11 +10,11 @@ from flexapod.output.figures.budget import budget
 from flexapod.output.figures.convergence import convergence, ladder
 from flexapod.output.figures.elements import sliding_mesh, solid_comparison, solid_meshes
 from flexapod.output.figures.legs import actuator_forces, by_leg, leg_lengths, tip_deflections
+from flexapod.output.figures.linear import vibration
 from flexapod.output.figures.maps import workspace_map
 from flexapod.output.figures.payload import com_path, deviation_by_cause, energies, motion_law
 from flexapod.output.figures.style import save
 from flexapod.output.figures.sweep import sweep
-from flexapod.output.figures.vibration import vibration
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -60,7 +60,7 @@ _LATER = {
     "flexapod.output.figures.linear": ("bode", "cumulative", "transmissibility"),
     "flexapod.output.figures.poles": ("pole_map", "root_locus"),
     "flexapod.output.figures.robot3d": ("modes_3d", "robot_3d"),
-    "flexapod.verification.paper.engine_figures": ("engine_forces", "engine_path"),
+    "flexapod.verification.paper.engine_figures": ("engine_forces", "engine_path", "half_angles", "start_jump"),
     "flexapod.verification.paper.printed_figures": (
         "actuator_free",
         "actuator_symbols",
@@ -68,7 +68,6 @@ _LATER = {
         "path_bands",
         "piston_mode",
     ),
-    "flexapod.verification.paper.variant_figures": ("half_angles", "start_jump"),
 }
 
 __getattr__: Callable[[str], object] = later("flexapod.output.figures", _LATER)

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from flexapod.common.quantities import cleared_lines, number, scale
 from flexapod.common.units import quantity
+from flexapod.output.figures.payload import is_quick, swings, vibration_line
 from flexapod.output.figures.style import (
     LINE_STYLES,
     NOTE,
@@ -21,8 +22,7 @@ from flexapod.output.figures.style import (
     needs,
     styled,
 )
-from flexapod.output.figures.swings import is_quick, swings, vibration_line
-from flexapod.output.scene.colours import FLEXIBLE, LEG_COLORS, RIGID
+from flexapod.output.scene.style import FLEXIBLE, LEG_COLORS, RIGID
 
 _SHOWN = 12  # half swings of a band that are shown beside it
 _LARGER = ("angles", "elevations")  # towards which the tip of an actuator in space is deflected

@@ -14,9 +14,7 @@ from flexapod.analysis.error_budget.text import Bar, bars
 from flexapod.common.arrays import Array
 from flexapod.common.quantities import scale
 from flexapod.output.figures.style import NOTE, PAGE, SMALL, TEXT, figure, needs, styled
-from flexapod.output.scene.colours import ERRORS
-
-__all__ = ["budget"]
+from flexapod.output.scene.style import ERRORS
 
 
 @styled

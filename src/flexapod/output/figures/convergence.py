@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flexapod.output.figures.style import PAGE, SMALL, figure, ink, needs, styled
-from flexapod.output.scene.colours import FLEXIBLE, LEG_COLORS
+from flexapod.output.scene.style import FLEXIBLE, LEG_COLORS
 
 _WORDS = {"deviation": "centre of mass", "tip": "tip deflection"}
 # Colour, marker and name of each family; markers differ too, for print in grey.

@@ -1,15 +1,130 @@
-"""One drawing that becomes a picture and an SVG file: the artists of a figure are asked once what they draw."""
+"""One drawing that becomes a picture and an SVG file: the artists of a figure are asked once what they draw.
+
+Words on Agg and in SVG files: how they are set is found once for all figures of a process.
+
+Matplotlib sets each word anew for each figure, and the size of a font anew for each letter, which makes its hints
+anew. What is drawn is the same. Formulas, words askew and versions of matplotlib that draw otherwise are left to it.
+"""
 
 from __future__ import annotations
 
+from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
+import numpy as np
 from matplotlib.backend_bases import GraphicsContextBase, RendererBase
+from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg, get_hinting_flag
+from matplotlib.backends.backend_svg import RendererSVG
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
+from matplotlib.ft2font import FT2Font
 from matplotlib.transforms import Affine2D, Bbox, TransformedPath
 
-from flexapod.output.figures.letters import WordsInSvg, WordsOnAgg
+_BY_LETTER = all(hasattr(FT2Font, name) for name in ("_layout", "_set_transform", "_render_glyph"))
+_UPRIGHT = np.array([[0x10000, 0], [0, 0x10000]])
+MOST = 4096  # words whose setting is kept
+
+
+@lru_cache(MOST)
+def _size(font: Any, words: str, points: float, dpi: float, flags: Any) -> tuple[float, float, float]:
+    """Width, height and descent [pixel] of words in a font of this size."""
+    font.set_text(words, 0.0, flags=flags)
+    width, height = font.get_width_height()
+    return width / 64, height / 64, font.get_descent() / 64
+
+
+@lru_cache(MOST)
+def _letters(font: Any, words: str, points: float, dpi: float, flags: Any) -> list[tuple[int, float, float]] | None:
+    """Letters of words and their places [pixel]; None where they are not all in this font."""
+    found = list(font._layout(words, flags=flags))
+    return [(item.glyph_index, item.x, item.y) for item in found] if all(x.ft_object is font for x in found) else None
+
+
+class WordsOnAgg(RendererAgg):
+    """Agg that remembers how words are set."""
+
+    def get_text_width_height_descent(self, s: str, prop: FontProperties, ismath: Any) -> tuple[float, float, float]:
+        if ismath:
+            return super().get_text_width_height_descent(s, prop, ismath)
+        return _size(self._prepare_font(prop), s, prop.get_size_in_points(), self.dpi, get_hinting_flag())
+
+    def draw_text(
+        self, gc: Any, x: float, y: float, s: str, prop: FontProperties, angle: float, ismath: Any = False,
+        mtext: Any = None,
+    ) -> None:  # fmt: skip
+        letters, flags = None, get_hinting_flag()
+        font: Any = self._prepare_font(prop)
+        if _BY_LETTER and not ismath and not angle and gc.get_antialiased() and _is_plain(mtext):
+            letters = _letters(font, s, prop.get_size_in_points(), self.dpi, flags)
+        if letters is None:
+            super().draw_text(gc, x, y, s, prop, angle, ismath, mtext)
+            return
+        for glyph, right, up in letters:
+            font._set_transform(_UPRIGHT, [round(64 * (x + right)), round(64 * (self.height - y + up))])
+            drawn = font._render_glyph(glyph, flags, _NORMAL)
+            low = int(self.height) - drawn.top + drawn.buffer.shape[0]
+            self._renderer.draw_text_image(drawn.buffer, drawn.left, low, 0, gc)
+
+
+if _BY_LETTER:
+    from matplotlib.ft2font import RenderMode
+
+    _NORMAL = RenderMode.NORMAL
+
+
+def _is_plain(text: Any) -> bool:
+    """Whether a text asks for no features of its font, where matplotlib knows of them."""
+    return not any(vars(text).get(name) for name in ("_features", "_language")) if text is not None else True
+
+
+class Canvas(FigureCanvasAgg):
+    """A canvas of such an Agg."""
+
+    renderer: WordsOnAgg
+
+    def get_renderer(self) -> WordsOnAgg:
+        size = (*self.get_width_height(physical=True), self.figure.dpi)
+        if self._lastKey != size:
+            self.renderer, self._lastKey = WordsOnAgg(*size), size
+        return self.renderer
+
+
+@lru_cache(MOST)
+def _outlines(font: Any, words: str, text2path: Any) -> tuple[str, dict[str, Any]]:
+    """Uses of letters in an SVG file, and the outlines of the letters by their names."""
+    letters, outlines, _ = text2path.get_glyphs_with_font(font, words)
+    places = (f' transform="translate({x:g} {y:g})"' if x or y else "" for _, x, y, _ in letters)
+    uses = (f'<use xlink:href="#{name}"{place}/>' for (name, *_), place in zip(letters, places, strict=True))
+    return "".join(uses), outlines
+
+
+class WordsInSvg(RendererSVG):
+    """An SVG file in whose words the letters of a word are one line."""
+
+    def __init__(self, width: float, height: float, file: TextIO, **more: Any) -> None:
+        super().__init__(width, height, file, **more)
+        self.file = file
+
+    def _draw_text_as_path(
+        self, gc: Any, x: float, y: float, s: str, prop: FontProperties, angle: float, ismath: Any, mtext: Any = None
+    ) -> None:
+        if ismath or not _is_plain(mtext) or (gc.get_alpha() if gc.get_forced_alpha() else gc.get_rgb()[3]) != 1:
+            super()._draw_text_as_path(gc, x, y, s, prop, angle, ismath, mtext)
+            return
+        size = prop.get_size_in_points() / self._text2path.FONT_SCALE
+        text2path: Any = self._text2path
+        uses, outlines = _outlines(text2path._get_font(prop), s, text2path)
+        self._update_glyph_map_defs({name: path for name, path in outlines.items() if name not in self._glyph_map})
+        self.writer.comment(s)
+        turned = f" rotate({-angle:g})" if angle else ""
+        color = to_hex(gc.get_rgb())
+        filled = "" if color == "#000000" else f' style="fill: {color}"'
+        self.file.write(
+            f'<g{filled} transform="translate({x:.6f} {y:.6f}){turned} scale({size:g} {-size:g})">{uses}</g>\n'
+        )
+
 
 POINTS = 72  # of an inch: the unit of SVG files
 

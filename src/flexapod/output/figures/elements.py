@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from flexapod.common.quantities import number, scale
 from flexapod.output.figures.style import NOTE, PAGE, figure, needs, styled
-from flexapod.output.scene.colours import FLEXIBLE, LEG_COLORS, RIGID
+from flexapod.output.scene.style import FLEXIBLE, LEG_COLORS, RIGID
 
 
 @styled

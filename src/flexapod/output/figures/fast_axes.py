@@ -3,6 +3,8 @@
 Matplotlib keeps five artists for each tick, makes and draws them one by one. A panel here has one tick an axis until
 somebody asks for the others; axes that need more than that (logarithms, minor ticks, words set askew, formulas) are
 matplotlib's own from the start. What is drawn is the same.
+
+Settings of matplotlib in which figures are drawn, whatever the user's own.
 """
 
 from __future__ import annotations
@@ -10,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator
 from contextlib import contextmanager, nullcontext
 from copy import copy
+from functools import cache
 from typing import Any
 
 import matplotlib
@@ -21,7 +24,54 @@ from matplotlib.text import Text
 from matplotlib.ticker import NullLocator
 
 from flexapod.common.arrays import Array
-from flexapod.output.figures.settings import are_set, settings
+
+TEXT, NOTE, SMALL = 8.5, 7.5, 7.0  # sizes of letters [points]
+
+_RC = {
+    "font.family": "DejaVu Sans",
+    "font.size": TEXT,
+    "axes.titlesize": 9.0,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.titley": 1.0,  # above the panel: nothing else is there, and to look for it takes a third of the drawing
+    "axes.labelsize": TEXT,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "xtick.labelsize": NOTE,
+    "ytick.labelsize": NOTE,
+    "axes.axisbelow": True,
+    "axes.formatter.useoffset": False,
+    "axes.formatter.limits": (-4, 5),
+    "grid.color": "#DDDDDD",
+    "grid.linewidth": 0.6,
+    "lines.linewidth": 1.3,
+    "legend.frameon": False,
+    "legend.fontsize": NOTE,
+    "legend.title_fontsize": NOTE,
+    "pdf.fonttype": 42,
+    "svg.fonttype": "path",
+    "svg.hashsalt": "flexapod",
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+    "path.simplify_threshold": 0.2,
+}
+
+
+@cache
+def settings() -> Any:
+    """The defaults of matplotlib, and ours."""
+    defaults = {name: value for name, value in matplotlib.rcParamsDefault.items() if name != "backend"}
+    ours: Any = defaults | _RC
+    with matplotlib.rc_context(ours):  # asked for its backend, matplotlib would import pyplot
+        now: Any = matplotlib.rcParams
+        return {name: now[name] for name in defaults}
+
+
+def are_set() -> bool:
+    """Whether they hold now."""
+    return settings().items() <= dict.items(matplotlib.rcParams)
+
 
 _LISTS = ("majorTicks", "minorTicks")
 Places = list[tuple[float, str]]

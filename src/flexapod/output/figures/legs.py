@@ -15,6 +15,7 @@ from flexapod.analysis.results.attributes import motion_end
 from flexapod.common.errors import check_known
 from flexapod.common.quantities import NOTHING, Scale, scale, text
 from flexapod.common.ranking import EQUALS
+from flexapod.output.figures.payload import MOST_SWINGS, vibration_line
 from flexapod.output.figures.style import (
     LINE_STYLES,
     PAGE,
@@ -25,9 +26,7 @@ from flexapod.output.figures.style import (
     needs,
     styled,
 )
-from flexapod.output.figures.swings import MOST, vibration_line
-from flexapod.output.scene.colours import FLEXIBLE, LEG_COLORS, RIGID, colors_of_legs
-from flexapod.output.scene.style import drives
+from flexapod.output.scene.style import FLEXIBLE, LEG_COLORS, RIGID, colors_of_legs, drives
 
 ROUNDING = 1e-11  # of where drives stand
 _WORDS = {"rigid": "rigid legs", "lumped": "legs that stretch", "assumed-modes": "flexible legs"}
@@ -48,7 +47,7 @@ def actuator_forces(data: xr.Dataset) -> Figure:
     big, small = scale(rigid, found.unit), scale(gap, found.unit)
     fig, panels = force_panels([rigid, multibody], [gap], (big, small), (2.2, 1), found.word)
     words = "Newton-Euler" if found.plain else "rigid robot"
-    most, quick = MOST / columns(len(panels), 3), False
+    most, quick = MOST_SWINGS / columns(len(panels), 3), False
     time, label = data.time.values, f"multibody model, {_WORDS.get(str(data.attrs.get('fidelity')), 'flexible legs')}"
     for leg, (above, below) in panels.items():
         above.plot(time, big(rigid.sel(leg=leg)), color=RIGID, linewidth=5, label=f"{words}, rigid legs")

@@ -14,12 +14,10 @@ from flexapod.common.arguments import number
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.control.datasets import complex_of
-from flexapod.control.poles import SWINGS
+from flexapod.control.frequency_response import SWINGS
 from flexapod.control.state_space import StateSpace
 from flexapod.output.figures.style import PAGE, SMALL, figure, needs, styled
-from flexapod.output.scene.colours import colors_of_legs
-
-__all__ = ["pole_map", "root_locus"]
+from flexapod.output.scene.style import colors_of_legs
 
 RATIOS = (0.01, 0.05, 0.1, 0.2, 0.4, 0.7)  # damping ratios with a line
 MARKS = ("x", "+", "o", "s", "^", "v")

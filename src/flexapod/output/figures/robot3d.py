@@ -16,9 +16,9 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 from flexapod.analysis.results.attributes import motion_end
 from flexapod.common.arguments import number
 from flexapod.output.figures.style import NOTE, PAGE, SMALL, figure, ink, needs, styled
-from flexapod.output.scene.colours import colors_of_legs
 from flexapod.output.scene.robot_scene import mode_scene, scene
 from flexapod.output.scene.skeleton import Scene, around
+from flexapod.output.scene.style import colors_of_legs
 
 CYLINDER = "#8A8F98"
 BASE = "#4A4F57"

@@ -2,16 +2,20 @@
 
 Figures are as wide as a page of a journal (170 mm); `save` writes them as wide as a column (85 mm), too. Letters have
 the size at which they are read, 7 points at least.
+
+Pictures as PNG files: rows as they are, which deflate as well as filtered ones where most of a figure is white.
 """
 
 from __future__ import annotations
 
 import logging
+import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from functools import wraps
 from numbers import Real
 from pathlib import Path
+from struct import pack
 from typing import Any, ParamSpec, TypeVar
 
 import matplotlib
@@ -20,19 +24,46 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from numpy.typing import NDArray
 
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError, check_kind
 from flexapod.common.files import path_of, replacing
 from flexapod.output.figures.column_width import narrowed
-from flexapod.output.figures.dual_renderer import Unsuited, draw_both
-from flexapod.output.figures.fast_axes import Panels, keeping
-from flexapod.output.figures.letters import Canvas
-from flexapod.output.figures.png import png
-from flexapod.output.figures.settings import NOTE as NOTE
-from flexapod.output.figures.settings import SMALL as SMALL
-from flexapod.output.figures.settings import TEXT as TEXT
-from flexapod.output.figures.settings import settings
+from flexapod.output.figures.dual_renderer import Canvas, Unsuited, draw_both
+from flexapod.output.figures.fast_axes import NOTE as NOTE
+from flexapod.output.figures.fast_axes import SMALL as SMALL
+from flexapod.output.figures.fast_axes import TEXT as TEXT
+from flexapod.output.figures.fast_axes import Panels, keeping, settings
+
+INCH = 0.0254  # [m]
+LEVEL = 1  # of deflating: higher ones take longer for a few per cent
+_RGB = 2  # kind of colours: red, green, blue of 8 bits each
+
+
+def png(colors: NDArray[np.uint8], dpi: float, words: Mapping[str, str | None]) -> bytes:
+    """A picture (row, column, at least red, green, blue) as a PNG file, with its dots per inch and words about it."""
+    high, wide = colors.shape[:2]
+    rows = np.zeros((high, 1 + 3 * wide), dtype=np.uint8)  # each begins with 0: no filter
+    for part in range(3):  # a colour at a time: in a third of the time that pixels take
+        rows[:, 1 + part :: 3] = colors[:, :, part]
+    metre = round(dpi / INCH)
+    said = (_part(b"tEXt", f"{key}\0{value}".encode("latin-1")) for key, value in words.items())
+    return b"".join(
+        [
+            b"\x89PNG\r\n\x1a\n",
+            _part(b"IHDR", pack(">IIBBBBB", wide, high, 8, _RGB, 0, 0, 0)),
+            *said,
+            _part(b"pHYs", pack(">IIB", metre, metre, 1)),
+            _part(b"IDAT", zlib.compress(rows.data, LEVEL)),
+            _part(b"IEND", b""),
+        ]
+    )
+
+
+def _part(kind: bytes, data: bytes) -> bytes:
+    return pack(">I", len(data)) + kind + data + pack(">I", zlib.crc32(kind + data))
+
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -42,7 +73,6 @@ COLORS = "cividis"  # of maps: even in lightness, and for colour-blind readers
 COLUMN, PAGE = 3.35, 6.7  # widths of a column and of a page [in]: 85 and 170 mm
 
 CONTRAST = 4.6  # of words; a little above what is asked for, as colours are rounded
-INCH = 0.0254  # [m]
 FINEST, WIDEST = 2400, 2.0  # dots an inch, and [m]: a picture of more has no room in the memory
 # What files say of themselves: no dates, so that the same figure is the same file.
 _METADATA: dict[str, dict[str, str | None]] = {

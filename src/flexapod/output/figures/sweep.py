@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from flexapod.common.errors import InputError
 from flexapod.common.quantities import scale
 from flexapod.output.figures.style import COLORS, COLUMN, NOTE, PAGE, TEXT, edges_of, figure, needs, styled
-from flexapod.output.scene.colours import FLEXIBLE, RIGID
+from flexapod.output.scene.style import FLEXIBLE, RIGID
 
 FAILED = "#C44E52"
 MOST_PANELS = 6

@@ -2,6 +2,8 @@
 
 A figure is translated axes by axes, each at its place in the figure. What has no counterpart (3D axes, coloured maps)
 makes the whole figure stay a picture.
+
+Curves as a page reads them: no more points than can be seen, packed; without matplotlib.
 """
 
 from __future__ import annotations
@@ -17,12 +19,13 @@ from matplotlib.patches import Rectangle
 from matplotlib.text import Annotation
 from matplotlib.ticker import FixedLocator
 
-from flexapod.output.report.curves import packed, thinned
+from flexapod.output.report.replay import packed, thinned
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
+
 
 PIXELS = 96 / 72  # of a point
 _Ends = tuple[float, float]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -14,16 +15,17 @@ from flexapod.common.arrays import Array
 from flexapod.common.errors import FlexapodError
 from flexapod.common.quantities import cleared_lines, number, scale
 from flexapod.common.resources import one_thread
-from flexapod.output.report.curves import packed
-from flexapod.output.scene.colours import FLEXIBLE, RIGID, colors_of_legs
 from flexapod.output.scene.geometry import DrawnMotion, RobotMotion
 from flexapod.output.scene.robot_scene import mode_scene
 from flexapod.output.scene.skeleton import STATIONS, Scene, Skeleton, around
+from flexapod.output.scene.style import FLEXIBLE, RIGID, colors_of_legs
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
     from flexapod.model import ActuatorStudy, Study
+
+MOST_POINTS = 1500  # of a curve: more than a page is wide
 
 FRAMES = 241
 MODES = 6
@@ -295,3 +297,25 @@ def _limits(points: Array) -> tuple[Array, Array]:
     low, high = points.min(axis=0), points.max(axis=0)
     margin = 0.04 * float((high - low).max())
     return low - margin, high + margin
+
+
+def packed(values: Array) -> dict[str, str]:
+    """Numbers as plotly reads them: base64 of 32 bit floats, seven digits."""
+    flat = np.ascontiguousarray(values, dtype="<f4")
+    made = {"dtype": "f4", "bdata": base64.b64encode(flat.tobytes()).decode("ascii")}
+    return made | ({"shape": ", ".join(map(str, flat.shape))} if flat.ndim > 1 else {})
+
+
+def thinned(x: Array, y: Array, most: int = MOST_POINTS) -> tuple[Array, Array]:
+    """A curve (n,), (n,) of at most about `most` points: both ends, least and largest of each interval between."""
+    if len(x) <= most:
+        return x, y
+    edges = np.linspace(0, len(x), most // 2 + 1).astype(int)
+    begins, interval = edges[:-1], np.repeat(np.arange(len(edges) - 1), np.diff(edges))
+    keep = [np.array([0, len(x) - 1])]
+    for extreme, none in ((np.minimum, np.inf), (np.maximum, -np.inf)):
+        known = np.where(np.isfinite(y), y, none)
+        hit = np.flatnonzero(known == extreme.reduceat(known, begins)[interval])
+        keep.append(hit[np.searchsorted(hit, begins)])  # the first of each interval
+    chosen = np.unique(np.concatenate(keep))
+    return x[chosen], y[chosen]

@@ -1,8 +1,11 @@
-"""The report of a run: one self-contained page whose first sentence is the answer."""
+"""The report of a run: one self-contained page whose first sentence is the answer.
+
+A report's section of the linear model: what disturbances do about rest, what a controller does to damping.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from platform import python_version
@@ -14,10 +17,9 @@ from flexapod.analysis.results.bodies import bodies_words
 from flexapod.analysis.results.summary import POINT_WORDS, RobotSummary, summaries
 from flexapod.common.errors import FlexapodError
 from flexapod.common.files import scratch, write_text
-from flexapod.common.quantities import text
-from flexapod.output.report.curves import MOST_POINTS
-from flexapod.output.report.figures import Drawn
-from flexapod.output.report.linear import linear_section
+from flexapod.common.quantities import column, sentence, text
+from flexapod.model import ActuatorStudy
+from flexapod.output.report.replay import MOST_POINTS
 from flexapod.output.text import html
 from flexapod.output.text.answers import distances_table, told_of
 from flexapod.output.text.budget import peak_budget, peak_items
@@ -32,6 +34,59 @@ if TYPE_CHECKING:
     from flexapod.analysis.description.robot_description import RobotDescription
     from flexapod.analysis.results.summary import ActuatorSummary
     from flexapod.model import ActuatorStudy, Study
+    from flexapod.output.report.figures import Drawn
+
+
+def linear_section(study: Study | ActuatorStudy | None) -> list[Html]:
+    """Vibration by the study's disturbances and damping by its controller; nothing where it has neither."""
+    if study is None or isinstance(study, ActuatorStudy):
+        return []
+    told: list[Item] = [*_shaken(study), *_damped(study)]
+    return [html.section("linear", "Linear model about home", told)] if told else []
+
+
+def _shaken(study: Study) -> Iterator[Item]:
+    """Words and figure of the vibration by disturbances."""
+    if study.disturbance is None:
+        return
+    from flexapod.analysis import vibration
+    from flexapod.analysis.pose_errors.disturbances import words_of
+    from flexapod.output import figures
+    from flexapod.output.report.figures import store
+
+    try:
+        data = vibration(study)
+    except FlexapodError as error:
+        yield Text(f"The vibration by disturbances cannot be said: {error}", "bad")
+        return
+    yield from map(sentence, words_of(data, "at home"))
+    with scratch() as folder:
+        drawn = store(
+            figures.vibration(data), "Rms of the tool by frequencies from here up", folder / "vibration", ("png",)
+        )
+    yield html.figure(drawn.title, drawn.picture, drawn.plot)
+
+
+def _damped(study: Study) -> Iterator[Item]:
+    """A table of damping without the controller and with it."""
+    if study.control is None:
+        return
+    from flexapod.analysis.predicted_damping import control_words, predicted_damping
+
+    try:
+        found = predicted_damping(study)
+    except FlexapodError as error:
+        yield Text(f"What the controller does to damping cannot be said: {error}", "bad")
+        return
+    if found is None:
+        return
+    both = ((found.frequency, found.ratio), (found.frequency_with, found.ratio_with))
+    columns = [text for f, ratio in both for text in (column(f, "Hz", 6)[1], column(100 * ratio, "")[1])]
+    head = ["frequency [Hz]", "damping [%]", "with the controller [Hz]", "its damping [%]"]
+    yield TextTable(head, list(zip(*columns, strict=True)), left=())
+    yield Text("Predicted by the linear model, from sample to sample, without noise and limits.", "soft")
+    yield from map(sentence, control_words(study))
+
 
 SOLVER = {
     "integrator": "Time integration",

@@ -18,8 +18,6 @@ from flexapod.output.text.parts import Item, Remarks, Text, TextTable, warnings_
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["budget_as_dict", "budget_items", "peak_budget", "peak_items"]
-
 
 def peak_budget(data: Dataset) -> Dataset | None:
     """Budget at the pose of a result's largest deviation of the tool; None of a robot of ideal parts.

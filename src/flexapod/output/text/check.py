@@ -10,7 +10,7 @@ import numpy as np
 
 from flexapod.analysis.description.hydraulic_description import hydraulic_table
 from flexapod.analysis.description.screw_description import screw_table
-from flexapod.analysis.results.inside import bushing_words
+from flexapod.analysis.results.elongations import bushing_words
 from flexapod.common.quantities import column, columns, number, scale, sentence, text
 from flexapod.common.ranking import most, ranked
 from flexapod.output.text.parts import Chapter, Item, Remarks, TextTable

@@ -12,8 +12,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["Bullets", "Chapter", "Item", "Lines", "Remarks", "Text", "TextTable", "warnings_of"]
-
 
 @dataclass(frozen=True)
 class Text:

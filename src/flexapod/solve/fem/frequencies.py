@@ -9,8 +9,7 @@ from scipy.sparse import csr_array
 
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError, InputError
-from flexapod.solve.fem.hexahedra import integrals, mass, stiffness
-from flexapod.solve.fem.mesh import SolidMesh
+from flexapod.solve.fem.hexahedra import SolidMesh, integrals, mass, stiffness
 from flexapod.solve.fem.section_mesh import free_unknowns
 
 

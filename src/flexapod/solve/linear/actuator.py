@@ -17,8 +17,6 @@ from flexapod.solve.linear.states import States
 from flexapod.solve.modal.actuator_modes import functions, straight
 from flexapod.solve.shapes import actuator_shapes, places
 
-__all__ = ["actuator_states"]
-
 ITERATIONS = 20  # of Newton to the equilibrium of the beam
 SETTLED = 1e-12  # step of an amplitude over the beam's length
 PLANAR, SPACE = ("along", "rotation"), ("along", "rotation", "elevation")

@@ -15,8 +15,6 @@ from flexapod.common.units import quantity
 from flexapod.model import Robot
 from flexapod.solve.linear.motions import COMPONENTS
 
-__all__ = ["INPUTS", "OUTPUTS", "Geophone", "PlantChannel", "asked"]
-
 AXES = COMPONENTS[:3]
 WRENCH = ("fx", "fy", "fz", "mx", "my", "mz")
 Groups = Mapping[str, object]

@@ -12,8 +12,6 @@ from flexapod.common.errors import ComputationError
 from flexapod.solve.modal.eigenproblem import LIGHTEST
 from flexapod.solve.system import Index
 
-__all__ = ["FirstOrder", "first_order", "with_mass"]
-
 PLAIN = 1e-4  # smallest pivot of a mass matrix of unit diagonal at which nothing in it is without mass
 LEFT = 1e-9  # of a damper, over the largest, that acts on what has neither mass nor damper: less is rounding
 

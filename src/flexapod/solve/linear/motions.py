@@ -14,8 +14,6 @@ from flexapod.solve.statics.elimination import leg_bases
 from flexapod.solve.statics.reduction import border_rows, expanded, flat_columns, hub_motion
 from flexapod.solve.system import System
 
-__all__ = ["COMPONENTS", "coordinate_names", "flat_forces", "held_motions", "on_motions"]
-
 COMPONENTS = ("x", "y", "z", "rx", "ry", "rz")
 PLATES = {"m": "platform plate", "f": "base plate"}
 

@@ -14,15 +14,11 @@ from flexapod.kinematics.rotations import exponential, matrix
 from flexapod.mechanics.leg.layout import columns, leg_parameters
 from flexapod.solve.batch import matrices_at_rest
 from flexapod.solve.kernel import evaluate
-from flexapod.solve.linear.beside import lines
 from flexapod.solve.linear.channels import PlantChannel
 from flexapod.solve.linear.first_order import FirstOrder
-from flexapod.solve.linear.floor import carried_masses
-from flexapod.solve.linear.plant import Plant
+from flexapod.solve.linear.plant import Plant, carried_masses, lines
 from flexapod.solve.linear.second_order import SecondOrder, point_motion
 from flexapod.solve.statics.stiffness import tool_motion
-
-__all__ = ["Seen"]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,8 +1,15 @@
-"""A robot about its equilibria with its loops as they are, drives held or released, Eqs. (T20.1)-(T20.3)."""
+"""A robot about its equilibria with its loops as they are, drives held or released, Eqs. (T20.1)-(T20.3).
+
+Functions of a leg that the linear model alone asks for, made when it does, Eqs. (T20.3), (T20.9), (T20.26).
+
+What a base that turns does to a robot that is seen from it, Eqs. (T20.8)-(T20.10), (T20.27).
+
+What a base that is accelerated does to a robot: gravity changed by as much, Eq. (T18.4).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Literal, cast
@@ -12,23 +19,102 @@ import numpy as np
 from flexapod import kinematics
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import ComputationError, InputError
-from flexapod.mechanics.leg.layout import columns, leg_parameters
+from flexapod.kinematics.rotations import matrix
+from flexapod.mechanics.elements.element import Physics
+from flexapod.mechanics.elements.motor_loop import MotorLoop
+from flexapod.mechanics.leg.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes, columns, leg_parameters
+from flexapod.mechanics.symbolic.compiler import CompiledFunction, compiled_library, compiler
 from flexapod.model import Drive, Encoder, ForceDrive, Load, PrescribedDrive, Robot, ScrewDrive, Simulation
-from flexapod.solve.batch import RestMatrices, RestStates, matrices_at_rest
+from flexapod.model.study.mount import BaseMotion
+from flexapod.solve.batch import RestMatrices, RestStates, matrices_at_rest, residual
 from flexapod.solve.friction import with_friction
-from flexapod.solve.linear.beside import pushes
-from flexapod.solve.linear.gravity import gravity_forces
+from flexapod.solve.kernel import Function, fingerprint
+from flexapod.solve.linear.motions import flat_forces
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.robot_system import robot_system, smooth
-from flexapod.solve.statics.drive_forces import push_ports
 from flexapod.solve.statics.equilibrium import FARTHEST
+from flexapod.solve.statics.ideal_robot import with_substitutes
 from flexapod.solve.statics.locked_robot import LockedPoses
 from flexapod.solve.statics.reduction import Motions, independent
-from flexapod.solve.statics.substitutes import with_substitutes
+from flexapod.solve.statics.static_loads import push_ports
+from flexapod.solve.statics.stiffness import tool_motion
 from flexapod.solve.system import Index, System
 
-__all__ = ["Drives", "Plant", "plant_at", "plant_at_rest"]
+
+def gravity_forces(system: System, x: RestStates, command: Array, wrench: Array) -> Array:
+    """Forces (P, size, 3) on all coordinates per unit acceleration of the base along x, y, z, Eq. (T18.4).
+
+    In axes that move with the base it is gravity changed by the acceleration; residuals are linear in gravity.
+    """
+
+    def forces(gravity: Array) -> Array:
+        legs, payload, _ = residual(_in_gravity(system, gravity), x, command, np.zeros_like(command), wrench)
+        return np.concatenate([legs.reshape(len(x), system.legs * system.n), payload], axis=1)
+
+    none = forces(np.zeros(3))
+    return np.stack([forces(axis) - none for axis in np.eye(3)], axis=2)
+
+
+def _in_gravity(system: System, gravity: Array) -> System:
+    leg_p, payload_p = system.leg_p.copy(), system.payload_p.copy()
+    leg_p[:, columns(LEG_PARAMETERS, "gravity")] = gravity
+    payload_p[columns(PAYLOAD_PARAMETERS, "gravity")] = gravity
+    return replace(system, leg_p=leg_p, payload_p=payload_p)
+
+
+def pushes(system: System, q: Array) -> tuple[Array, Array] | None:
+    """D and K (P, legs, n, n) of what pushes without an energy at coordinates (P, legs, n); None of robots without."""
+    shapes, legs = system.kernel.shapes, q.reshape(-1, system.n)
+    if shapes.holds(MotorLoop):
+        D, K, *_ = _each(system.kernel.leg_loop, legs, system, [(system.n, system.n)] * 2 + [(1,), (system.n,)])
+    elif any(_pushes(slot.kind) for slot in shapes.elements):
+        D, K = _each(_function(shapes, "leg_pushes"), legs, system, [(system.n, system.n)] * 2)
+    else:
+        return None
+    return D.reshape(*q.shape, system.n), K.reshape(*q.shape, system.n)
+
+
+def carried(system: System, q: Array) -> Array:
+    """Masses (P, legs, 6, n) between coordinates (P, legs, n) and a base that is moved; a system that has one."""
+    found = _each(_function(system.kernel.shapes, "leg_carried"), q.reshape(-1, system.n), system, [(6, system.n)])[0]
+    return found.reshape(*q.shape[:-1], 6, system.n)
+
+
+def lines(system: System, q: Array) -> tuple[Array, Array]:
+    """Lines (P, legs, 3) from base joints to tips at coordinates (P, legs, n), and derivatives by these (..., 3, n)."""
+    function, n = _function(system.kernel.shapes, "leg_line"), system.n
+    line, J = _each(function, q.reshape(-1, n), system, [(3,), (3, n)])
+    return line.reshape(*q.shape[:-1], 3), J.reshape(*q.shape[:-1], 3, n)
+
+
+def _pushes(kind: type[Physics]) -> bool:
+    own = (kind.pushes.__func__, kind.asked.__func__)  # type: ignore[attr-defined]
+    return own != (Physics.pushes.__func__, Physics.asked.__func__)  # type: ignore[attr-defined]
+
+
+def _each(function: Function | None, q: Array, system: System, shapes: Sequence[tuple[int, ...]]) -> list[Array]:
+    p = np.tile(system.leg_p, (len(q) // system.legs, 1))
+    if isinstance(function, CompiledFunction):
+        return [x.swapaxes(1, 2) if x.ndim == 3 else x for x in function.each(len(q), [q, p], shapes)]
+    found = [function(*row) for row in zip(q, p, strict=True)]  # type: ignore[misc]
+    return [np.array([one[k] for one in found]).reshape(len(q), *shape) for k, shape in enumerate(shapes)]
+
+
+@lru_cache(maxsize=32)
+def _function(shapes: Shapes, name: str) -> Function:
+    """One of `assembly`, compiled where there is a compiler."""
+    from flexapod.mechanics.leg import kernel_functions
+
+    if command := compiler():
+        library, signatures = compiled_library(
+            [name, *fingerprint(shapes)], lambda: [getattr(kernel_functions, name)(shapes)], command
+        )
+        return CompiledFunction(library, name, signatures[name])
+    from flexapod.mechanics.symbolic.functions import Interpreted
+
+    return Interpreted(getattr(kernel_functions, name)(shapes))
+
 
 Drives = Literal["given", "force"]
 #: Of a drive's spring and loop: what is not there where its force is given.
@@ -176,3 +262,52 @@ def _released(system: System, held: Mask, robot: Robot) -> System:
         if shapes.has("w"):
             held[i, shapes.index("w")] = True
     return replace(system, held=held, leg_p=leg_p)
+
+
+def turning_forces(plant: Plant, about: Array) -> Array:
+    """Forces (P, size, 3) per unit angular acceleration of the base about a point (3,), Eq. (T20.9)."""
+    system, x = plant.system, plant.x
+    found, first = np.zeros((len(x), system.size, 3)), system.legs * system.n
+    found[:, :first] = -carried_masses(plant, about)[0][:, :, 3:].swapaxes(2, 3).reshape(len(x), -1, 3)
+    rigid, arm = np.zeros((len(x), system.size, 3)), x.pose[:, :3] - about
+    rigid[:, first : first + 3] = np.cross(np.eye(3)[None], arm[:, None]).swapaxes(1, 2)
+    rigid[:, first + 3 :] = matrix(x.pose[:, 3:]).swapaxes(1, 2)
+    none = np.zeros((len(x), system.legs, system.n, system.n))
+    return found - flat_forces(system, none, plant.m.payload_M, rigid)
+
+
+def carried_masses(plant: Plant, about: Array) -> tuple[Array, Array]:
+    """Masses of each leg between a base that moves and its coordinates (P, legs, 6, n), and of the base's motions.
+
+    The latter (P, legs, 6, 6). The base is displaced and turned about a point (3,).
+    """
+    system, x = plant.system, plant.x
+    moved = _on_moved_base(plant.robot, plant.locked.simulation, plant.locked.per_loss, about, plant.as_at_rest)
+    own, there = ([(n, k) for n, size in s.kernel.shapes.layout for k in range(size)] for s in (system, moved))
+    place = {pair: i for i, pair in enumerate(there)}
+    at, base = [place[pair] for pair in own], [place["g", k] for k in range(6)]
+    q = np.zeros((len(x), system.legs, moved.n))
+    q[..., at] = x.q
+    M = carried(moved, q)
+    return M[..., at], M[..., base]
+
+
+def tilt_stiffness(plant: Plant) -> Array:
+    """Forces (P, size, 3) against unit small turns of the base: weights, load turn in its axes, (T20.10), (T20.27)."""
+    found = -plant.by_gravity @ _turning(plant.robot.gravity)
+    wrench, first = plant.locked.acts.wrench, plant.system.legs * plant.system.n
+    turned = np.concatenate([_turning(wrench[:3]), _turning(wrench[3:])])
+    if turned.any():
+        found[:, first:] += tool_motion(plant.robot, plant.x.pose).swapaxes(1, 2) @ turned
+    return found
+
+
+def _turning(vector: Array) -> Array:
+    """Change (3, 3) of a vector by unit small turns about the axes: columns e x vector."""
+    return np.asarray(np.cross(np.eye(3), vector).T)
+
+
+def _on_moved_base(robot: Robot, simulation: Simulation, per_loss: float, about: Array, at_rest: bool) -> System:
+    still = BaseMotion(time=np.array([0.0, 1.0]), values=np.zeros((2, 6)), at=about)
+    robot = smooth(robot.replace(base_motion=still))
+    return robot_system(robot, simulation.replace(play="static"), per_loss, at_rest=at_rest)

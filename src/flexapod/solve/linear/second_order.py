@@ -12,14 +12,11 @@ from flexapod.common.errors import InputError
 from flexapod.kinematics.rotations import matrix
 from flexapod.solve.batch import residual
 from flexapod.solve.linear.channels import PlantChannel
-from flexapod.solve.linear.floor import tilt_stiffness, turning_forces
 from flexapod.solve.linear.motions import coordinate_names, held_motions, on_motions
-from flexapod.solve.linear.plant import Plant
+from flexapod.solve.linear.plant import Plant, tilt_stiffness, turning_forces
 from flexapod.solve.modal.modes import mass_on_motions, no_mass
 from flexapod.solve.statics.stiffness import tool_motion
 from flexapod.solve.system import Index
-
-__all__ = ["SecondOrder", "input_forces", "point_motion", "second_order"]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,4 +1,7 @@
-"""The linear model of a robot as matrices A, B, C, D with names and units, Eqs. (T20.11)-(T20.23)."""
+"""The linear model of a robot as matrices A, B, C, D with names and units, Eqs. (T20.11)-(T20.23).
+
+M, D, K, B, C on named motions at many poses at once: what is smooth from pose to pose, Eq. (T20.6).
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod.common.arrays import Array, Mask
+from flexapod.common.errors import InputError
 from flexapod.model import Robot
 from flexapod.solve.linear.channels import PlantChannel
 from flexapod.solve.linear.first_order import FirstOrder, first_order, with_mass
@@ -15,8 +19,7 @@ from flexapod.solve.linear.motions import coordinate_names, on_motions
 from flexapod.solve.linear.outputs import Seen
 from flexapod.solve.linear.plant import Plant
 from flexapod.solve.linear.second_order import SecondOrder, second_order
-
-__all__ = ["Descriptor", "States", "descriptor_of", "states_of", "units_of"]
+from flexapod.solve.statics.stiffness import tool_motion
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -182,4 +185,53 @@ def descriptor_of(
         M=M, D=D, K=K, G=seen.jacobian, B=B, B_rate=B_rate, C=seen.by_coordinates(places),
         coordinates=tuple(coordinate_names(system)[: system.size]), inputs=tuple(c.name for c in inputs),
         outputs=tuple(c.name for c in places), held=system.fixed,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class PoseMatrices:
+    """M z'' + D z' + K z = B u, y = C z at P poses; arrays with the pose first, ``motions`` by name.
+
+    Motions of loops have no inertia; behind the ``free`` ones stand those that inputs impose, as commands: z'' = u.
+    """
+
+    motions: tuple[str, ...]
+    free: int
+    M: Array
+    D: Array
+    K: Array
+    B: Array
+    C: Array
+
+
+def grid_of(
+    plant: Plant, inputs: Sequence[PlantChannel], outputs: Sequence[PlantChannel], *, about: Array
+) -> PoseMatrices:
+    """The equations at all equilibria of a plant.
+
+    Raises
+    ------
+    InputError
+        Outputs that are no places.
+    """
+    second = second_order(plant, inputs, about=about)
+    C = np.stack([_row(plant, second, channel) for channel in outputs], axis=1)
+    return PoseMatrices(motions=second.names, free=second.free, M=second.M, D=second.D, K=second.K, B=second.F, C=C)
+
+
+def _row(plant: Plant, second: SecondOrder, channel: PlantChannel) -> Array:
+    """An output by motions, (P, d)."""
+    system, flat = plant.system, second.flat
+    hub = flat[:, system.legs * system.n :]
+    if channel.group == "tool":
+        return np.asarray((tool_motion(plant.robot, plant.x.pose)[:, channel.axis, None] @ hub)[:, 0])
+    if channel.group == "com":
+        return np.asarray(hub[:, channel.axis])
+    if channel.group == "stroke":
+        shapes = system.kernel.shapes
+        at = shapes.index("chi") if plant.robot.legs[channel.leg].driven == "carriage" else shapes.l_index
+        return np.asarray(flat[:, channel.leg * system.n + at])
+    raise InputError(
+        "is no place: at many poses outputs are places by motions", key="outputs", value=channel.name,
+        allowed="tool, com, stroke", next_step="Take one pose at a time for forces and sensors",
     )  # fmt: skip

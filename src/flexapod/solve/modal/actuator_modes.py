@@ -8,10 +8,10 @@ import numpy as np
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.mechanics.leg.layout import COMMAND_SIZE, LOAD_SIZE, Shapes, columns
-from flexapod.mechanics.shapes.eigen import eigh
+from flexapod.mechanics.shapes.beam_functions import eigh
 from flexapod.model import Actuator, Simulation
 from flexapod.solve.kernel import Function
-from flexapod.solve.modal.damped import damping_ratios
+from flexapod.solve.modal.eigenproblem import damping_ratios
 from flexapod.solve.parameters import actuator_parameters
 from flexapod.solve.shapes import actuator_shapes, home, places
 

@@ -7,8 +7,6 @@ from flexapod.solve.modal.structural_damping import per_loss
 from flexapod.solve.statics.locked_robot import LockedPoses, lock, the_equilibrium
 from flexapod.solve.statics.stiffness import PoseStiffness, stiffness_of
 
-__all__ = ["locked_poses", "robot_modes", "robot_stiffness"]
-
 
 def locked_poses(
     robot: Robot, simulation: Simulation, path: kinematics.Poses, load: Load | None = None, time: float = 0.0

@@ -9,14 +9,12 @@ from numpy.typing import NDArray
 
 from flexapod.common.arrays import Array
 from flexapod.common.quantities import text
-from flexapod.mechanics.shapes.eigen import finite
+from flexapod.mechanics.shapes.beam_functions import finite
 from flexapod.model import Robot
 from flexapod.solve.batch import RestStates
 from flexapod.solve.kernel import evaluate
-from flexapod.solve.modal.damped import reacting
+from flexapod.solve.modal.eigenproblem import reacting
 from flexapod.solve.system import System
-
-__all__ = ["ModalLoops", "growth", "loops_in_modes", "unstable_words"]
 
 Complex = NDArray[np.complex128]
 GROWS = 1e-9  # real part over size of an eigenvalue: less is rounding

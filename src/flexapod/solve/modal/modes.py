@@ -9,10 +9,9 @@ import numpy as np
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.mechanics.leg.layout import LEG_PARAMETERS, columns, leg_parameters
-from flexapod.mechanics.shapes.eigen import finite
+from flexapod.mechanics.shapes.beam_functions import finite
 from flexapod.solve.batch import RestMatrices
-from flexapod.solve.modal.damped import OSCILLATES, damping_ratios
-from flexapod.solve.modal.eigenproblem import count_real, mass_factor, natural
+from flexapod.solve.modal.eigenproblem import OSCILLATES, count_real, damping_ratios, mass_factor, natural
 from flexapod.solve.modal.modal_loops import ModalLoops, growth, loops_in_modes
 from flexapod.solve.statics.equilibrium import Equilibrium
 from flexapod.solve.statics.locked_robot import LockedPoses, the_equilibrium

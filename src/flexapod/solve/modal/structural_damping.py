@@ -26,8 +26,6 @@ from flexapod.model import (
 from flexapod.solve.modal.modes import the_modes
 from flexapod.solve.statics.locked_robot import lock
 
-__all__ = ["loss_frequency", "loss_words", "per_loss"]
-
 
 def per_loss(robot: Robot, simulation: Simulation) -> float:
     """Viscous damping over stiffness of a spring of loss factor 1 [s]; 0 of a robot none of whose springs has one."""

@@ -17,8 +17,6 @@ from flexapod.solve.rigid_motion import leg_coordinates
 from flexapod.solve.statics.elimination import leg_bases
 from flexapod.solve.system import System
 
-__all__ = ["FALLS_THROUGH", "fallen", "flipped", "platform_poses", "refuse_fallen", "refuse_flipped"]
-
 FALLS_THROUGH = "no equilibrium: the robot sags through a singularity"
 
 

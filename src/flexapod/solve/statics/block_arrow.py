@@ -13,8 +13,6 @@ from flexapod.solve.statics.elimination import LegBases, leg_bases, of_border
 from flexapod.solve.statics.reduction import reduced
 from flexapod.solve.system import System
 
-__all__ = ["ArrowStep", "arrow_solve"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class ArrowStep:

@@ -14,8 +14,6 @@ from flexapod.solve.kernel import evaluate
 from flexapod.solve.robot_system import robot_system
 from flexapod.solve.system import System
 
-__all__ = ["leg_loads"]
-
 LENGTHS = 17  # at which loads are computed; between them they are interpolated
 LOOSE = 1e-9  # of the largest stiffness in these units: nothing holds such a motion, as the turn of a leg about itself
 

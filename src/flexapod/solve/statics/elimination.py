@@ -16,8 +16,6 @@ from flexapod.solve.batch import RestMatrices
 from flexapod.solve.saddle_point import inverse_each, solve_each
 from flexapod.solve.system import Index, System
 
-__all__ = ["LegBases", "closed", "leg_bases", "of_border"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class LegBases:

@@ -9,9 +9,9 @@ from flexapod.mechanics.leg.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, co
 from flexapod.solve.batch import RestMatrices, RestStates, matrices_at_rest, residual_at_rest
 from flexapod.solve.saddle_point import cholesky_each, solve_each
 from flexapod.solve.statics.block_arrow import arrow_solve
+from flexapod.solve.statics.ideal_robot import with_substitutes
 from flexapod.solve.statics.minimum_energy_forces import least_energy
 from flexapod.solve.statics.reduction import Motions, independent, reduced
-from flexapod.solve.statics.substitutes import with_substitutes
 from flexapod.solve.system import Index, State, System
 
 FOUND, SINGULAR, GIVES_WAY, NOT_SETTLED, UNSTABLE, TOO_FAR = range(6)

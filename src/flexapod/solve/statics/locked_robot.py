@@ -19,12 +19,10 @@ from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.robot_system import at_rotors, robot_system, smooth
 from flexapod.solve.statics.assembly_mode import refuse_fallen
 from flexapod.solve.statics.equilibrium import FOUND, TOO_FAR, Equilibria, Equilibrium, equilibria
+from flexapod.solve.statics.ideal_robot import with_substitutes
 from flexapod.solve.statics.reduction import Motions, independent
 from flexapod.solve.statics.static_loads import RestLoad, rest_commands, rest_load
-from flexapod.solve.statics.substitutes import with_substitutes
 from flexapod.solve.system import Index, System
-
-__all__ = ["LockedPoses", "lock", "refuse_pure_force", "refuse_taut", "the_equilibrium"]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,8 +16,6 @@ from flexapod.solve.friction import numbers, sliding
 from flexapod.solve.statics.locked_robot import LockedPoses
 from flexapod.solve.statics.stiffness import displacement, tool_motion
 
-__all__ = ["before_friction", "lost_motion", "places_with_friction", "reversal"]
-
 
 def reversal(locked: LockedPoses) -> dict[str, Array]:
     """Half the reversal error of the tool by friction, by place, (p, legs, 6) [m, rad], Eqs. (T19.13)-(T19.14).

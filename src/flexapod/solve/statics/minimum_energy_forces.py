@@ -13,8 +13,6 @@ from flexapod.solve.batch import RestMatrices, RestStates
 from flexapod.solve.saddle_point import solve_each
 from flexapod.solve.system import System
 
-__all__ = ["closure_forces", "least_energy", "open_forces"]
-
 SAME = 1e-6  # sine of an angle below which two balances count as one
 
 

@@ -9,8 +9,6 @@ from flexapod.common.arrays import Array
 from flexapod.mechanics.elements.springs import Spring, before_piston, of_servo, springs_along
 from flexapod.model import ForceDrive, Leg, Robot
 
-__all__ = ["guide_turning", "mount_stiffness", "part_stiffness"]
-
 
 def part_stiffness(robot: Robot, length: Array) -> dict[str, Array]:
     """Stiffness along the legs of every part, (..., legs) [N/m], by name.

@@ -12,19 +12,6 @@ from flexapod.solve.saddle_point import solve_each
 from flexapod.solve.statics.elimination import LegBases, closed, leg_bases, of_border
 from flexapod.solve.system import Index, System
 
-__all__ = [
-    "Motions",
-    "Reduced",
-    "border_rows",
-    "expanded",
-    "flat_columns",
-    "hub_motion",
-    "independent",
-    "reduced",
-    "reduced_legs",
-]
-
-
 DEPENDENT = 1e-6  # by how much a row that others imply at home may miss what they imply elsewhere: elastic turns
 
 

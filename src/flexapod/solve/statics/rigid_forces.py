@@ -13,8 +13,6 @@ from flexapod.solve.batch import Rates, RestStates, matrices_at_rest, residual
 from flexapod.solve.statics.minimum_energy_forces import closure_forces, open_forces
 from flexapod.solve.system import System
 
-__all__ = ["JointForces", "displacement_by_error", "joint_forces"]
-
 BLOCK = 256  # instants at a time: matrices of 16 legs with six closure rows take 75 kB each
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.kinematics.rotations import matrix
-from flexapod.mechanics.shapes.eigen import finite
+from flexapod.mechanics.shapes.beam_functions import finite
 from flexapod.model import Robot
 from flexapod.solve.saddle_point import inverse_each, solve_each
 from flexapod.solve.statics.equilibrium import Equilibrium

@@ -17,8 +17,6 @@ from flexapod.solve.time.radau import MOST, OUT_OF_REACH, SHORTEST, Advanced, Wi
 from flexapod.solve.time.recording import Counters, Recording, unpack
 from flexapod.solve.time.time_events import NEAR, Stop, after
 
-__all__ = ["adaptive_march"]
-
 FEW, MANY = 4, 500  # outputs of a chunk: of the first ones, which tell the scales; between looks at progress
 CHUNK_STEPS = 2000  # steps in a chunk of several outputs
 SMALLEST = 1e-9  # scale of an error [m]: what is smaller is rounding

@@ -12,8 +12,6 @@ from flexapod.solve.time.command_tables import Law
 from flexapod.solve.time.piecewise_chebyshev import ENOUGH, instants, series_of
 from flexapod.solve.time.time_events import NEAR
 
-__all__ = ["Series"]
-
 AHEAD = 8  # pieces that are made at once
 SMALL = 1e-3  # the least value of a kind that is worth its digits, in SI units
 

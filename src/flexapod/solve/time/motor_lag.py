@@ -11,8 +11,6 @@ from flexapod.common.errors import ComputationError
 from flexapod.solve.system import State, System
 from flexapod.solve.time.start import constrained
 
-__all__ = ["settled"]
-
 SETTLED, ROUNDING = 1e-13, 1e-10  # largest step of a coordinate [m, rad]; below it a step may stop shrinking
 ROUNDS = 20
 

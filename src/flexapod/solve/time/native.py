@@ -12,7 +12,7 @@ import numpy as np
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError
 from flexapod.common.generalized_alpha import GeneralizedAlpha
-from flexapod.common.memory import keep_freed
+from flexapod.common.resources import keep_freed
 from flexapod.mechanics.symbolic.compiler import lanes, written_library
 from flexapod.solve.kernel import Equations, Kernel
 from flexapod.solve.system import Flow, System

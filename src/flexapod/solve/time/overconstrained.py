@@ -13,8 +13,6 @@ from flexapod.solve.statics.minimum_energy_forces import least_energy
 from flexapod.solve.system import State, System
 from flexapod.solve.time.recording import Recording
 
-__all__ = ["independent", "shared"]
-
 DEPENDENT = 1e-9  # singular value, relative to the largest, below which closures depend on each other
 MISFIT = 1e-9  # m, or rad: by which a coordinate may miss what should hold it, rounding of positions
 

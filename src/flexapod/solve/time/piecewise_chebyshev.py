@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 
 from flexapod.common.arrays import Array
 
-__all__ = ["ENOUGH", "NODES", "Groups", "Pieces", "instants", "series_of"]
-
 #: Of instants (T,): arrays (T, ...), each of numbers with a common scale.
 Groups = Callable[[Array], Sequence[Array]]
 

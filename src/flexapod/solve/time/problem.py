@@ -17,8 +17,6 @@ from flexapod.solve.time.time_events import Stops
 if TYPE_CHECKING:
     from flexapod.solve.time.sampled_control import SampledLoop
 
-__all__ = ["CAUSES", "OF_LOOPS", "Chunk", "Measure", "Problem", "Weight"]
-
 Measure = Callable[[Recording], list[Array]]
 ASKED = 5  # as in loop.c
 CAUSES = {

@@ -17,8 +17,6 @@ from flexapod.solve.time.recording import Counters, record_width
 if TYPE_CHECKING:
     from flexapod.solve.time.sampled_control import SampledLoop
 
-__all__ = ["OUT_OF_REACH", "Advanced", "Within", "is_rigid"]
-
 OUT_OF_REACH = 4  # as in radau.c
 FIRST = 1e-5  # of the first step, and after a jump [s]; it grows four times a step
 LONGEST, SHORTEST = np.inf, 1e-7  # s

@@ -9,8 +9,6 @@ import numpy as np
 from flexapod.common.arrays import Array
 from flexapod.solve.system import System
 
-__all__ = ["Counters", "Recording", "record_places", "record_width", "unpack"]
-
 
 @dataclass(kw_only=True)
 class Counters:

@@ -18,12 +18,10 @@ from flexapod.kinematics.rotations import quaternion
 from flexapod.mechanics.leg.layout import columns, leg_parameters
 from flexapod.model import Leg, Robot
 from flexapod.solve.linear.channels import Geophone, PlantChannel, asked
-from flexapod.solve.statics.drive_forces import force_ports, push_ports
+from flexapod.solve.statics.static_loads import force_ports, push_ports
 from flexapod.solve.system import Flow, System
 from flexapod.solve.time.command_tables import Law
 from flexapod.solve.time.radau import SHORTEST
-
-__all__ = ["Asked", "Sampled", "SampledLoop"]
 
 NEAR_SAMPLE = 1e-6  # of a period: instants that are no farther from a sample are its own
 PROOF = 5  # numbers that a geophone remembers, as in loop.c

@@ -11,8 +11,6 @@ from flexapod.solve.saddle_point import saddle_solve
 from flexapod.solve.system import Flow, Matrices, State, System
 from flexapod.solve.time.command_tables import Law
 
-__all__ = ["accelerations", "consistent_start", "normal_velocity"]
-
 FOLLOWED = 0.03  # of a step, 1 over a rate: what vibrates five times in a step is not followed at all, slower parts are
 
 

@@ -7,8 +7,6 @@ from functools import cached_property
 
 from flexapod.kinematics import Breaks
 
-__all__ = ["NEAR", "Stop", "Stops", "after", "before"]
-
 NEAR = 1e-6  # breaks that are no farther apart are one break, and steps are no shorter: rounding of index 3 [s]
 SHARE = 1e-2  # and no farther than this share of a fixed step
 

@@ -8,9 +8,7 @@ from flexapod.verification.cases import (
     bending,
     bricard,
     calculix_beams,
-    calculix_robots,
     control,
-    exports,
     exudyn,
     exudyn_parts,
     feed_forward,
@@ -36,8 +34,8 @@ __all__ = ["CASES"]
 _SUBJECTS = (
     bending, solids, turning, sliding, integration, hexapods, frequencies, stiffness, mechanisms,
     slider_crank, squeezer, four_bar, bricard, real_parts, machines, linear, control, feed_forward,
-    mujoco_forces, calculix_beams, calculix_robots, exudyn,
-    exudyn_parts, exports,
+    mujoco_forces, calculix_beams, calculix_beams, exudyn,
+    exudyn_parts, linear,
 )  # fmt: skip
 
 

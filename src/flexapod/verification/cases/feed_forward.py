@@ -12,10 +12,9 @@ from flexapod import model
 from flexapod.analysis.actuator import simulate_actuator
 from flexapod.analysis.simulation import simulate
 from flexapod.commissioning.feedforward import compensate
-from flexapod.commissioning.feedforward.actuator_inversion import tip_inversion
+from flexapod.commissioning.feedforward.actuator_inversion import inverse, tip_inversion
 from flexapod.commissioning.feedforward.bang_bang import switched
 from flexapod.commissioning.feedforward.modal_path import vibration_along
-from flexapod.commissioning.feedforward.noncausal_filter import inverse
 from flexapod.commissioning.feedforward.shapers import insensitivity, shaper
 from flexapod.common.arrays import Array
 from flexapod.control import StateSpace

@@ -13,7 +13,7 @@ from flexapod.common.arrays import Array
 from flexapod.model import Robot
 from flexapod.verification import dynamic_stiffness
 from flexapod.verification.case import Case, Check, case, checks
-from flexapod.verification.locked_robot import (
+from flexapod.verification.dynamic_stiffness import (
     legs_and_body,
     missing_polynomials,
     missing_sines,

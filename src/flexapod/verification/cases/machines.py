@@ -13,8 +13,7 @@ from flexapod.model import Geometry, Heat
 from flexapod.model.leg.drive import PrescribedDrive
 from flexapod.model.leg.joint import Joint
 from flexapod.model.leg.material import MATERIALS
-from flexapod.solve.linear.random_vibration import Source, random_vibration
-from flexapod.solve.linear.robot import LinearRobot
+from flexapod.solve.linear.random_vibration import LinearRobot, Source, random_vibration
 from flexapod.verification.case import Check, case, checks
 from flexapod.verification.cases.real_parts import machine
 from flexapod.verification.robots import hexapod

@@ -9,8 +9,8 @@ import numpy as np
 
 from flexapod import model
 from flexapod.analysis.actuator import simulate_actuator
+from flexapod.analysis.results.mode_shapes import local_vibration
 from flexapod.analysis.results.time_history import collect
-from flexapod.analysis.results.vibration import local_vibration
 from flexapod.analysis.solid import simulate_solid
 from flexapod.common.arrays import Array
 from flexapod.solve.fem.beam_guide import ElementContact, GuideContact, InterpolatedClamp, NodeContact

@@ -9,7 +9,7 @@ import numpy as np
 from flexapod.common.arrays import Array
 from flexapod.model import Rectangle
 from flexapod.solve.fem.frequencies import frequencies
-from flexapod.solve.fem.mesh import extruded
+from flexapod.solve.fem.hexahedra import extruded
 from flexapod.solve.fem.reduction import reduced_beam
 from flexapod.solve.fem.section_mesh import section_mesh
 from flexapod.verification.case import Check, case, checks

@@ -12,7 +12,6 @@ from flexapod.verification.paper import (
     claims_rigid,
     claims_robot,
     claims_variants,
-    claims_welded,
 )
 from flexapod.verification.paper.claim import WHOSE, Claim
 from flexapod.verification.paper.rows import ClaimRow
@@ -26,7 +25,6 @@ _SUBJECTS = (
     claims_outlook,
     claims_readings,
     claims_variants,
-    claims_welded,
 )
 _FOUND = [row for module in _SUBJECTS for row in vars(module).values() if isinstance(row, ClaimRow)]
 

@@ -16,14 +16,13 @@ from flexapod.analysis.results.attributes import attributes
 from flexapod.common.arrays import Array
 from flexapod.kinematics import dynamics
 from flexapod.kinematics.inverse import JointTurn
-from flexapod.kinematics.vectors import turned
+from flexapod.kinematics.rotations import matrix_vector
 from flexapod.mechanics import shapes as bases
 from flexapod.mechanics.leg.layout import LEG_PARAMETERS, Shapes
 from flexapod.mechanics.leg.leg import leg
 from flexapod.mechanics.leg.leg_beam import LegBeam
 from flexapod.mechanics.leg.leg_chain import LegChain
-from flexapod.mechanics.symbolic.functions import NamedFunction, operations
-from flexapod.mechanics.symbolic.lagrange import inverse_dynamics
+from flexapod.mechanics.symbolic.functions import NamedFunction, inverse_dynamics, operations
 from flexapod.mechanics.symbolic.vocabulary import symbol, symbols
 
 FORMULATIONS = ("Newton-Euler", "Lagrange")
@@ -99,7 +98,7 @@ def _newton_euler_leg(numbers: Callable[..., Array]) -> tuple[Array, ...]:
     turn = JointTurn.of(numbers(1, 1), numbers(1, 1))
     legs = dynamics.LegArrays(turn=turn, **{name: numbers(1, 1) for name in names})
     home, gravity, along = numbers(3, 3, 1, 1), numbers(3), numbers(1, 1)
-    leg_gravity = turn.into_leg(turned(home, gravity))
+    leg_gravity = turn.into_leg(matrix_vector(home, gravity))
     motion = dynamics.leg_motion(bodies, legs)
     across, _ = dynamics.across_the_leg(bodies, legs, motion, leg_gravity)
     return (*across[:2], dynamics.along_the_leg(bodies, motion, leg_gravity, along))

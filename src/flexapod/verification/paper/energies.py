@@ -11,8 +11,7 @@ from typing import Any
 
 from flexapod.common.arrays import Array
 from flexapod.mechanics import shapes
-from flexapod.mechanics.symbolic.functions import NamedFunction
-from flexapod.mechanics.symbolic.lagrange import Lagrangian, inverse_dynamics
+from flexapod.mechanics.symbolic.functions import Lagrangian, NamedFunction, inverse_dynamics
 from flexapod.mechanics.symbolic.vocabulary import (
     constant,
     cos,

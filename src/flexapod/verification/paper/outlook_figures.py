@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from flexapod.analysis.results.attributes import robot_study
 from flexapod.common.quantities import scale
 from flexapod.output.figures.style import COLUMN, PAGE, figure, mark_end, styled
-from flexapod.output.scene.colours import LEG_COLORS
+from flexapod.output.scene.style import LEG_COLORS
 from flexapod.verification.paper.claim import axis_motion
 
 SPAN = 0.05  # s: a period of the first mode, and a few of the others

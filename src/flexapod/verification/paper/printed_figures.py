@@ -27,8 +27,8 @@ from flexapod.output.figures.style import (
     needs,
     styled,
 )
-from flexapod.output.scene.colours import AXIS_COLORS, FLEXIBLE, LEG_COLORS, RIGID
 from flexapod.output.scene.robot_scene import mode_scene
+from flexapod.output.scene.style import AXIS_COLORS, FLEXIBLE, LEG_COLORS, RIGID
 from flexapod.verification.paper.claim import force_gaps
 
 BENT = 0.18  # of the length of a leg: how far its mode is drawn off the line of its joints

@@ -21,7 +21,6 @@ from flexapod.verification.paper.claim import axis_motion
 from flexapod.verification.paper.clamped_legs import welded_map
 from flexapod.verification.paper.computing_time import inverse_dynamics_cost
 from flexapod.verification.paper.engines import check_engine, exudyn_flexible, exudyn_rigid, rigid_same_step, undamped
-from flexapod.verification.paper.light_pistons import light_pistons
 from flexapod.verification.paper.outlook import (
     commands_ahead,
     error_budget,
@@ -39,6 +38,7 @@ from flexapod.verification.paper.variants import (
     assumptions,
     half_angle_sweep,
     jump_motion,
+    light_pistons,
     with_half_angle,
 )
 

@@ -9,10 +9,10 @@ from flexapod.analysis.results.arguments import LoadLike, PoseLike, RobotLike, a
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.mechanics.elements.registry import refuse_tables
-from flexapod.output.exchange.content import Content
 from flexapod.output.exchange.decks import Deck, number
 from flexapod.output.exchange.decks_legs import LegAtPose, PayloadAtPose, axial_inertia, legs_at_pose
 from flexapod.output.exchange.decks_robot import Carriers, drive_shift, write_leg, write_payload
+from flexapod.output.exchange.formats import Content
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.statics.locked_robot import the_equilibrium
 from flexapod.solve.statics.static_loads import at_drives

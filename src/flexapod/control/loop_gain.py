@@ -1,4 +1,4 @@
-"""Loops judged: root locus, best gain, (T21.30)."""
+"""Root locus and best gain: loops over a factor on their controller, (T21.30)."""
 
 from __future__ import annotations
 
@@ -12,9 +12,8 @@ from scipy.optimize import linear_sum_assignment, minimize_scalar
 from flexapod.common.arguments import number, numbers
 from flexapod.common.errors import InputError
 from flexapod.common.units import quantity
-from flexapod.control.discretization import law_beside
-from flexapod.control.feedback import closed, opened
-from flexapod.control.poles import damping_of
+from flexapod.control.feedback import closed, law_beside, opened
+from flexapod.control.frequency_response import damping_of
 from flexapod.control.state_space import a_system
 from flexapod.control.zeros import zeros_of
 
@@ -23,8 +22,6 @@ if TYPE_CHECKING:
 
     from flexapod.control.controllers import Controller
     from flexapod.control.state_space import StateSpace
-
-__all__ = ["best_gain", "root_locus"]
 
 Complex = NDArray[np.complex128]
 
