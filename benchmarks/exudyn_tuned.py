@@ -25,7 +25,7 @@ class Tuned(Builder):
         super().__init__(integration)
         self.drives: list[tuple[int, list[float]]] = []
 
-    def hold(self, marker: int, displacement: Array) -> int:
+    def prescribe_coordinate(self, marker: int, displacement: Array) -> int:
         connector = self.items.ObjectConnectorCoordinate
         number = self.mbs.AddObject(connector(markerNumbers=[self.ground, marker], offset=float(displacement[0])))
         self.drives.append((number, displacement.tolist()))

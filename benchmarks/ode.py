@@ -10,6 +10,7 @@ import ctypes
 import time
 from ctypes import POINTER, Structure, addressof, c_double, c_long, c_void_p
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -157,10 +158,8 @@ def ode(study: Study | ActuatorStudy) -> Ode:
     t = np.arange(round(study.duration / SPACING) + 2) * SPACING
     guess = np.zeros(0)
     if isinstance(study, Study):
-        table = robot_law(system, study.robot, study.load, lambda t: kinematics.poses(study.robot, study.motion, t))(t)[
-            0
-        ]
-        legs = kinematics.inverse_kinematics(study.robot, kinematics.poses(study.robot, study.motion, t))
+        rigid = partial(kinematics.rigid_poses, study.robot, study.motion)
+        table, legs = robot_law(system, study.robot, study.load, rigid)(t)[0], rigid(t).legs
         third = legs.length if last == shapes.l_index else np.zeros_like(legs.length)
         guess = np.ascontiguousarray(np.stack([legs.alpha, legs.beta, third], axis=-1))
         unit, frequency, places = 1e-5, 1e3, len(free) * system.legs + 7  # 10 um of deviation

@@ -199,12 +199,12 @@ def _laws(laws: list[Law]) -> Section:
 
 def _figure(laws: Sequence[Law]) -> Figure:
     """A panel for each quantity, logarithmic; dashed: the straight lines."""
-    from flexapod.output.figures.style import figure, styled
+    from flexapod.output.figures.style import figure, house_style
     from flexapod.output.scene.style import FLEXIBLE
 
     against = dict.fromkeys(law.against for law in laws)
 
-    @styled
+    @house_style
     def draw() -> Figure:
         fig = figure(height=6.0, gap=0.06)
         panels = fig.subplots(-(-len(against) // 3), 3).ravel()

@@ -79,7 +79,7 @@ def chosen(families: Sequence[Family], target: float) -> dict[str, tuple[Family,
 def side_by_side() -> list[Section]:
     """A section for each target, and one of what was tried."""
     ours = reference(undamped(roll()))
-    families = [*_ours(ours), *_scipy(ours), *(_exudyn() if EXUDYN.found() else [])]
+    families = [*_ours(ours), *_scipy(ours), *(_exudyn() if EXUDYN.is_available() else [])]
     for family in families:
         family.measure(ours)
     return [*(_compared(families, target) for target in TARGETS), _tried(families)]
@@ -162,7 +162,7 @@ def _exudyn() -> list[Family]:
 def _asked(elements: int, guide: float, rho: float, h: float, tolerance: float = 1e-4) -> tuple[Curve, float]:
     from benchmarks.exudyn_tuned import solve
     from flexapod.verification.engines.exudyn_integration import Integration
-    from flexapod.verification.engines.exudyn_process import ask
+    from flexapod.verification.engines.exudyn_process import solve_in_process
     from flexapod.verification.engines.exudyn_robot import RobotProblem
 
     # Its process finds this package here, and takes Exudyn's build without range checks.
@@ -170,7 +170,7 @@ def _asked(elements: int, guide: float, rho: float, h: float, tolerance: float =
     study = undamped(roll())
     plan = Integration(duration=2.0, step=h, rho_inf=rho, tolerance=tolerance)
     problem = RobotProblem(robot=study.robot, motion=study.motion, integration=plan, elements=elements, guide=guide)
-    result = ask(solve, problem)
+    result = solve_in_process(solve, problem)
     every = max(1, round(1e-3 / h))
     return Curve(result.time[::every], result.com_deviation[::every]), result.seconds
 

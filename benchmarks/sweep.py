@@ -16,9 +16,9 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from benchmarks.report import goal
 from flexapod import sweep
-from flexapod.analysis.simulation import simulated
+from flexapod.analysis.simulation import run_simulation
 from flexapod.design.sweeps import executors
-from flexapod.design.sweeps.outputs import kept
+from flexapod.design.sweeps.outputs import select_outputs
 from flexapod.design.sweeps.plan import read_plan
 from flexapod.design.sweeps.samples import Points
 from flexapod.design.sweeps.worker import compute_point
@@ -44,7 +44,7 @@ def plan(count):
 
 def bare(one):
     """The part of `flexapod.simulate` that nobody can do without: checks, integration, remarks."""
-    simulated(one).warnings()
+    run_simulation(one).warnings()
 
 
 def measured(action):
@@ -81,7 +81,7 @@ def swept(settings, count, workers, store):
 def plain(settings, numbers, ready, go, rates):
     """A process of its own that computes points one after the other."""
     points = Points(study(settings), read_plan(plan(10_000)))
-    keep = kept(points.plan.keep, points.nominal, Points(points.nominal, read_plan(plan(2))).resolve())
+    keep = select_outputs(points.plan.keep, points.nominal, Points(points.nominal, read_plan(plan(2))).resolve())
     compute_point(keep, points.study(0))
     ready.wait()
     go.wait()
@@ -123,7 +123,7 @@ def main():
     given = parser.parse_args()
     settings = {"step": given.step} if given.step else {"tolerance": given.tolerance}
     points = Points(study(settings), read_plan(plan(given.points)))
-    keep = kept(points.plan.keep, points.nominal, points.resolve())
+    keep = select_outputs(points.plan.keep, points.nominal, points.resolve())
     read = measured(Points(points.nominal, points.plan).resolve) / given.points  # as a sweep does, all in a row
     compute_point(keep, points.study(0))
     bare_time, added = in_one_process(points, keep, 30)

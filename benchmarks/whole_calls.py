@@ -30,7 +30,7 @@ import flexapod as fx
 from flexapod.model import override
 from flexapod.solve.time.robot_march import prepare
 from flexapod.design.sweeps.worker import compute_point
-from flexapod.design.sweeps.outputs import kept
+from flexapod.design.sweeps.outputs import select_outputs
 from flexapod.design.sweeps.plan import read_plan
 from flexapod.design.sweeps.samples import Points
 
@@ -43,7 +43,7 @@ def prepared(what, study):
     if what == "all-results":
         return lambda: fx.simulate(study).load()
     points = Points(study, read_plan({"random": {"count": 2, "tolerance": [{"key": "payload.mass", "normal": "1 %"}]}}))
-    keep, one = kept(points.plan.keep, study, points.resolve()), points.study(1)
+    keep, one = select_outputs(points.plan.keep, study, points.resolve()), points.study(1)
     return lambda: compute_point(keep, one)
 
 print("ready", flush=True)

@@ -11,10 +11,10 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # small matrices: threads of
 HERE = Path(__file__).parent
 KINDS = (
     "analytic", "cli", "consistency", "contract", "conservation", "convergence",
-    "golden", "literature", "meta", "property", "unit", "web",
+    "golden", "last_stage", "literature", "meta", "property", "unit", "web",
 )  # fmt: skip
 #: Kinds of which most kernels are called a few times. Not meant: files that are "optimised", groups that march long.
-QUICK = ("analytic", "conservation", "consistency", "contract", "property", "unit", "web")
+QUICK = ("analytic", "conservation", "consistency", "contract", "last_stage", "property", "unit", "web")
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -26,7 +26,7 @@ from flexapod.analysis import simulate, simulate_actuator
 from flexapod.analysis.description.robot_description import describe
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.common.tables.base import Frozen
-from flexapod.design.sweeps.outputs import columns, kept
+from flexapod.design.sweeps.outputs import columns, select_outputs
 from flexapod.design.sweeps.plan import read_plan
 from flexapod.design.sweeps.samples import Points
 from flexapod.model import Study, load, loads, to_toml
@@ -348,7 +348,7 @@ def _sweep(study, folder):
     if len(points) > FEW_POINTS:
         return
     resolved = points.resolve()
-    keep = kept(points.plan.keep, points.nominal, resolved)
+    keep = select_outputs(points.plan.keep, points.nominal, resolved)
     columns(points, keep, resolved)
     for i in set(resolved.first.tolist()) - set(resolved.refused):
         assert_finite(points.study(i), f"point {i}")

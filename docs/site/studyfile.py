@@ -16,7 +16,7 @@ LONG = ("leg",)
 def pages() -> dict[Path, str]:
     """Pages by place."""
     made, contents = {}, {}
-    for item in page.listed():
+    for item in page.list_entries():
         made.setdefault((item.entry.study, _of(item.entry.table)), []).append(item)
     for (study, name), items in made.items():
         of = "" if study == "robot" or name == "actuator" else " of a single actuator"
@@ -42,7 +42,7 @@ def _place(study: str, name: str) -> Path:
     return FOLDER / f"{before}{name.replace('.', '-')}.md"
 
 
-def _keys(made: dict[tuple[str, str], list[page.Listed]]) -> str:
+def _keys(made: dict[tuple[str, str], list[page.ListedEntry]]) -> str:
     """All keys: whoever has one, as of a message, finds its table."""
     rows = {
         (f"{item.entry.table}.{row.key}", study): f"{row.what} | [`{name}`]({_place(study, name).name})"
@@ -64,7 +64,7 @@ What a message refuses is named by its key: here is its table. Legs in a list ar
 
 @cache
 def _long() -> str:
-    return page.markdown()
+    return page.study_file_page()
 
 
 def _levelled(text: str, name: str) -> str:

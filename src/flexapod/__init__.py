@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flexapod.common.lazy_imports import loaded
+from flexapod.common.lazy_imports import load_module
 
 if TYPE_CHECKING:
     from flexapod import analysis as study
@@ -156,14 +156,14 @@ __all__ = [
 
 def __getattr__(name: str) -> object:
     if name in _NAMES:
-        value = getattr(loaded(_NAMES[name]), name)
+        value = getattr(load_module(_NAMES[name]), name)
     elif name in _PACKAGES:
-        value = loaded(f"flexapod.{_PACKAGES[name]}")
+        value = load_module(f"flexapod.{_PACKAGES[name]}")
     elif name in _FORMER:
         import warnings
 
         warnings.warn(f"flexapod.{name} is flexapod.{_FORMER[name]} now", FutureWarning, stacklevel=2)
-        return loaded(f"flexapod.{_FORMER[name]}")
+        return load_module(f"flexapod.{_FORMER[name]}")
     else:
         raise AttributeError(f"module 'flexapod' has no attribute {name!r}")
     globals()[name] = value

@@ -116,7 +116,7 @@ def motion(speed=False):
 def test_fused_sensors_are_low_passed_and_high_passed():
     """With one motion in both the law acts as if on one sensor; noise of each enters through its own filter."""
     law = fc.pid(300.0, 0.0, 25.0, low_pass=80.0)
-    loop = motion().close(fc.Fused(law, low="encoder", high="stroke", corner=12.0))
+    loop = motion().close(fc.SensorFusion(law, low="encoder", high="stroke", corner=12.0))
     plant = 1 / (2 * S**2 + 6 * S + 800)
     K = 300.0 + 25.0 * S / (1 + S / (2 * np.pi * 80))
     share = W / (S + W)
@@ -148,7 +148,7 @@ def test_several_actuators_and_sensors_of_parts():
     readings, actuators = ("stroke:1", "stroke:2", "tool:z"), ("drive:1", "drive:2", "drive:3")
     one = fc.Decentralised(fc.gain(2.0), sensor=["stroke:1", "stroke:2"], actuator=["drive:3", "drive:1"])
     two = fc.Decentralised(fc.low_pass(12.0) * 5.0, sensor="tool:z", actuator="drive:1")
-    found = fc.Together((one, two)).on(readings, actuators)
+    found = fc.Parallel((one, two)).on(readings, actuators)
     expected = {("drive:3", "stroke:1"): -2.0, ("drive:1", "stroke:2"): -2.0, ("drive:1", "tool:z"): -5 * W / (S + W)}
     H = found.at(HZ)
     for i, out in enumerate(found.outputs):

@@ -170,7 +170,7 @@ def test_noise_of_a_sensor_and_what_is_asked_for():
 
 def test_an_inner_and_an_outer_loop_are_both_at_once():
     inner, outer = fc.IFF(4.0, high_pass=0.2), fc.PID(500.0, 100.0, sensor="tool")
-    both = strut().close(fc.Together((inner, outer)))
+    both = strut().close(fc.Parallel((inner, outer)))
     after = strut().close(inner).close(outer)
     same(after.poles(), both.poles(), rtol=1e-9)
     hz = np.geomspace(0.01, 100, 30)

@@ -71,11 +71,11 @@ LAWS = {
          for i in (0, 1) for j in (0, 1)},
     ),
     "two sensors": (
-        fc.Fused(fc.rate(18.0), low="tool", high="stroke:1", corner=7.0, actuator="drive:1"),
+        fc.SensorFusion(fc.rate(18.0), low="tool", high="stroke:1", corner=7.0, actuator="drive:1"),
         {(0, 4): -18.0 * S * 14 * np.pi / (S + 14 * np.pi), (0, 0): -18.0 * S * S / (S + 14 * np.pi)},
     ),
     "two loops": (
-        fc.Together((fc.DVF(12.0), fc.PID(900.0, 0.0, 9.0, sensor="tool", actuator="drive:1"))),
+        fc.Parallel((fc.DVF(12.0), fc.PID(900.0, 0.0, 9.0, sensor="tool", actuator="drive:1"))),
         {(0, 0): -12.0 * S, (1, 1): -12.0 * S, (0, 4): -(900.0 + 9.0 * S)},
     ),
     "a rate by its name": (

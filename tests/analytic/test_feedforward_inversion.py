@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.commissioning.feedforward.actuator_inversion import answer, inverse, tip_inversion
+from flexapod.commissioning.feedforward.actuator_inversion import inverse, linear_response, tip_inversion
 from flexapod.control import StateSpace
 from flexapod.kinematics import motion_law
 
@@ -95,7 +95,7 @@ def test_the_tip_goes_where_that_of_a_rigid_beam_would(drives) -> None:
 def test_answers_are_exact_for_straight_inputs() -> None:
     double = space([[0, 1], [0, 0]], [[0], [1]], [[1.0, 0.0]])
     t = np.linspace(0.0, 2.0, 21)
-    np.testing.assert_allclose(answer(double, t, 3 * t)[0], 0.5 * t**3, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(linear_response(double, t, 3 * t)[0], 0.5 * t**3, rtol=0, atol=1e-13)
 
 
 def test_the_study_as_a_file(tmp_path) -> None:

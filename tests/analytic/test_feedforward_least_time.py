@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import flexapod as fx
-from flexapod.commissioning.feedforward.least_time import fastest
-from flexapod.commissioning.feedforward.loaded_path import limits_of
+from flexapod.commissioning.feedforward.least_time import least_time
+from flexapod.commissioning.feedforward.loaded_path import drive_limits
 from flexapod.control import StateSpace
 from flexapod.kinematics import coordinates
 
@@ -100,7 +100,7 @@ def heaving() -> tuple[fx.Study, float, float]:
 def test_a_robot_in_heave_takes_what_a_mass_takes_and_leaves_no_vibration() -> None:
     study, frequency, sine = heaving()
     limit = 4 * 1e-3 * sine * frequency**2 / 1.3**2  # full acceleration, full brake: 1.3 periods
-    found = fastest(study, acceleration=limit, residual="1 um")
+    found = least_time(study, acceleration=limit, residual="1 um")
     rigid = 1.3 / frequency
     # accelerations that are cubic between 48 rows lose some of them at each jump; lengths change by 1e-3 on the way
     assert rigid * 0.998 < found.unbounded < 1.1 * rigid
@@ -120,7 +120,7 @@ def test_forces_of_a_robot_that_gives_way_keep_their_limits_too() -> None:
     a march within 1e-6, differences over 1/400 of a period: 1e-4 of it. Shares of limits are found within 1.002."""
     study, frequency, sine = heaving()
     limit = 4 * 1e-3 * frequency**2 / 1.3**2 * study.robot.payload.mass / (6 * sine)
-    found = fastest(study, force=limit, residual="1 um")
+    found = least_time(study, force=limit, residual="1 um")
     assert found.duration > found.stiff > found.unbounded and "rigid robot would hold" in found.sentence
     exact = found.study.simulation.replace(tolerance=1e-6, output_step=1 / (400 * frequency), duration=None)
     data = fx.simulate(found.study.replace(simulation=exact))
@@ -129,7 +129,7 @@ def test_forces_of_a_robot_that_gives_way_keep_their_limits_too() -> None:
     assert 0.9 * limit < np.abs(carried).max() < 1.004 * limit
     assert np.abs(data.drive_force.values).max() == pytest.approx(np.abs(carried).max(), rel=1e-3)
     # the march of what a rigid robot would take asks for more
-    rigid = fastest(study, acceleration=limit * 6 * sine**2 / study.robot.payload.mass, residual="1 um")
+    rigid = least_time(study, acceleration=limit * 6 * sine**2 / study.robot.payload.mass, residual="1 um")
     assert rigid.marched == 0 and rigid.duration == pytest.approx(found.stiff, rel=0.01)
     assert np.abs(fx.simulate(rigid.study).drive_force.values).max() > 1.1 * limit
 
@@ -148,10 +148,10 @@ def test_forces_or_torques_of_screws_bound_accelerations_and_speeds_do_not(limit
     legs = tuple(x.replace(drive=x.drive.replace(limits=x.drive.limits.__class__(**limits))) for x in study.robot.legs)
     study = study.replace(robot=study.robot.replace(legs=legs))
     if bounds:
-        limits_of(study, None, None, None)
+        drive_limits(study, None, None, None)
     else:
         with pytest.raises(fx.InputError, match="the least time would be 0"):
-            limits_of(study, None, None, None)
+            drive_limits(study, None, None, None)
 
 
 def test_the_way_as_a_file(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from tests.oracles import integrator
 from tests.oracles.integrator import residual, residual_of_motion
 
 import flexapod as fx
-from flexapod.commissioning.feedforward.modal_path import vibration_along
+from flexapod.commissioning.feedforward.modal_path import path_vibration
 from flexapod.commissioning.feedforward.shapers import KINDS, insensitivity, shaper
 from flexapod.kinematics import coordinates
 
@@ -30,12 +30,12 @@ def test_impulses_on_an_oscillator(kind: str, ratio: float) -> None:
     assert made.duration == pytest.approx(PERIODS[kind] / (7.0 * np.sqrt(1 - ratio**2)), rel=1e-14)
     for f in (5.0, 7.0, 7.4):  # rounding of sums of cosines
         left = residual(made.amplitudes, made.times, 2 * np.pi * f, ratio)
-        assert float(made.left(f, ratio)) == pytest.approx(left, abs=1e-14)
+        assert float(made.residual_share(f, ratio)) == pytest.approx(left, abs=1e-14)
     # at the mode each half period turns what an impulse leaves about and makes it K times as large: of EI's three
     # ((1 + V) / 4 - (1 - V) / 2 + (1 + V) / 4) K^2 = V K^2 are left, of the others nothing
     K, V = np.exp(-np.pi * ratio / np.sqrt(1 - ratio**2)), 0.05
     whole = (1 + V) / 4 * (1 + K**2) + (1 - V) / 2 * K
-    assert float(made.left(7.0, ratio)) == pytest.approx(V * K**2 / whole if kind == "ei" else 0.0, abs=1e-14)
+    assert float(made.residual_share(7.0, ratio)) == pytest.approx(V * K**2 / whole if kind == "ei" else 0.0, abs=1e-14)
 
 
 @pytest.mark.parametrize(("name", "ratio"), [("ZV", 0.0), ("ZV", 0.1), ("ZVD", 0.0), ("ZVD", 0.1), ("EI", 0.0)])
@@ -49,8 +49,8 @@ def test_impulses_as_their_authors_write_them(name: str, ratio: float) -> None:
 def test_one_after_the_other_leaves_neither_mode() -> None:
     made = shaper("zv", [3.0, 11.0], [0.01, 0.05])
     assert made.duration == pytest.approx(0.5 / (3 * np.sqrt(1 - 1e-4)) + 0.5 / (11 * np.sqrt(1 - 0.0025)))
-    assert float(made.left(3.0, 0.01)) < 1e-14
-    assert float(made.left(11.0, 0.05)) < 1e-14
+    assert float(made.residual_share(3.0, 0.01)) < 1e-14
+    assert float(made.residual_share(11.0, 0.05)) < 1e-14
 
 
 def test_a_motion_alone_is_its_law_delayed_and_added_up() -> None:
@@ -94,16 +94,16 @@ def heaving(profile: str, periods: float) -> tuple[fx.Study, float]:
 def test_the_linear_model_leaves_what_an_oscillator_has_left(profile: str) -> None:
     study, w = heaving(profile, 2.3)
     moving = study.motion.duration
-    found = vibration_along(study, moving, moving + 10 / w)
+    found = path_vibration(study, moving, moving + 10 / w)
     # Gauss' formula of order 4 with 55 steps in the motion, 24 and more in a period: (w h)^4 / 720 = 7e-6
     # of a deviation of 1, of which 0.1 is left; looked at 100 times in a period: 5e-4
-    assert found.after(moving) / 1e-6 == pytest.approx(residual_of_motion(profile, w * moving), rel=2e-3)
+    assert found.largest_after(moving) / 1e-6 == pytest.approx(residual_of_motion(profile, w * moving), rel=2e-3)
 
 
 def test_ramps_of_whole_periods_leave_nothing() -> None:
     ramp = fx.kinematics.laws.TRAPEZOID_FRACTIONS[0]
-    whole, half = (vibration_along(*timed(periods / ramp)) for periods in (1.0, 1.5))
-    after = [x.after(y[1]) for x, y in ((whole, timed(1.0 / ramp)), (half, timed(1.5 / ramp)))]
+    whole, half = (path_vibration(*timed(periods / ramp)) for periods in (1.0, 1.5))
+    after = [x.largest_after(y[1]) for x, y in ((whole, timed(1.0 / ramp)), (half, timed(1.5 / ramp)))]
     assert after[0] < 1e-3 * after[1]
 
 

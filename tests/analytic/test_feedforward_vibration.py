@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 from tests.analytic.test_feedforward_loaded_springs import lengths, springs
 
 import flexapod as fx
-from flexapod.commissioning.feedforward.modal_path import vibration_along
+from flexapod.commissioning.feedforward.modal_path import path_vibration
 
 MOVING, AFTER = 0.2, 0.03  # s
 
@@ -61,7 +61,7 @@ def tool_beside_its_path(robot: fx.model.Robot, times: np.ndarray) -> np.ndarray
 def test_a_path_that_turns_far_shakes_the_tool_as_newton_says() -> None:
     """Linear about each pose; left out are gyroscopic terms, 2 x 5 rad/s over 500 rad/s at most, of what vibrates."""
     study = turning()
-    found = vibration_along(study, MOVING, MOVING + AFTER)
+    found = path_vibration(study, MOVING, MOVING + AFTER)
     exact = tool_beside_its_path(study.robot, found.time)
     assert found.time[-1] >= MOVING + AFTER - 1e-12
     moving = found.time <= MOVING

@@ -7,12 +7,12 @@ from tests.machines import SCREW, TUBE, machine, study
 import flexapod as fx
 from flexapod.model import Feedback, Motor, preset_text
 from flexapod.model.study.mount import Mount
-from flexapod.solve.modal.eigenproblem import damping_ratios, natural, poles
+from flexapod.solve.modal.eigenproblem import damping_ratios, natural_modes, poles
 
 
 def modal(mass, stiffness, damping):
     """Undamped modes of diagonal masses: frequencies [rad/s] and damping in coordinates of unit stiffness."""
-    omega, z, _ = natural(np.diag(np.sqrt(mass))[None], np.array(stiffness)[None], shapes=True)
+    omega, z, _ = natural_modes(np.diag(np.sqrt(mass))[None], np.array(stiffness)[None], shapes=True)
     return omega[0], z[0].T @ damping @ z[0]
 
 

@@ -16,7 +16,7 @@ from flexapod import modes
 from flexapod.model import ServoDrive, preset
 from flexapod.verification import dynamic_stiffness
 from flexapod.verification.dynamic_stiffness import legs_and_body
-from flexapod.verification.robots import unlike_legs, without_cylinders, without_gravity
+from flexapod.verification.robots import with_unequal_legs, without_cylinders, without_gravity
 
 pytestmark = pytest.mark.usefixtures("uncompiled")
 PISTON = beams.round_section(0.027, 200e9, 7800.0)
@@ -36,8 +36,8 @@ def pinned(leg):
     """Count of one plane with the tip held."""
 
     def count(omega):
-        K, held = dynamic_stiffness.lateral(omega, leg, leg.pivot_inertias()[0])
-        return dynamic_stiffness.below((K[:2, :2], held))
+        K, held = dynamic_stiffness.lateral_stiffness(omega, leg, leg.pivot_inertias()[0])
+        return dynamic_stiffness.frequency_count((K[:2, :2], held))
 
     return count
 
@@ -45,7 +45,7 @@ def pinned(leg):
 @cache
 def case(name):
     """A robot without gravity: as the preset, without cylinders, or with six different legs."""
-    change = {"preset": lambda robot: robot, "no cylinder": without_cylinders, "unlike": unlike_legs}[name]
+    change = {"preset": lambda robot: robot, "no cylinder": without_cylinders, "unlike": with_unequal_legs}[name]
     return change(without_gravity(preset("paper-robot").robot))
 
 
@@ -62,11 +62,11 @@ def product(name, pose, k, axial=2, drive=None):
 
 
 def missing_sines(name, frequency, axial):
-    return dynamic_stiffness.missing_sines(legs_and_body(case(name), HOME)[0], frequency, axial)
+    return dynamic_stiffness.sine_truncation(legs_and_body(case(name), HOME)[0], frequency, axial)
 
 
 def missing_polynomials(name, pose, k):
-    return dynamic_stiffness.missing_polynomials(legs_and_body(case(name), pose)[0], exact(name, pose), k)
+    return dynamic_stiffness.polynomial_truncation(legs_and_body(case(name), pose)[0], exact(name, pose), k)
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,7 @@ def test_oracle_on_one_leg_with_its_tip_pinned(mouth, mass, free):
     known = beams.ups_leg_frequencies(mouth, mass, free, PISTON["EI"], PISTON["rhoA"], 5)
     count = pinned(single(mouth, mass, free))
     # both halve or search to 1e-12 to 1e-14
-    np.testing.assert_allclose(dynamic_stiffness.roots(count, 5), known, rtol=3e-12)
+    np.testing.assert_allclose(dynamic_stiffness.bisect_frequencies(count, 5), known, rtol=3e-12)
     middles = np.pi * np.concatenate([[0.5 * known[0]], known[:-1] + known[1:]])
     assert [count(omega) for omega in middles[1:]] == [1, 2, 3, 4]
     assert count(middles[0]) == 0
@@ -84,13 +84,17 @@ def test_oracle_on_one_leg_with_its_tip_pinned(mouth, mass, free):
 
 def test_oracle_on_pinned_beam_and_bars():
     pinned_pinned = beams.frequency(np.pi * np.arange(1, 7), 0.6, PISTON["EI"], PISTON["rhoA"])
-    np.testing.assert_allclose(dynamic_stiffness.roots(pinned(single()), 6), pinned_pinned, rtol=3e-12)
+    np.testing.assert_allclose(dynamic_stiffness.bisect_frequencies(pinned(single()), 6), pinned_pinned, rtol=3e-12)
     wave = np.sqrt(PISTON["EA"] / PISTON["rhoA"]) / (2 * np.pi * 0.6)  # Hz for x = 1
-    free = dynamic_stiffness.roots(lambda w: dynamic_stiffness.below(dynamic_stiffness.bar(w, single())), 3)
+    free = dynamic_stiffness.bisect_frequencies(
+        lambda w: dynamic_stiffness.frequency_count(dynamic_stiffness.bar_stiffness(w, single())), 3
+    )
     np.testing.assert_allclose(free, wave * np.pi * np.array([0.5, 1.5, 2.5]), rtol=3e-12)
     assert free[0] == pytest.approx(2110, abs=0.5)
     soft = single(compliance=2 * 0.6 / PISTON["EA"])  # x tan x = 1/2, tip free
-    sprung = dynamic_stiffness.roots(lambda w: dynamic_stiffness.below(dynamic_stiffness.bar(w, soft)), 2)
+    sprung = dynamic_stiffness.bisect_frequencies(
+        lambda w: dynamic_stiffness.frequency_count(dynamic_stiffness.bar_stiffness(w, soft)), 2
+    )
     known = [brentq(lambda x: x * np.sin(x) - 0.5 * np.cos(x), a, a + 1.5, xtol=1e-15) for a in (0.0, np.pi)]
     np.testing.assert_allclose(sprung, wave * np.array(known), rtol=3e-12)
 
@@ -98,11 +102,11 @@ def test_oracle_on_pinned_beam_and_bars():
 def test_held_counts_of_beam_and_bar():
     lam = np.linspace(0.3, 29.9, 500)
     clamped = beams.beam_roots("clamped", "clamped", 9)
-    counts = [dynamic_stiffness.beam(x**2, 1.0, 1.0, 1.0)[1] for x in lam]
+    counts = [dynamic_stiffness.beam_stiffness(x**2, 1.0, 1.0, 1.0)[1] for x in lam]
     assert counts == [int(np.sum(clamped < x)) for x in lam]
     omega = 2 * np.pi * np.linspace(100.0, 30e3, 200)
     held = np.pi / 0.6 * np.sqrt(PISTON["EA"] / PISTON["rhoA"]) * np.arange(1, 20)
-    assert [dynamic_stiffness.bar(w, single())[1] for w in omega] == [int(np.sum(held < w)) for w in omega]
+    assert [dynamic_stiffness.bar_stiffness(w, single())[1] for w in omega] == [int(np.sum(held < w)) for w in omega]
 
 
 def chain(n, element):
@@ -153,7 +157,7 @@ def test_count_and_frequencies_of_the_oracle_against_finite_elements(name, pose)
     assert len(gaps) > 8
     for i in gaps:
         omega = np.pi * (found[i - 1] + found[i])
-        assert dynamic_stiffness.below(dynamic_stiffness.robot(omega, legs, body)) == i
+        assert dynamic_stiffness.frequency_count(dynamic_stiffness.robot_stiffness(omega, legs, body)) == i
     np.testing.assert_allclose(found[:N], exact(name, pose), rtol=1e-4)  # lam <= 2 pi: 5.2e-5
     assert np.all(found[:N] > exact(name, pose) * (1 - 1e-9))
 

@@ -16,13 +16,13 @@ from tests.stepped import (
 )
 
 from flexapod.analysis.checks.estimates import bending_errors, piston_section
-from flexapod.mechanics.elements.steps import held
-from flexapod.solve.sections import numeric_pieces, turning
+from flexapod.mechanics.elements.steps import tip_elimination
+from flexapod.solve.sections import numeric_pieces, section_rotary_inertia
 
 
 def spectra(n, length, step):
     """Both angular frequencies of n half waves between pinned ends."""
-    k, turn, mass = n * np.pi / length, turning(step, 0), step.rhoA
+    k, turn, mass = n * np.pi / length, section_rotary_inertia(step, 0), step.rhoA
     middle = mass + mass * step.EI[0] * k**2 / step.shear + turn * k**2
     return np.sqrt(np.sort(np.roots([mass * turn / step.shear, -middle, step.EI[0] * k**4])))
 
@@ -31,7 +31,7 @@ def misfit(leg, free, omega):
     """Vanishes at frequencies of the leg with pinned ends, by transfer matrices of Timoshenko's beam."""
     pieces, inertia = outside(leg, free)
     mouth, out = leg.cylinder.mouth, {step: length for length, step in pieces}
-    inertia += sum(turning(step, 0) * (step.length - out.get(step, 0.0)) for step in steps_of(leg))
+    inertia += sum(section_rotary_inertia(step, 0) * (step.length - out.get(step, 0.0)) for step in steps_of(leg))
     ends = []
     for slope, force in ((1.0, 0.0), (0.0, 1.0)):
         ends.append([mouth * slope, slope, force * mouth - inertia * omega**2 * slope, force])
@@ -39,7 +39,7 @@ def misfit(leg, free, omega):
     for length, step in pieces:
         A = np.zeros((4, 4))
         A[0, 1], A[0, 3], A[1, 2] = 1.0, -1 / step.shear, 1 / step.EI[0]
-        A[2, 3], A[2, 1], A[3, 0] = 1.0, -turning(step, 0) * omega**2, step.rhoA * omega**2
+        A[2, 3], A[2, 1], A[3, 0] = 1.0, -section_rotary_inertia(step, 0) * omega**2, step.rhoA * omega**2
         state = expm(A * length) @ state
     return np.linalg.det(state[[0, 2]])
 
@@ -104,7 +104,7 @@ def test_kinetic_energy_of_turning_sections():
         parts = numeric_pieces(leg, thin.beam.b, np.array([s]), 0)
         piece = next(part for part in parts if xi / s <= part.end[0])
         shapes = piece.value(np.array([xi / s]), 1)
-        return -a @ (shapes - held(parts[0].value_start) * shapes[:1])[:, 0] / s
+        return -a @ (shapes - tip_elimination(parts[0].value_start) * shapes[:1])[:, 0] / s
 
     x, w = np.polynomial.legendre.leggauss(12)
     total, h = 0.0, 1e-5
@@ -115,5 +115,5 @@ def test_kinetic_energy_of_turning_sections():
                 ends = [[slope(y, at, y[3 + 3 * k : 6 + 3 * k]) for k in (0, 1)] for y in (q + h * v, q - h * v)]
                 rate = (np.array(ends[0]) - ends[1]) / (2 * h)
             spin = (v[1] + rate[0]) ** 2 + (v[0] - rate[1]) ** 2
-            total += 0.5 * weight * turning(leg.piston.steps[step], 0) * spin
+            total += 0.5 * weight * section_rotary_inertia(leg.piston.steps[step], 0) * spin
     assert pytest.approx(total, rel=1e-8) == T

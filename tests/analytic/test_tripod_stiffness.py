@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.mechanisms import THREE, built, leg, ring, tangents
 
-from flexapod.design.sweeps.outputs import kept
+from flexapod.design.sweeps.outputs import select_outputs
 from flexapod.design.sweeps.plan import read_plan
 from flexapod.design.sweeps.samples import Points
 from flexapod.design.sweeps.worker import compute_point
@@ -98,7 +98,7 @@ def test_the_stress_that_a_sweep_keeps_is_that_at_the_clamp():
     )  # fmt: skip
     plan = read_plan({"vary": [{"key": "payload.mass", "values": [100]}], "keep": {"scalars": ["stress_peak_by_leg"]}})
     points = Points(study, plan)
-    found = compute_point(kept(plan.keep, study, points.resolve()), points.study(0))
+    found = compute_point(select_outputs(plan.keep, study, points.resolve()), points.study(0))
     assert found.failure == ""
     free = np.hypot(BASE - TOP, HEIGHT) - MOUTH
     moment = torque / (3 * TOP) * free

@@ -7,8 +7,7 @@ from tests.cli.conftest import SHORT
 
 import flexapod as fx
 from flexapod.analysis import open_results
-from flexapod.analysis.error_budget import text as sentences
-from flexapod.output.text.budget import peak_budget
+from flexapod.output.text.budget import peak_budget, table
 
 PLAY = '\n[tolerances]\nleg_offset = "10 um"\n[heat]\nreference = 20\npiston = 23\nexpansion = { piston = 1.2e-5 }\n'
 
@@ -77,5 +76,5 @@ def test_the_chart_names_parts_largest_first():
 
 def test_turns_that_are_rounding_read_nothing():
     """Legs that are alike let the tool sink, straight: 4e-16 rad were shown as 0.0000000003778 µrad."""
-    head, rows = sentences.table(fx.budget(fx.preset("motion-base")))
+    head, rows = table(fx.budget(fx.preset("motion-base")))
     assert [row[head.index("ry [deg]")] for row in rows] == ["0"] * len(rows)

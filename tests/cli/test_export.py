@@ -121,7 +121,7 @@ def test_an_actuator_is_no_robot(flexapod, study):
     assert "the study of a robot" in run.stderr
 
 
-@pytest.mark.skipif(not CALCULIX.found(), reason=f"CalculiX is not installed: {CALCULIX.install}")
+@pytest.mark.skipif(not CALCULIX.is_available(), reason=f"CalculiX is not installed: {CALCULIX.install}")
 @pytest.mark.parametrize(
     "drive",
     [

@@ -15,7 +15,7 @@ from tests.cli.test_interrupt import heed_interrupts
 from flexapod.analysis import open_results, store
 from flexapod.analysis.checks import resource_limits
 from flexapod.app.cli import failures, options
-from flexapod.app.cli.failures import guarded
+from flexapod.app.cli.failures import report_failures
 
 posix = pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
 
@@ -137,14 +137,14 @@ def test_a_page_of_verify_that_could_not_be_written_is_refused_first(flexapod, f
 WRITING = """
 import os, signal, sys
 from flexapod.app.cli import cli
-from flexapod.analysis import netcdf
+from flexapod.analysis import store
 
-whole = netcdf.write
+whole = store.write
 def half(data, path, **more):
     open(path, "wb").write(b"half")
     os.kill(os.getpid(), signal.{name})
     return whole(data, path, **more)
-netcdf.write = half
+store.write = half
 sys.argv = ["flexapod", "run", sys.argv[1]]
 cli.main()
 """
@@ -168,7 +168,11 @@ def test_a_signal_while_results_are_written_leaves_nothing_half(study, folder, n
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 @pytest.mark.parametrize(
     ("module", "name"),
-    [("analysis.simulation", "Simulated.values"), ("analysis.store", "save_csv"), ("output.report.figures", "drawing")],
+    [
+        ("analysis.simulation", "RobotSimulation.values"),
+        ("analysis.store", "save_csv"),
+        ("output.report.figures", "concurrent_drawing"),
+    ],
 )
 def test_a_signal_after_the_last_step_loses_nothing(study, folder, module, name):
     """The results were made and written once, and gone with a signal that came meanwhile."""
@@ -210,7 +214,7 @@ def test_signals_that_are_ignored_stay_so(monkeypatch):
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does
     term = signal.getsignal(signal.SIGTERM)
     try:
-        failures.heed_signals()
+        failures.install_signal_handlers()
         assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
     finally:
         signal.signal(signal.SIGHUP, before)
@@ -219,7 +223,7 @@ def test_signals_that_are_ignored_stay_so(monkeypatch):
 
 @pytest.mark.parametrize(("form", "told"), [({}, "Compiling ...\n"), ({"json": True}, ""), ({"quiet": True}, "")])
 def test_what_takes_its_time_is_told_in_words_only(capsys, form, told):
-    @guarded
+    @report_failures
     def slow(json=False, quiet=False):
         logging.getLogger("flexapod").info("Compiling")
 

@@ -13,7 +13,7 @@ import typer
 
 from flexapod.analysis import open_results
 from flexapod.app.cli import cli
-from flexapod.app.cli.failures import guarded
+from flexapod.app.cli.failures import report_failures
 
 LONG = [
     ('duration = "2 s" ', 'duration = "1000 s" '),
@@ -105,7 +105,7 @@ cli.main()
 def test_an_interrupt_that_a_library_turns_into_its_own_error(raised, capsys):
     """Ctrl-C while pydantic built a model ended as a fault of ours with exit code 1."""
 
-    @guarded
+    @report_failures
     def command():
         try:
             raise raised
@@ -123,7 +123,7 @@ def test_ctrl_c_before_a_command_begins_is_no_traceback(monkeypatch):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(cli, "program", lambda names: interrupted)
-    monkeypatch.setattr(cli, "heed_signals", lambda: None)
+    monkeypatch.setattr(cli, "install_signal_handlers", lambda: None)
     with pytest.raises(SystemExit) as end:
         cli.main()
     assert end.value.code == 130

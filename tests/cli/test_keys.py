@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from flexapod.app.cli.cli import app
-from flexapod.model.file.page import listed, markdown
+from flexapod.model.file.page import list_entries, study_file_page
 
 RUN = CliRunner()
 
@@ -66,13 +66,13 @@ def test_a_wrong_table_is_answered_without_the_model():
 
 
 def test_a_part_of_the_page_is_as_in_the_whole():
-    part = [item for item in listed() if f"{item.entry.table}.".startswith("leg.drive.")]
-    assert listed("leg.drive") == part and len(part) > 10
+    part = [item for item in list_entries() if f"{item.entry.table}.".startswith("leg.drive.")]
+    assert list_entries("leg.drive") == part and len(part) > 10
 
 
 def test_the_page_is_written(tmp_path):
     assert RUN.invoke(app, ["keys", "--markdown", str(tmp_path / "page.md")]).exit_code == 0
-    assert (tmp_path / "page.md").read_text(encoding="utf-8") == markdown()
+    assert (tmp_path / "page.md").read_text(encoding="utf-8") == study_file_page()
 
 
 @pytest.mark.parametrize(

@@ -156,7 +156,7 @@ finally:
 """
 
 
-@pytest.mark.skipif(sys.platform == "win32" or not EXUDYN.found(), reason="needs Exudyn and SIGINT")
+@pytest.mark.skipif(sys.platform == "win32" or not EXUDYN.is_available(), reason="needs Exudyn and SIGINT")
 def test_ctrl_c_ends_the_engine(folder):
     def heed_interrupts():
         signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -13,7 +13,7 @@ from flexapod.verification import pack
 from flexapod.verification.case import Case, Check, checks
 from flexapod.verification.cases import CASES
 from flexapod.verification.engines.engine import CALCULIX, EXUDYN, MUJOCO, Engine
-from flexapod.verification.pack import markdown, notes
+from flexapod.verification.pack import notes, verification_markdown
 
 PAGE = (Path(__file__).parents[2] / "docs" / "verification.md").read_text(encoding="utf-8")
 ROWS = {row[0]: row for line in PAGE.splitlines() if len(row := line.strip("| ").split(" | ")) == 6}
@@ -53,9 +53,9 @@ def test_a_case_passes_says_why_and_is_what_the_page_shows(name):
     numbers, and references that an engine computes.
     """
     found = outcome(name)
-    assert found.passed or (found.not_run and found.not_run == found.case.obstacle), found
+    assert found.is_verified or (found.not_run and found.not_run == found.case.obstacle), found
     assert all((found.case.statement, found.case.source, found.case.argument))
-    assert SECTIONS[name].strip() == markdown([found]).partition(f"\n### {name}\n")[2].strip()
+    assert SECTIONS[name].strip() == verification_markdown([found]).partition(f"\n### {name}\n")[2].strip()
     row = ROWS[name]
     assert row[-1] == found.verdict
     if found.checks and found.case.engine is None:
@@ -123,13 +123,13 @@ def outcome_of(*found):
 def test_nan_does_not_pass_and_is_the_worst():
     good = Check(what="good", reference=1.0, ours=1.0, tolerance=1.0)
     nan = Check(what="nan", reference=1.0, ours=float("nan"), tolerance=1.0)
-    assert not nan.passed
+    assert not nan.within_tolerance
     assert outcome_of(good, nan).worst is nan
-    assert not outcome_of(good, nan).passed
+    assert not outcome_of(good, nan).is_verified
 
 
 def test_a_case_that_compares_nothing_does_not_pass():
-    assert not outcome_of().passed
+    assert not outcome_of().is_verified
 
 
 def test_a_reference_of_zero_has_no_relative_error():
@@ -181,9 +181,9 @@ def test_slow_cases_come_with_all_or_by_name(flexapod, monkeypatch):
 
 def test_a_reference_at_fault_is_told_and_does_not_count():
     wrong = Check(what="x", reference=1.0, ours=1.1, tolerance=1e-3, fault="It is not converged.")
-    assert not outcome_of(wrong).passed  # nothing else was compared
+    assert not outcome_of(wrong).is_verified  # nothing else was compared
     both = outcome_of(wrong, *right())
-    assert both.passed
+    assert both.is_verified
     assert "x: the reference gives 1, we 1.1. It is not converged." in notes(both)
 
 
@@ -191,4 +191,4 @@ def test_a_reference_at_fault_is_told_and_does_not_count():
 def test_engines_that_the_environment_promises_are_there(engine):
     if os.environ.get("FLEXAPOD_ENGINES") != "required":
         pytest.skip("FLEXAPOD_ENGINES=required makes an absent engine a failure")
-    assert engine.found(), engine.install
+    assert engine.is_available(), engine.install

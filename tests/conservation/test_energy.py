@@ -97,7 +97,7 @@ def test_momentum_of_a_payload_pulled_by_free_legs():
     from flexapod.solve.rigid_motion import rigid_state
     from flexapod.solve.robot_system import robot_system
 
-    state = rigid_state(robot_system(study.robot, study.simulation, 0.0), study.robot, path)
+    state = rigid_state(robot_system(study.robot, study.simulation, 0.0), kinematics.RigidPoses(study.robot, path))
     run = run_robot(study, replace(state, v_dot=np.zeros_like(state.v_dot)))
     energy = run["energy"].sum(axis=1)
     assert run["energy"][0, 0] > 1.0

@@ -14,8 +14,9 @@ from flexapod.mechanics.elements.flexure import Flexures
 from flexapod.model import AxisMotion, Joint, Payload, Simulation, loads, override, preset, preset_text, to_toml
 from flexapod.model.leg.cylinder import Cylinder
 from flexapod.model.leg.piston import Piston
+from flexapod.output.text.description import loss_words
 from flexapod.solve import parameters
-from flexapod.solve.modal.structural_damping import loss_frequency, loss_words
+from flexapod.solve.modal.structural_damping import loss_frequency, viscous_losses
 from flexapod.solve.time.robot_march import prepare
 
 LENGTH, STIFF = 0.5, 300.0
@@ -127,9 +128,9 @@ def test_loss_factors_of_a_study_file_are_said(tmp_path):
     assert (joint.loss, joint.stiffness_loss, joint.damping, other.damping) == (0.01, 0.02, None, 0.01)
     study = override(study, fidelity="lumped")
     f = fx.modes(study).frequency.values[0]
-    first, second = loss_words(study.robot, study.simulation)
+    first, second = loss_words(viscous_losses(study.robot, study.simulation))
     assert first == f"at the first frequency there, {f:.4g} Hz (undamped, drives locked)"
-    rigid = loss_words(study.robot, override(study, fidelity="rigid").simulation)[0]
+    rigid = loss_words(viscous_losses(study.robot, override(study, fidelity="rigid").simulation))[0]
     assert rigid == f"{first[:-1]}, pistons that stretch)"
     values = [0.01 * 15, 0.01 * 20, 0.02 * 9e7]
     assert [

@@ -12,10 +12,10 @@ import flexapod as fx
 from flexapod import kinematics
 from flexapod.analysis.checks.estimates import buckling_load
 from flexapod.analysis.pose_errors.backlash import half_play
-from flexapod.analysis.pose_errors.bent_legs import bent
-from flexapod.analysis.pose_errors.error_sources import rows
+from flexapod.analysis.pose_errors.bent_legs import bent_legs
+from flexapod.analysis.pose_errors.error_sources import accuracy_rows
 from flexapod.analysis.pose_errors.sensitivity import sensitivity
-from flexapod.analysis.pose_errors.tolerances import spreading
+from flexapod.analysis.pose_errors.tolerances import tolerance_effects
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.model import Geometry, Gradient, Heat, Joint, LengthSpread, RatioSpread, Tolerances
@@ -61,7 +61,7 @@ def test_parts_add_up_and_rows_of_a_budget_are_theirs():
     whole = found.pose_error_by_part.sum(("error", "leg"))
     np.testing.assert_allclose(whole, found.pose_error_first_order, atol=1e-18)
     path = kinematics.poses_from_home(robot, np.array([[0.02, 0, 0.03, 0.1, 0, -0.15]]))
-    table = rows(study, path)
+    table = accuracy_rows(study, path)
     kinds = [(row.part, row.kind, row.nature) for row in table]
     assert kinds == [
         ("leg_offset", "systematic", "calibratable"), ("lead", "systematic", "calibratable"),
@@ -114,8 +114,12 @@ def test_the_covariance_is_that_of_machines_drawn(kind):
 def test_the_worst_case_is_attained_in_a_corner_of_the_box():
     robot = paper_robot().robot.replace(tolerances=Tolerances(leg_offset=LengthSpread(box=1e-5), base_joints=2e-5))
     found = fx.accuracy(robot, POSE)
-    at = sensitivity(robot, kinematics.poses_from_home(robot, np.array([[0.02, 0, 0.03, 0.1, 0, -0.15]])))
-    effect = next(one for one in spreading(robot, at, np.zeros(6), lambda: np.zeros((6, 6))) if one.boxed).effect[:, 0]
+    at = sensitivity(
+        kinematics.RigidPoses(robot, kinematics.poses_from_home(robot, np.array([[0.02, 0, 0.03, 0.1, 0, -0.15]])))
+    )
+    effect = next(
+        one for one in tolerance_effects(robot, at, np.zeros(6), lambda: np.zeros((6, 6))) if one.boxed
+    ).effect[:, 0]
     corners = np.array([np.array(signs) @ effect for signs in itertools.product((-1, 1), repeat=6)])
     np.testing.assert_allclose(np.abs(corners).max(axis=0), found.pose_worst, rtol=1e-12)
     inside = np.random.default_rng(0).uniform(-1, 1, (1000, 6)) @ effect
@@ -181,7 +185,7 @@ def test_backlash_of_a_slider_counts_along_its_way():
     robot = mechanisms.sliders("PUS")
     found = fx.accuracy(loose(robot, backlash=1e-5), {"surge": 0.02})
     sign = np.sign(found.pressing_force.sel(place="drive"))
-    at = sensitivity(robot, kinematics.poses_from_home(robot, np.array([[0.02, 0, 0, 0, 0, 0]])))
+    at = sensitivity(kinematics.RigidPoses(robot, kinematics.poses_from_home(robot, np.array([[0.02, 0, 0, 0, 0, 0]]))))
     np.testing.assert_allclose(found.play_error, -(sign.values * 5e-6) @ at.coordinate[0, :, 0], atol=1e-19)
 
 
@@ -200,11 +204,11 @@ def crooked(robot, bow=None, eccentricity=None, **piston):
 def test_bent_legs_grow_and_shorten_as_the_beam_column_does():
     # y'' EI + P (y + y0) = 0 outside of the mouth by differences, the rigid part turning with the slope there.
     robot = crooked(mechanisms.hexapod(), bow=1e-3)
-    leg, at = robot.legs[0], sensitivity(robot, kinematics.home_pose(robot))
+    leg, at = robot.legs[0], sensitivity(kinematics.RigidPoses(robot, kinematics.home_pose(robot)))
     m, s, EI = leg.cylinder.mouth, robot.home_lengths[0] - leg.cylinder.mouth, leg.piston.EI
     euler = buckling_load(leg, np.array([s]))[0]
     push = 0.3 * euler
-    found = bent(robot, at, np.full(6, push))
+    found = bent_legs(robot, at, np.full(6, push))
     n = 4000
     x, h, k = np.linspace(0, s, n + 1), s / n, np.sqrt(euler / EI)
     start = 1e-3 * np.sin(k * (s - x))
@@ -231,10 +235,10 @@ def test_eccentric_ends_bend_a_bar_by_the_secant_formula():
         for leg in robot.legs
     )  # fmt: skip
     robot = robot.replace(legs=tuple(leg.replace(piston=leg.piston.replace(length=2.0)) for leg in legs))
-    at = sensitivity(robot, kinematics.home_pose(robot))
+    at = sensitivity(kinematics.RigidPoses(robot, kinematics.home_pose(robot)))
     euler = np.pi**2 * robot.legs[0].piston.EI / robot.home_lengths**2
     for share in (0.05, 0.3, 0.6):
-        found = bent(robot, at, share * euler)
+        found = bent_legs(robot, at, share * euler)
         secant = 1e-3 / np.cos(np.pi / 2 * np.sqrt(share))
         np.testing.assert_allclose(found.deflection, secant, rtol=0.015)  # one half wave: 1 % as the theory says
         k, L = np.pi * np.sqrt(share) / robot.home_lengths, robot.home_lengths
@@ -248,9 +252,9 @@ def test_a_piston_that_is_warmer_on_one_side_is_bent():
     robot = paper_robot().robot.replace(heat=Heat(gradient=Gradient(piston=1.0)))
     legs = tuple(leg.replace(cylinder=leg.cylinder.replace(mouth=0.0, com=0.0)) for leg in robot.legs)
     free = robot.replace(legs=tuple(leg.replace(piston=leg.piston.replace(length=2.0)) for leg in legs))
-    at = sensitivity(free, kinematics.home_pose(free))
+    at = sensitivity(kinematics.RigidPoses(free, kinematics.home_pose(free)))
     sag = 11.8e-6 / 0.027 * free.home_lengths**2 / 8
-    found = bent(free, at, np.zeros(6))
+    found = bent_legs(free, at, np.zeros(6))
     np.testing.assert_allclose(found.deflection, sag, rtol=1e-12)
     # kappa^2 L^3 / 24: the half wave of the same height has 1 % more slope than the arc.
     arc = (11.8e-6 / 0.027) ** 2 * free.home_lengths**3 / 24

@@ -12,7 +12,7 @@ from benchmarks.tolerances import cases
 
 from flexapod.model import AxisMotion, override
 from flexapod.verification.engines.exudyn_integration import Integration
-from flexapod.verification.engines.exudyn_process import ask
+from flexapod.verification.engines.exudyn_process import solve_in_process
 from flexapod.verification.engines.exudyn_robot import RobotProblem, simulate_robot
 
 
@@ -49,7 +49,7 @@ def test_tuned_exudyn_moves_as_the_untuned(monkeypatch):
     plan = Integration(duration=0.1, step=1e-3)
     monkeypatch.setenv("PYTHONPATH", _with_this(os.environ.get("PYTHONPATH", "")))
     problem = RobotProblem(robot=robot, motion=motion, integration=plan, elements=3, guide=0.04)
-    tuned = ask(exudyn_tuned.solve, problem)
+    tuned = solve_in_process(exudyn_tuned.solve, problem)
     plain = simulate_robot(robot, motion, plan, elements=3, guide=0.04)
     # The same equations at the same instants; Newton's tolerance of 1e-6 N leaves less than 1e-6 of forces of 1e3 N.
     scale = np.abs(plain.com_deviation).max()

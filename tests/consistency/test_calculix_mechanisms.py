@@ -10,7 +10,7 @@ from flexapod.output.exchange.pose_deck import abaqus_deck
 from flexapod.verification.engines import calculix
 from flexapod.verification.engines.engine import CALCULIX
 
-pytestmark = pytest.mark.skipif(not CALCULIX.found(), reason="needs CalculiX")
+pytestmark = pytest.mark.skipif(not CALCULIX.is_available(), reason="needs CalculiX")
 
 #: Frequencies that are compared, and how much solid bars may differ from beams: ten elements bend 3e-4 too stiffly at
 #: most, shear and rotary inertia of bars 20 to 40 times as long as thick take (thickness / length)^2, 1e-3 to 2e-3, off

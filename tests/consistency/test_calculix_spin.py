@@ -24,7 +24,7 @@ def turned_robot(axial_inertia):
     return robot.replace(legs=[leg.replace(cylinder=cylinder, piston=piston, stroke=None)] * 6)
 
 
-@pytest.mark.skipif(not CALCULIX.found(), reason=f"CalculiX is not installed: {CALCULIX.install}")
+@pytest.mark.skipif(not CALCULIX.is_available(), reason=f"CalculiX is not installed: {CALCULIX.install}")
 def test_axial_inertia_shifts_frequencies_alike():
     """What it shifts hardly depends on mesh and shear, which themselves are below 1e-3 of a frequency."""
     robots = [turned_robot(inertia) for inertia in (0.0, 0.1)]

@@ -20,7 +20,7 @@ def test_a_controller_and_its_state_spaces_are_the_same_law():
     placed = law.on(STROKES, DRIVES)
     exact = run(law).control_input.values
     assert np.abs(exact).max() > 0
-    for other in (placed, placed.sampled(T), fc.Together((law,))):
+    for other in (placed, placed.sampled(T), fc.Parallel((law,))):
         np.testing.assert_array_equal(run(other).control_input.values, exact)
 
 

@@ -30,7 +30,9 @@ def test_the_drives_carry_it():
     path = [fx.kinematics.poses_from_home(six_rus(), np.array([[0, 0, z, 0, 0, 0]])) for z in (0.0, 0.03)]
     for pose in path:
         robots = six_rus(), heavy(six_rus())
-        none, with_mass = (rigid_forces(robot, pose, np.zeros(6)).drive_force[0] for robot in robots)
+        none, with_mass = (
+            rigid_forces(fx.kinematics.RigidPoses(robot, pose), np.zeros(6)).drive_force[0] for robot in robots
+        )
         chi = fx.kinematics.inverse_kinematics(six_rus(), pose).coordinate("chi")[0][0] + six_rus().home_carriages
         for i, leg in enumerate(six_rus().legs):
             arm = Rotation.from_rotvec(chi[i] * leg.carriage.unit).apply(np.array(leg.carriage.arm))

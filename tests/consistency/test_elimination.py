@@ -54,7 +54,7 @@ def test_elimination_equals_the_dense_system(fidelity, modes, axial_modes, drive
     study = study_for(fidelity, modes, axial_modes, drive, cylinder)
     prepared = prepare(study)
     system = prepared.system
-    law = robot_law(system, study.robot, study.load, partial(kinematics.poses, study.robot, study.motion))
+    law = robot_law(system, study.robot, study.load, partial(kinematics.rigid_poses, study.robot, study.motion))
     tables = law(np.arange(11) * 1e-3)
     method = replace_method(study)
     flow, _ = native.first_record(system, prepared.start, *tables)
@@ -77,7 +77,7 @@ def test_legs_whose_matrix_is_not_positive_seek_pivots():
     for name in ("rhoA", "EI", "EA"):
         leg_p[::2, columns(leg_parameters(prepared.system.kernel.shapes), name)] *= -1
     system = replace(prepared.system, leg_p=leg_p)
-    law = robot_law(system, study.robot, study.load, partial(kinematics.poses, study.robot, study.motion))
+    law = robot_law(system, study.robot, study.load, partial(kinematics.rigid_poses, study.robot, study.motion))
     tables = law(np.arange(4) * 1e-3)
     fast, slow = (
         twin.advance(system, replace_method(study), prepared.start, 1e-3, tables, 1, Counters())

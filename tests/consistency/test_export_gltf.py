@@ -84,7 +84,7 @@ def test_tips_meet_the_platform_and_pistons_lie_where_the_page_draws_them(motion
             arms, turn = joints - study.robot.platform_mount.at, data.platform_mount_rotation.values[k]
             joints = joints + data.platform_mount_displacement.values[k] + np.cross(turn, arms)
         tips = centre[k] + joints @ R[k].T
-        flexible = drawn.at(float(data.time[k]), 1.0).flexible
+        flexible = drawn.instant_at(float(data.time[k]), 1.0).flexible
         for i in range(study.robot.count):
             line = rings(z_up(file.vertices(f"piston_{i + 1}", k)))
             assert line[-1] == pytest.approx(tips[i], abs=lost)

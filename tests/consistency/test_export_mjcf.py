@@ -24,7 +24,7 @@ from flexapod.model import (
 )  # fmt: skip
 from flexapod.model.leg.joint import Joint
 from flexapod.verification.engines import mujoco_forces
-from flexapod.verification.engines.mujoco_rest import AtRest
+from flexapod.verification.engines.mujoco_rest import MujocoStatics
 
 mujoco = pytest.importorskip("mujoco")
 
@@ -39,7 +39,7 @@ def study_of(name):
 
 
 def model_of(found):
-    return AtRest(found.path.read_text(encoding="ascii"))
+    return MujocoStatics(found.path.read_text(encoding="ascii"))
 
 
 def test_lumped_legs_only_stretch(tmp_path):
@@ -79,12 +79,12 @@ def test_rigid_robots_come_to_rest_on_the_forces_of_inverse_dynamics(name, tmp_p
     """
     study = study_of(name)
     model = model_of(fx.export(study, "mjcf", tmp_path / "robot.xml", fidelity="rigid"))
-    data, slopes, q = model.data, model.slopes(model.home), model.home
+    data, slopes, q = model.data, model.force_gradient(model.home), model.home
     joints = model.model.jnt_qposadr[model.model.actuator_trnid[:, 0]]
     for _ in range(2):
-        q = model.rest(q, np.zeros(6), slopes)
+        q = model.equilibrium(q, np.zeros(6), slopes)
         data.ctrl += model.home[joints] - q[joints]
-    data.qpos[:], data.qvel[:] = model.rest(q, np.zeros(6), slopes), 0.0
+    data.qpos[:], data.qvel[:] = model.equilibrium(q, np.zeros(6), slopes), 0.0
     for _ in range(50):
         mujoco.mj_step(model.model, data)
     driven = np.array([bool(leg.driven) for leg in study.robot.legs])
@@ -153,8 +153,8 @@ def test_lowest_mode_is_that_of_the_study(name, tmp_path):
     """
     study = study_of(name)
     model = model_of(fx.export(study, "mjcf", tmp_path / "robot.xml"))
-    q = model.rest(model.home, np.zeros(6), model.slopes(model.home))
-    slopes, M = model.slopes(q), np.zeros((model.model.nv, model.model.nv))
+    q = model.equilibrium(model.home, np.zeros(6), model.force_gradient(model.home))
+    slopes, M = model.force_gradient(q), np.zeros((model.model.nv, model.model.nv))
     mujoco.mj_fullM(model.model, model.data, M)
     squared = np.linalg.eigvals(np.linalg.solve(M, -slopes)).real
     lowest = np.sqrt(squared[squared > 1.0].min()) / (2 * np.pi)

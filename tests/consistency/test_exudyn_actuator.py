@@ -8,9 +8,9 @@ from flexapod.analysis.actuator import simulate_actuator
 from flexapod.common.errors import InputError
 from flexapod.verification.engines.engine import EXUDYN
 from flexapod.verification.engines.exudyn_actuator import simulate_actuator as exudyn_actuator
-from flexapod.verification.engines.exudyn_integration import Integration, extrapolated
+from flexapod.verification.engines.exudyn_integration import Integration, extrapolate_first_order
 
-pytestmark = pytest.mark.skipif(not EXUDYN.found(), reason="needs Exudyn")
+pytestmark = pytest.mark.skipif(not EXUDYN.is_available(), reason="needs Exudyn")
 
 STEP = 1e-3
 
@@ -49,7 +49,7 @@ def test_a_beam_that_slides_out():
     ours = simulate_actuator(case).tip_deflection.values
     between = np.abs(fine - coarse).max()
     assert np.abs(fine - ours).max() == pytest.approx(between, rel=0.3)
-    assert np.abs(extrapolated(coarse, fine) - ours).max() < between / 2
+    assert np.abs(extrapolate_first_order(coarse, fine) - ours).max() < between / 2
     assert between < 0.1 * np.abs(ours).max()
 
 
@@ -60,7 +60,7 @@ def test_the_start_has_the_static_shape_at_rest_in_x_over_length():
     coarse, fine = tips(case, 0.3, 18, 36)
     ours = simulate_actuator(case).tip_deflection.values
     assert fine[0] == pytest.approx(0.02, abs=1e-12)
-    assert np.abs(extrapolated(coarse, fine) - ours).max() < np.abs(fine - coarse).max() / 2
+    assert np.abs(extrapolate_first_order(coarse, fine) - ours).max() < np.abs(fine - coarse).max() / 2
 
 
 @pytest.mark.parametrize(

@@ -8,12 +8,12 @@ from flexapod.analysis.simulation import simulate
 from flexapod.common.errors import InputError
 from flexapod.model.leg.joint import Joint
 from flexapod.model.leg.spring import AxialSpring
-from flexapod.verification.cases.exudyn_parts import LOOP, MOTION, damped
+from flexapod.verification.cases.exudyn_parts import LOOP, MOTION, with_dampers
 from flexapod.verification.engines.engine import EXUDYN
 from flexapod.verification.engines.exudyn_integration import Integration
 from flexapod.verification.engines.exudyn_robot import simulate_robot
 
-pytestmark = pytest.mark.skipif(not EXUDYN.found(), reason="needs Exudyn")
+pytestmark = pytest.mark.skipif(not EXUDYN.is_available(), reason="needs Exudyn")
 
 STEP, DURATION = 5e-4, 0.2
 HEXAPOD = model.preset("machine-hexapod").robot
@@ -29,11 +29,11 @@ def compared(robot):
 def alone(**parts):
     """The robot with one of its parts, on prescribed strokes unless there is a drive."""
     ideal = {"base_joint": Joint(), "platform_joint": Joint(), "springs": (), "drive": model.PrescribedDrive()}
-    robot = damped(HEXAPOD)
+    robot = with_dampers(HEXAPOD)
     return robot.replace(legs=tuple(leg.replace(**ideal | parts) for leg in robot.legs))
 
 
-SOFT = damped(HEXAPOD).legs[0].base_joint
+SOFT = with_dampers(HEXAPOD).legs[0].base_joint
 PLAIN = model.JointFriction(mu=0.1, diameter=0.05)
 RUBS = model.JointFriction(moment=10.0)
 SPRING = AxialSpring(name="bracket", stiffness=5e7, damping=1e4)
@@ -48,11 +48,11 @@ OIL = model.HydraulicDrive(bore=0.16, rod=0.06, stroke=0.5, bottom=0.1, dead_vol
         alone(springs=(SPRING,)),
         alone(springs=(SPRING.replace(at="base"), SPRING.replace(name="other", at="platform"))),
         alone(springs=(SPRING,), drive=model.ServoDrive(stiffness=1e8, damping=1e4)),
-        alone(drive=damped(HEXAPOD).legs[0].screw),
-        alone(drive=damped(HEXAPOD, command="servo", loop=LOOP).legs[0].screw),
+        alone(drive=with_dampers(HEXAPOD).legs[0].screw),
+        alone(drive=with_dampers(HEXAPOD, command="servo", loop=LOOP).legs[0].screw),
         alone(springs=(SPRING,), drive=OIL),
         alone(base_joint=SOFT.replace(friction=RUBS), platform_joint=SOFT.replace(friction=RUBS)),
-        alone(drive=damped(HEXAPOD).legs[0].screw.replace(friction=model.ScrewFriction(torque=0.8))),
+        alone(drive=with_dampers(HEXAPOD).legs[0].screw.replace(friction=model.ScrewFriction(torque=0.8))),
     ],
     ids=["base", "platform", "nut", "ends", "servo", "screw", "loop", "oil", "joint friction", "screw friction"],
 )
@@ -89,6 +89,6 @@ def test_parts_that_its_model_lacks_are_refused(change, key):
 
 
 def test_a_machine_as_built_is_not_the_one_of_its_model():
-    robot = damped(HEXAPOD).replace(heat=HEXAPOD.heat)
+    robot = with_dampers(HEXAPOD).replace(heat=HEXAPOD.heat)
     with pytest.raises(InputError, match="as it is drawn"):
         simulate_robot(robot, MOTION, Integration(duration=DURATION), elements=0)

@@ -13,7 +13,7 @@ from flexapod.common.errors import ComputationError
 from flexapod.verification.engines import exudyn_process, exudyn_robot
 from flexapod.verification.engines.engine import EXUDYN
 from flexapod.verification.engines.exudyn_integration import Integration
-from flexapod.verification.engines.exudyn_process import ask
+from flexapod.verification.engines.exudyn_process import solve_in_process
 from flexapod.verification.engines.exudyn_robot import simulate_robot
 
 ROLL = model.AxisMotion(type="roll", amplitude=0.05, duration=0.1)
@@ -32,21 +32,21 @@ class Does:
 def test_an_absent_engine_is_named_with_the_line_that_installs_it(monkeypatch):
     monkeypatch.setattr(exudyn_process, "EXUDYN", replace(EXUDYN, module="no_such_module"))
     with pytest.raises(ComputationError, match="not installed") as raised:
-        ask(exudyn_robot.solve, None)
+        solve_in_process(exudyn_robot.solve, None)
     assert EXUDYN.install in str(raised.value)
 
 
-@pytest.mark.skipif(not EXUDYN.found(), reason="needs Exudyn")
+@pytest.mark.skipif(not EXUDYN.is_available(), reason="needs Exudyn")
 class TestPresent:
     def test_a_process_that_does_not_end_is_stopped(self):
         begin = time.perf_counter()
         with pytest.raises(ComputationError, match=r"did not end within 0\.5 s"):
-            ask(print, Does(time.sleep, 600), time_limit=0.5)
+            solve_in_process(print, Does(time.sleep, 600), time_limit=0.5)
         assert time.perf_counter() - begin < 300  # of a machine with much else to do
 
     def test_a_crash_is_told_with_its_signal(self):
         with pytest.raises(ComputationError, match="SIGABRT"):
-            ask(print, Does(os.abort))
+            solve_in_process(print, Does(os.abort))
 
     def test_no_convergence_is_told_with_its_words_and_nothing_is_printed(self, capfd):
         robot = model.preset("paper-robot").robot

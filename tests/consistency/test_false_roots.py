@@ -11,13 +11,13 @@ from tests.moving import moving
 
 from flexapod import kinematics
 from flexapod.common.errors import ComputationError
-from flexapod.kinematics.closures import Closed, Task, close, gaps
+from flexapod.kinematics.closures import Closed, Task, gaps, solve_closures
 from flexapod.kinematics.leg_geometry import COORDINATES, limbs
 from flexapod.kinematics.screws import screws
 from flexapod.solve.batch import RestStates
 from flexapod.solve.rigid_motion import rigid_state
 from flexapod.solve.robot_system import robot_system
-from flexapod.solve.statics.assembly_mode import fallen, refuse_fallen
+from flexapod.solve.statics.assembly_mode import assembly_changes, refuse_assembly_change
 from flexapod.solve.time.robot_march import _Range, prepare
 
 SPIN, GAMMA3 = COORDINATES.index("spin"), COORDINATES.index("gamma3")
@@ -31,8 +31,8 @@ def test_rigid_legs_are_not_closed_there():
     assert np.abs(gaps(legs, screws(legs, turned[None]), pose)).max() < 1e-12
     task = Task(legs.unknown, np.zeros(6, dtype=bool), np.zeros(3))
     there = Closed(q=turned[None], x=np.zeros((1, 6)), gap=np.zeros((1, 6)))
-    assert np.isnan(close(legs, task, legs.home[None], pose, there).q).all()
-    assert not np.isnan(close(legs, task, legs.home[None], pose).q).any()
+    assert np.isnan(solve_closures(legs, task, legs.home[None], pose, there).q).all()
+    assert not np.isnan(solve_closures(legs, task, legs.home[None], pose).q).any()
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +40,7 @@ def turned():
     """A study, its system, and the state at its start with a leg half a turn off."""
     study = moving("6-UCU", fidelity="rigid", modes=None, duration=0.004)
     system = robot_system(study.robot, study.simulation, 0.0)
-    state = rigid_state(system, study.robot, kinematics.poses(study.robot, study.motion, np.zeros(1)))
+    state = rigid_state(system, kinematics.rigid_poses(study.robot, study.motion, np.zeros(1)))
     q = state.q.copy()
     q[2, system.kernel.shapes.index("spin")] += np.pi
     return study, system, state, replace(state, q=q)
@@ -66,8 +66,8 @@ def test_a_march_stops_there(turned):
 
 def test_it_is_not_an_equilibrium(turned):
     study, system, right, wrong = turned
-    right, wrong = RestStates.of(right), RestStates.of(wrong)
-    assert fallen(system, study.robot, right, wrong).all()
-    assert not fallen(system, study.robot, right, right).any()
+    right, wrong = RestStates.from_state(right), RestStates.from_state(wrong)
+    assert assembly_changes(system, study.robot, right, wrong).all()
+    assert not assembly_changes(system, study.robot, right, right).any()
     with pytest.raises(ComputationError, match="leg 3 meets the platform half a turn off"):
-        refuse_fallen(system, study.robot, right, wrong)
+        refuse_assembly_change(system, study.robot, right, wrong)

@@ -4,7 +4,7 @@ import numpy as np
 from tests.analytic.test_feedforward_vibration import AFTER, MOVING, turning
 
 import flexapod as fx
-from flexapod.commissioning.feedforward.modal_path import vibration_along
+from flexapod.commissioning.feedforward.modal_path import path_vibration
 
 
 def test_legs_with_mass_shake_the_tool_as_the_march_in_time_says() -> None:
@@ -12,7 +12,7 @@ def test_legs_with_mass_shake_the_tool_as_the_march_in_time_says() -> None:
     study, own = turning(), fx.preset("paper-robot").robot.legs
     legs = tuple(x.replace(damping=0.0, cylinder=x.cylinder.replace(mass=60.0, inertia=10.0)) for x in own)
     study = study.replace(robot=study.robot.replace(legs=legs))
-    found = vibration_along(study, MOVING, MOVING + AFTER)
+    found = path_vibration(study, MOVING, MOVING + AFTER)
     data = fx.simulate(fx.model.override(study, step=5e-5, output_step=5e-4, duration=MOVING + AFTER))
     time, exact = data.time.values, data.tool_deviation.values
     tool = np.stack([np.interp(time, found.time, column) for column in found.tool.T], axis=1)

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 import flexapod as fx
-from flexapod.commissioning.feedforward.shaping import shaping
+from flexapod.commissioning.feedforward.shaping import shape_study
 from flexapod.kinematics import coordinates, poses
 
 # of the unshaped residual: the largest difference that the task allows between linear model and march
@@ -40,7 +40,7 @@ def brisk() -> fx.Study:
 @pytest.mark.parametrize(("kind", "modes"), [("zv", 1), ("zv", 2), ("mzv", 1), ("zvd", 1), ("ei", 1), ("2hei", 1)])
 def test_a_brisk_move_leaves_what_the_linear_model_says(kind: str, modes: int) -> None:
     study = brisk()
-    found, before = shaping(study, kind, modes=modes), left(study)
+    found, before = shape_study(study, kind, modes=modes), left(study)
     assert abs(found.residual[0] - before) < SHARE * before
     assert abs(found.residual[1] - left(found.study)) < SHARE * before
     # of the first mode nothing (EI, 2HEI: a twentieth), of what is above it some percent
@@ -55,7 +55,7 @@ def test_turns_leave_what_the_linear_model_says(axis: str, amplitude: float) -> 
     """Turns by up to 11 deg in a tenth of a second, two periods of the first mode: roll shakes modes above it."""
     motion = fx.model.AxisMotion(type=axis, amplitude=amplitude, duration=0.1, hold=0.4)
     study = fx.preset("paper-robot").replace(motion=motion)
-    found, before = shaping(study, "zv"), left(study)
+    found, before = shape_study(study, "zv"), left(study)
     # rates of the path, up to 4 rad/s of 2 pi 22 Hz, act on what vibrates: 3 %, which the model leaves out
     assert abs(found.residual[0] - before) < (SHARE if abs(amplitude) < 0.2 or axis != "roll" else 0.06) * before
     assert abs(found.residual[1] - left(found.study)) < SHARE * before
@@ -66,7 +66,7 @@ def test_a_preset_leaves_what_the_linear_model_says(name: str) -> None:
     study = fx.preset(name)
     study = study.replace(simulation=study.simulation.replace(duration=None))
     sticks = name == "machine-hexapod"  # its friction rubs in the march alone
-    found, before = shaping(study, "zvd"), left(study, sticks)
+    found, before = shape_study(study, "zvd"), left(study, sticks)
     assert abs(found.residual[1] - left(found.study, sticks)) < SHARE * before
 
 
@@ -101,10 +101,10 @@ def test_words_and_file(tmp_path: Path) -> None:
 def test_modes_at_a_pose_and_frequencies() -> None:
     study = brisk()
     first = fx.modes(study, pose={"surge": 0.05})
-    found = shaping(study, pose={"surge": 0.05})
+    found = shape_study(study, pose={"surge": 0.05})
     assert found.frequency[0] == pytest.approx(first.frequency[0].item(), rel=1e-12)
     assert found.ratio[0] == pytest.approx(first.damping_ratio[0].item(), rel=1e-9)
-    told = shaping(study, modes=["20 Hz", (55.0, 0.01)])
+    told = shape_study(study, modes=["20 Hz", (55.0, 0.01)])
     np.testing.assert_allclose(told.frequency, [20.0, 55.0])
     np.testing.assert_allclose(told.ratio, [0.0, 0.01])
 

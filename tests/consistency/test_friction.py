@@ -18,8 +18,14 @@ from flexapod import kinematics
 from flexapod.analysis.checks.screws import steady_friction
 from flexapod.analysis.error_budget.text import part_words
 from flexapod.kinematics.rotations import exponential
-from flexapod.mechanics.elements.element import Standing
-from flexapod.mechanics.elements.friction import BaseFriction, DriveFriction, PlatformFriction, rubbing, turning
+from flexapod.mechanics.elements.element import LegContext
+from flexapod.mechanics.elements.friction import (
+    BaseFriction,
+    DriveFriction,
+    PlatformFriction,
+    bristle_friction,
+    joint_sliding_speed,
+)
 from flexapod.mechanics.elements.slot import Slot
 from flexapod.mechanics.elements.springs import springs_along
 from flexapod.mechanics.leg.layout import columns, leg_parameters
@@ -28,7 +34,7 @@ from flexapod.mechanics.shapes import lateral_basis
 from flexapod.mechanics.symbolic.functions import Interpreted
 from flexapod.mechanics.symbolic.vocabulary import constant, symbol, zeros
 from flexapod.model import Feedback, Joint, JointFriction, ScrewFriction, ServoDrive, StrokeFriction, override
-from flexapod.solve.friction import numbers, sliding
+from flexapod.solve.friction import bristle_parameters, sliding_jacobian
 from flexapod.solve.kernel import kernel
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.statics.lost_motion import lost_motion, reversal
@@ -46,7 +52,7 @@ PAPER = np.array([1.0, 0.0, 1e-5, 0.5, 1e3, 0.4, np.sqrt(1e5) / 1e5, 0.0])
 def rubber(numbers=tuple(PAPER), *, falling=False, directions=1):
     """Force, bristle and its rate at a step's end, of rates there and at its begin, a bristle, the step."""
     x = [symbol(name, directions) for name in ("v", "before", "z")] + [symbol("h")]
-    found = rubbing(constant(np.array(numbers)), zeros(1), *x, falling=falling)
+    found = bristle_friction(constant(np.array(numbers)), zeros(1), *x, falling=falling)
     return casadi.Function("rubbing", x, [found.force, found.bristles, found.rate, found.stored])
 
 
@@ -287,7 +293,7 @@ def test_friction_of_a_screw_by_its_travel():
         torque=0.5, viscous=0.01, presliding=0.02, damping_time=3e-3, stribeck={"moment": 0.8, "rate": 15.0}
     )
     leg = machine(drive=SCREW.replace(friction=rubs)).legs[0]
-    here = Standing(length=1.0, per_loss=0.0, at_rest=False, robot=machine(), attitude=False, axes={})
+    here = LegContext(length=1.0, per_loss=0.0, at_rest=False, robot=machine(), attitude=False, axes={})
     found = DriveFriction().numbers(leg, here)["drive_friction"]
     theirs = (0.5 / turn, 0.0, 0.02 * turn, 0.6, 1 / (15.0 * turn), 0.01 / turn**2, 3e-3, 0.0)
     np.testing.assert_allclose(found, theirs, rtol=1e-12)
@@ -315,7 +321,7 @@ def test_lost_motion_is_what_a_slow_approach_shows():
     )
     here = locked(robot)
     at = here.equilibria.states[here.at]
-    force = -sliding(here.system, at.q).swapaxes(-1, -2) @ rubs["friction"][-1][None, :, :, None]
+    force = -sliding_jacobian(here.system, at.q).swapaxes(-1, -2) @ rubs["friction"][-1][None, :, :, None]
     moved = displacement(here, force, np.zeros((1, 6, 1)))[0, :3, 0]
     np.testing.assert_allclose(rubs["pose"][-1, :3] - free["pose"][-1, :3], moved, atol=0.03 * np.abs(moved).max())
 
@@ -324,7 +330,7 @@ def test_the_reversal_error_is_a_bound_of_every_way_to_slide():
     robot = machine(**EVERYWHERE)
     here, found = locked(robot, fidelity="lumped"), reversal(locked(robot, fidelity="lumped"))
     at, rng = here.equilibria.states[here.at], np.random.default_rng(4)
-    J, (_, limit) = sliding(here.system, at.q), numbers(here.system, at.lam)
+    J, (_, limit) = sliding_jacobian(here.system, at.q), bristle_parameters(here.system, at.lam)
     tool, most = tool_motion(robot, at.pose)[0], np.zeros(6)
     for _ in range(300):  # crosses and screws to either side, balls about any axis
         way = np.sign(rng.normal(size=limit.shape))
@@ -419,7 +425,7 @@ def test_a_ball_turns_as_its_axes_do():
     rng = np.random.default_rng(5)
     angles, rates, h = rng.normal(size=3), rng.normal(size=3), 1e-5
     symbols = [symbol("angles", 3), symbol("rates", 3), symbol("together")]
-    rate = casadi.Function("turning", symbols, [turning(*symbols)])
+    rate = casadi.Function("turning", symbols, [joint_sliding_speed(*symbols)])
 
     def axes(by):
         return [exponential(x * unit) for x, unit in zip(angles + by * rates, np.eye(3), strict=True)]
@@ -442,7 +448,7 @@ def test_forces_do_the_power_and_grow_with_the_rates(together):
     force, matrix, _ = (Interpreted(x) for x in friction_functions(ours))
     rng, b = np.random.default_rng(6), ours.bristles
     p = np.zeros(sum(size for _, size in leg_parameters(ours)))
-    for name, _ in ours.sliding:
+    for name, _ in ours.friction_parameters:
         p[columns(leg_parameters(ours), name)] = (2.0, 1e-3, 1e-3, 0.3, 2.0, 0.4, 1e-3, together)
     p[columns(leg_parameters(ours), "cylinder_spins")] = p[
         columns(leg_parameters(ours), "drive_friction_at_stroke")

@@ -9,7 +9,7 @@ from tests.machines import SCREW, machine, study
 import flexapod as fx
 from flexapod.common.errors import InputError
 from flexapod.mechanics.elements.drive_train import DriveTrain
-from flexapod.mechanics.elements.gap import Gap, past_gap, touching
+from flexapod.mechanics.elements.gap import Gap, dead_zone, dead_zone_slope
 from flexapod.mechanics.elements.slot import Slot
 from flexapod.model import AxialSpring, Load, SineWrench, to_toml
 from flexapod.model.leg.joint import Joint
@@ -34,10 +34,10 @@ def test_the_gap_is_a_dead_band_with_rounded_edges():
     half = 5e-6
     x = np.linspace(-50e-6, 50e-6, 2001)
     sharp = np.sign(x) * np.maximum(np.abs(x) - half, 0.0)
-    assert np.abs(past_gap(x, half) - sharp).max() < 0.11 * half  # half of the width of the rounding
-    assert past_gap(1e-3, half) == pytest.approx(1e-3 - half, abs=1e-6 * half)
-    np.testing.assert_allclose(np.gradient(past_gap(x, half), x)[1:-1], touching(x, half)[1:-1], atol=2e-3)
-    np.testing.assert_array_equal(past_gap(x, 0.0), x)
+    assert np.abs(dead_zone(x, half) - sharp).max() < 0.11 * half  # half of the width of the rounding
+    assert dead_zone(1e-3, half) == pytest.approx(1e-3 - half, abs=1e-6 * half)
+    np.testing.assert_allclose(np.gradient(dead_zone(x, half), x)[1:-1], dead_zone_slope(x, half)[1:-1], atol=2e-3)
+    np.testing.assert_array_equal(dead_zone(x, 0.0), x)
 
 
 def test_a_rotor_that_is_free_in_its_gap_loses_nothing():

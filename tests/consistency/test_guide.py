@@ -21,7 +21,6 @@ import flexapod as fx
 from flexapod.analysis.checks.estimates import buckling_load
 from flexapod.analysis.description.robot_description import describe
 from flexapod.analysis.error_budget.text import part_words
-from flexapod.analysis.results.bodies import bodies_words
 from flexapod.common.errors import InputError
 from flexapod.kinematics.rotations import exponential, quaternion, rotation_vector
 from flexapod.mechanics.elements.clearance import Clearance
@@ -33,6 +32,7 @@ from flexapod.model.leg.spring import AxialSpring
 from flexapod.output.exchange.pose_deck import abaqus_deck
 from flexapod.output.report.replay import replay
 from flexapod.output.scene.geometry import RobotMotion
+from flexapod.output.text.answers import bodies_words
 from flexapod.solve.statics.buckling import leg_loads
 from flexapod.verification.engines import calculix
 from flexapod.verification.engines.engine import CALCULIX
@@ -316,7 +316,7 @@ def test_forces_of_the_bushings_balance_the_piston():
     rows = np.frombuffer(base64.b64decode(told["points"]["bdata"]), dtype="<f4").reshape(shape)
     ends = rows[0, [take for take in heads if take >= 0]].reshape(6, 2, 3)
     motion = RobotMotion(study(robot), run)
-    drawn = motion.at(0.0, motion.automatic_scale()).flexible.heads
+    drawn = motion.instant_at(0.0, motion.automatic_scale()).flexible.heads
     np.testing.assert_allclose(ends, 1e3 * drawn, atol=1e-3)  # 32 bit floats of 1 m in mm
     turning = fx.parts(robot).guide_turning.values[0]
     d, EI = float(data.guide_overlap[0]), robot.legs[0].piston.EI
@@ -500,7 +500,7 @@ def deck(given, length, elements):
     return "\n".join(lines) + "\n"
 
 
-@pytest.mark.skipif(not CALCULIX.found(), reason="needs CalculiX")
+@pytest.mark.skipif(not CALCULIX.is_available(), reason="needs CalculiX")
 @pytest.mark.parametrize("overlap", [0.12, 0.2])
 def test_a_cylinder_that_bends_by_calculix(overlap):
     # Straight elements bend too stiffly by some (length of an element)^2: 5e-4 of a frequency with sixty of them; ours

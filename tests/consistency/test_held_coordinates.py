@@ -35,7 +35,7 @@ PUSH = [50.0, -30, 20, 4, 5, -6]
 
 
 def law_of(system, study):
-    return robot_law(system, study.robot, study.load, lambda t: kinematics.poses(study.robot, study.motion, t))
+    return robot_law(system, study.robot, study.load, lambda t: kinematics.rigid_poses(study.robot, study.motion, t))
 
 
 def marched(system, law, state, steps, twin=native, h=H):
@@ -52,7 +52,7 @@ def marched(system, law, state, steps, twin=native, h=H):
 def test_elimination_equals_the_dense_system(kind):
     study = moving(kind, SOFT if kind == "6-FPF" else None)
     system, law = prepare(study).system, law_of(prepare(study).system, study)
-    start = rigid_state(system, study.robot, kinematics.poses(study.robot, study.motion, np.zeros(1)))
+    start = rigid_state(system, kinematics.rigid_poses(study.robot, study.motion, np.zeros(1)))
     fast, slow = (marched(system, law, start, 10, twin) for twin in (native, interpreted))
     # Both end their Newton iterations at rounding; gaps of 1e-16 m make forces of M / (beta h^2) times that, 2e-7 N for
     # 100 kg, a hundred times more where legs are nearly parallel to what they hold.
@@ -65,10 +65,10 @@ def test_a_held_angle_is_the_limit_of_a_stiff_spring():
     study = moving("3-UPU")
     system = prepare(study).system
     layout, beta = leg_parameters(system.kernel.shapes), system.kernel.shapes.index("beta")
-    start = rigid_state(system, study.robot, kinematics.poses(study.robot, study.motion, np.zeros(1)))
+    start = rigid_state(system, kinematics.rigid_poses(study.robot, study.motion, np.zeros(1)))
 
     def pose(system):
-        x = RestStates.of(replace(start, drive=np.zeros((3, system.ports.size))))
+        x = RestStates.from_state(replace(start, drive=np.zeros((3, system.ports.size))))
         command = x.q[..., system.ports]
         found = equilibria(system, x, command, np.zeros_like(command), np.array(PUSH))
         assert found.code == 0
@@ -116,7 +116,7 @@ def test_carriages_that_accelerate_together_are_gravity():
     study, steps, a = moving("6-PUS"), 100, 3.0
     system = prepare(study).system
     shapes = system.kernel.shapes
-    start = rigid_state(system, study.robot, kinematics.poses(study.robot, study.motion, np.zeros(1)))
+    start = rigid_state(system, kinematics.rigid_poses(study.robot, study.motion, np.zeros(1)))
     start = replace(start, v=np.zeros(system.size), v_dot=np.zeros(system.size))
     rest = law_of(system, study)(np.zeros(1))[0]
     chi = list(system.ports).index(shapes.index("chi"))
@@ -149,7 +149,7 @@ def test_the_order_of_the_legs_does_not_matter(kind):
     study = moving(kind)
     system = prepare(study).system
     order, law = np.random.default_rng(3).permutation(system.legs), law_of(system, study)
-    start = rigid_state(system, study.robot, kinematics.poses(study.robot, study.motion, np.zeros(1)))
+    start = rigid_state(system, kinematics.rigid_poses(study.robot, study.motion, np.zeros(1)))
     other = replace(system, leg_p=system.leg_p[order], joint_p=system.joint_p[order], held=system.held[order])
     legs, payload = system.by_leg(start.v), start.v[-6:]
     turned = replace(start, q=start.q[order], v=np.concatenate([legs[order].ravel(), payload]))
@@ -171,7 +171,8 @@ def test_a_closed_attitude_with_free_angles_is_a_ball():
     )
     path = kinematics.poses(robot, study.motion, np.zeros(1))
     ball, angles = (
-        marched(system, law_of(system, study), rigid_state(system, robot, path), 100) for system in (plain, posed)
+        marched(system, law_of(system, study), rigid_state(system, kinematics.RigidPoses(robot, path)), 100)
+        for system in (plain, posed)
     )
     np.testing.assert_allclose(angles.pose, ball.pose, rtol=0, atol=1e-12)
     np.testing.assert_allclose(angles.q[:, : plain.n], ball.q, rtol=0, atol=1e-12)

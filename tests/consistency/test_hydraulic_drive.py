@@ -20,7 +20,7 @@ from flexapod.model import AxialSpring, HydraulicDrive, HydraulicLimits
 from flexapod.output.text import html
 from flexapod.output.text.check import check_items
 from flexapod.output.text.study import study_items
-from flexapod.output.text.terminal import show
+from flexapod.output.text.terminal import print_items
 from flexapod.solve.modal.structural_damping import loss_frequency
 
 OIL = HydraulicDrive(
@@ -291,7 +291,7 @@ class TestMotionBase:
     def test_check_and_report_say_it(self, capsys):
         study = changed(('pressure = "140 bar", flow = "470 l/min"', 'pressure = "30 bar", flow = "200 l/min"'))
         found = describe(study)
-        show(check_items(found))
+        print_items(check_items(found))
         words = capsys.readouterr().out
         assert "Hydraulic cylinders, on the path" in words and "The platform on its oil alone vibrates at" in words
         assert "Leakage lets leg" in words

@@ -12,7 +12,7 @@ from tests.systems import ring as circle
 from tests.systems import robot, tangents
 
 from flexapod import kinematics
-from flexapod.analysis.results.poses import from_home
+from flexapod.analysis.results.poses import poses_about_home
 from flexapod.model import Simulation
 from flexapod.model.leg.joint import Carriage, Joint
 from flexapod.solve.modal.at_poses import robot_stiffness
@@ -64,7 +64,7 @@ def test_a_passive_leg_without_mass_carries_nothing_along_itself():
     )
     found = found.replace(legs=(*found.legs[:3], light))
     path = kinematics.home_pose(found)
-    forces = rigid_forces(found, path, np.array([30.0, -20, -100, 5, 4, 3]))
+    forces = rigid_forces(kinematics.RigidPoses(found, path), np.array([30.0, -20, -100, 5, 4, 3]))
     axes = kinematics.leg_axes(found, path, kinematics.inverse_kinematics(found, path))
     along = (forces.joint_force[:, 3] * axes[:, 3]).sum(axis=-1)
     assert np.abs(along).max() < 1e-12 * np.abs(forces.joint_force).max()
@@ -87,11 +87,11 @@ def test_cranks_of_great_radius_are_sliders():
     model = sliders("PUS")
     model = model.replace(legs=tuple(x.replace(carriage=x.carriage.replace(mass=0.0)) for x in model.legs))
     wrench, way = np.array([30.0, -20, -100, 5, 4, 3]), np.array([[0.02, -0.01, 0.03, 0.05, -0.04, 0.1]])
-    expected = rigid_forces(model, from_home(model, way), wrench).drive_force
+    expected = rigid_forces(kinematics.RigidPoses(model, poses_about_home(model, way)), wrench).drive_force
     errors = []
     for radius in (100.0, 1000.0):
         found = cranks(radius, model.home_bases)
-        force = rigid_forces(found, from_home(found, way), wrench).drive_force / radius
+        force = rigid_forces(kinematics.RigidPoses(found, poses_about_home(found, way)), wrench).drive_force / radius
         errors.append(np.abs(force - expected).max() / np.abs(expected).max())
     assert errors[0] < 0.01
     assert errors[0] / errors[1] == pytest.approx(10.0, rel=0.05)

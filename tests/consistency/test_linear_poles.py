@@ -14,6 +14,7 @@ from tests.machines import SOFT, machine, study
 from tests.trial_element.maxwell import Maxwell
 
 import flexapod as fx
+from flexapod.analysis.results.arguments import as_pose
 from flexapod.kinematics import home_pose
 from flexapod.model import Motor
 from flexapod.solve.modal.at_poses import locked_poses
@@ -32,11 +33,11 @@ def known(name):
 
 def of_modes(given, pose=None):
     """Poles by undamped modes, and the loops beside them."""
-    at = home_pose(given.robot) if pose is None else fx.study.linear.as_pose(given.robot, pose)
+    at = home_pose(given.robot) if pose is None else as_pose(given.robot, pose)
     locked = locked_poses(given.robot, given.simulation, at, given.load)
     found, loops = unit_modes(locked, shapes=True), loops_of(locked)
     D = modal_damping(locked, found.flat)[0]
-    return loops[0].eigen(found.omega[0], D)[0] if loops else poles(found.omega[0], D)
+    return loops[0].eigenpairs(found.omega[0], D)[0] if loops else poles(found.omega[0], D)
 
 
 def apart(ours, theirs):

@@ -10,7 +10,7 @@ from tests.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod import kinematics
-from flexapod.analysis.results.poses import from_home
+from flexapod.analysis.results.poses import poses_about_home
 from flexapod.model import ConstantWrench, Cylinder, Load, ServoDrive, Waypoint, WaypointMotion, override
 from flexapod.solve.batch import RestStates, matrices_at_rest, residual_at_rest
 from flexapod.solve.kernel import interpreted_kernel
@@ -63,7 +63,7 @@ KINDS = ["prescribed", "servo", "mixed", "no stretch", "mixed, no stretch", "lum
 @pytest.mark.parametrize("kind", KINDS)
 def test_equilibria_balance_and_modes_are_those_of_dense_matrices(kind):
     study = robot(kind)
-    path = from_home(study.robot, POSES)
+    path = poses_about_home(study.robot, POSES)
     locked = locked_poses(study.robot, study.simulation, path, LOAD)
     modes = modes_of(locked, shapes=True)
     system = locked.system
@@ -79,7 +79,7 @@ def test_equilibria_balance_and_modes_are_those_of_dense_matrices(kind):
         assert np.abs((x.q - locked.command[k])[system.held]).max(initial=0) == 0
         m = system.matrices(x, WRENCH)
         scale = 1 / np.sqrt(np.maximum(np.diag(m.M), 1e-12))
-        N = scale[:, None] * null_space(np.vstack([m.G, np.eye(system.size)[system.fixed]]) * scale)
+        N = scale[:, None] * null_space(np.vstack([m.G, np.eye(system.size)[system.fixed_mask]]) * scale)
         M, K = N.T @ m.M @ N, N.T @ m.K @ N
         frequency = np.sqrt(eigh((K + K.T) / 2, M, eigvals_only=True)) / (2 * np.pi)
         # Squares of the frequencies are right to rounding times the square of the highest over the lowest, 200 here.
@@ -95,7 +95,7 @@ def test_equilibria_balance_and_modes_are_those_of_dense_matrices(kind):
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_newton_step_is_that_of_the_saddle_matrix(kind):
     study = robot(kind)
-    locked = locked_poses(study.robot, study.simulation, from_home(study.robot, POSES), LOAD)
+    locked = locked_poses(study.robot, study.simulation, poses_about_home(study.robot, POSES), LOAD)
     system, rng = locked.system, np.random.default_rng(5)
     r, payload, g = rng.normal(size=(5, 6, system.n)), rng.normal(size=(5, 6)), 1e-3 * rng.normal(size=(5, 6, 3))
     gap = np.where(system.held, 1e-3 * rng.normal(size=(5, 6, system.n)), 0.0)
@@ -103,7 +103,7 @@ def test_a_newton_step_is_that_of_the_saddle_matrix(kind):
     for k in range(5):
         m = system.matrices(locked.equilibria.states.state(k), WRENCH)
         given = -np.concatenate([g[k].ravel(), gap[k][system.held]])
-        G = np.vstack([m.G, np.eye(system.size)[system.fixed]])
+        G = np.vstack([m.G, np.eye(system.size)[system.fixed_mask]])
         dq, multipliers = saddle_solve(m.K, G, -np.concatenate([r[k].ravel(), payload[k]]), given)
         # The saddle matrix loses six digits or so: forces of 1e8 N/m springs balance within millinewtons.
         np.testing.assert_allclose(step.dq[k].ravel(), dq[:-6], atol=1e-6 * np.abs(dq).max())
@@ -118,11 +118,11 @@ def test_a_newton_step_is_that_of_the_saddle_matrix(kind):
 @pytest.mark.parametrize("kind", ["prescribed", "mixed", "lumped"])
 def test_many_poses_are_the_single_ones(kind):
     study = robot(kind)
-    path = from_home(study.robot, POSES)
+    path = poses_about_home(study.robot, POSES)
     locked = locked_poses(study.robot, study.simulation, path, LOAD)
     modes, stiffness = modes_of(locked), stiffness_of(study.robot, locked)
     for k in range(len(POSES)):
-        one = from_home(study.robot, POSES[k : k + 1])
+        one = poses_about_home(study.robot, POSES[k : k + 1])
         single = robot_modes(study.robot, study.simulation, one, LOAD)
         # The same operations, blocked differently: rounding of the least eigenvalue, as above.
         np.testing.assert_allclose(modes.frequency[k], single.frequency, rtol=1e-10)
@@ -134,7 +134,7 @@ def test_many_poses_are_the_single_ones(kind):
 def test_stiffness_is_the_saddle_matrix_solved():
     """Shares of the legs by Eq. (T7.6) as it stands; scaled, so that rounding stays small."""
     study = robot("prescribed")
-    locked = locked_poses(study.robot, study.simulation, from_home(study.robot, POSES), LOAD)
+    locked = locked_poses(study.robot, study.simulation, poses_about_home(study.robot, POSES), LOAD)
     found, m, n = stiffness_of(study.robot, locked), locked.m, locked.system.n
     back = np.linalg.inv(tool_motion(study.robot, locked.equilibria.states.pose))
     for k in range(len(POSES)):
@@ -151,7 +151,7 @@ def test_stiffness_is_the_saddle_matrix_solved():
 
 def test_interpreted_kernels_give_the_same():
     study = override(paper_robot(), modes=1)
-    locked = locked_poses(study.robot, study.simulation, from_home(study.robot, POSES[:2]), LOAD)
+    locked = locked_poses(study.robot, study.simulation, poses_about_home(study.robot, POSES[:2]), LOAD)
     system = replace(locked.system, kernel=interpreted_kernel(locked.system.kernel.shapes))
     states = locked.equilibria.states
     for name, array in vars(matrices_at_rest(system, states, WRENCH)).items():
@@ -168,8 +168,8 @@ def test_interpreted_kernels_give_the_same():
 def test_lost_poses_do_not_disturb_their_neighbours():
     study = robot("prescribed")
     heavy = np.array([0, 0, -1.2e5, 0, 0, 0])
-    system = locked_poses(study.robot, study.simulation, from_home(study.robot, POSES)).system
-    start = rigid_rest(system, study.robot, from_home(study.robot, POSES))
+    system = locked_poses(study.robot, study.simulation, poses_about_home(study.robot, POSES)).system
+    start = rigid_rest(system, kinematics.RigidPoses(study.robot, poses_about_home(study.robot, POSES)))
     none, length = np.zeros((5, 6, 1)), rest_commands(system, study.robot, start.q)
     length[2, 0] += 0.4  # a leg that no pose fits: the first step is not an elastic deformation
     found = equilibria(system, start, length, none, WRENCH)
@@ -188,11 +188,11 @@ def test_a_singular_matrix_of_a_stack_is_marked_alone():
 
 def test_states_of_a_batch():
     study = robot("lumped")
-    locked = locked_poses(study.robot, study.simulation, from_home(study.robot, POSES))
+    locked = locked_poses(study.robot, study.simulation, poses_about_home(study.robot, POSES))
     states = locked.equilibria.states
     assert len(states) == 5
     assert len(states[np.array([1, 3])]) == 2
-    again = RestStates.of(states.state(3))
+    again = RestStates.from_state(states.state(3))
     np.testing.assert_array_equal(again.q[0], states.q[3])
 
 
@@ -208,7 +208,7 @@ def test_public_call_takes_many_poses():
     named = fx.modes(study, {"heave": [0.0, 0.08], "pitch": [0.0, 0.2]})
     np.testing.assert_allclose(named.frequency, data.frequency[[0, 3]], rtol=1e-12)
     given = kinematics.Poses.at_rest(
-        *(x[:5] for x in (from_home(study.robot, poses).position, from_home(study.robot, poses).rotation))
+        *(x[:5] for x in (poses_about_home(study.robot, poses).position, poses_about_home(study.robot, poses).rotation))
     )
     np.testing.assert_array_equal(fx.modes(study, given).frequency, data.frequency[:5])
     full, one = fx.modes(study, poses[[1, 6]], shapes=True), fx.modes(study, poses[1])

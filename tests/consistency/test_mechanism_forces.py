@@ -24,7 +24,7 @@ def test_forces_are_those_of_virtual_power(name):
     motion = CombinedMotion(amplitudes={axis: AMPLITUDES[axis] for axis in own}, duration=DURATION, pivot=pivot)
     t, wrench = np.array([0.12, 0.3]), WRENCH * ([1, 1, 0, 0, 0, 1] if robot.plane else [1] * 6)
     system = robot_system(robot, Simulation(fidelity="rigid"), 0.0)
-    ours = joint_forces(system, *rigid_motion(system, robot, kinematics.poses(robot, motion, t)), wrench)
+    ours = joint_forces(system, *rigid_motion(system, kinematics.rigid_poses(robot, motion, t)), wrench)
     shapes = system.kernel.shapes
     mechanism, found = as_mechanism(robot, own, pivot), None
     seen = [0, 1] if robot.plane else [0, 1, 2]  # what acts across a plane is left open

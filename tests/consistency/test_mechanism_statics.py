@@ -10,14 +10,14 @@ from tests.mechanisms import ROBOTS as KINDS
 from tests.systems import of_robot, ring, robot, tangents
 
 from flexapod import kinematics
-from flexapod.kinematics.rotations import turned
+from flexapod.kinematics.rotations import displace_pose
 from flexapod.model.study.payload import Payload
 from flexapod.solve.batch import matrices_at_rest, residual_at_rest
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.statics.block_arrow import arrow_solve
 from flexapod.solve.statics.equilibrium import _Acts, _loaded_slowly, equilibria
 from flexapod.solve.statics.ideal_robot import with_substitutes
-from flexapod.solve.statics.reduction import independent
+from flexapod.solve.statics.reduction import independent_motions
 
 THIRDS, EIGHT = [0.0, 120.0, 240.0], np.array([20.0, 70, 110, 160, 200, 250, 290, 340])
 
@@ -68,7 +68,7 @@ def of_kind(name, **simulation):
     """A robot of another kind, moved away from home a little, its payload light enough for soft joints."""
     model = KINDS[name]().replace(payload=Payload(mass=10.0, inertia=[0.4, 0.5, 0.6], com=[0.02, 0.01, 0.05]))
     system = of_robot(model, **{"fidelity": "assumed-modes", "modes": 2} | simulation)
-    return system, rigid_rest(system, model, kinematics.home_pose(model))
+    return system, rigid_rest(system, kinematics.RigidPoses(model, kinematics.home_pose(model)))
 
 
 for kind in ("6-UCU", "6-FPF", "3-UPS+UP", "3-PUU", "6-RUS", "planar 3-PRR"):
@@ -125,7 +125,7 @@ def test_equilibrium_and_newton_step_are_those_of_the_whole_system(name):
 def test_independent_motions_are_the_null_space_of_all_constraints(name):
     system, x = ROBOTS[name]()
     states, m, _, wrench = solved(system, x)
-    dense, found = system.matrices(states.state(0), wrench), independent(with_substitutes(system, x), m)
+    dense, found = system.matrices(states.state(0), wrench), independent_motions(with_substitutes(system, x), m)
     motions = found.flat(system, np.eye(found.columns.size)[None])[0]
     G = constraints(dense, system)
     assert np.linalg.matrix_rank(G) == system.size - motions.shape[1]
@@ -144,7 +144,7 @@ def test_stiffness_is_the_derivative_of_the_balance(name):
     rng, h = np.random.default_rng(2), 1e-5
     dq, dy = rng.normal(size=x.q.shape), rng.normal(size=(1, 6))
     none = np.zeros_like(command)
-    ahead, behind = (residual_at_rest(system, states.moved(t * dq, t * dy), command, none, wrench) for t in (h, -h))
+    ahead, behind = (residual_at_rest(system, states.displace(t * dq, t * dy), command, none, wrench) for t in (h, -h))
     of_legs, of_payload, closures = ((a - b) / (2 * h) for a, b in zip(ahead, behind, strict=True))
     X = np.zeros((*x.q.shape, 6)) if m.X is None else m.X
     expected = (m.K @ dq[..., None] + X @ dy[:, None, :, None])[..., 0]
@@ -157,7 +157,7 @@ def test_stiffness_is_the_derivative_of_the_balance(name):
 
 
 def frequencies(system, x, m):
-    found = independent(with_substitutes(system, x), m)
+    found = independent_motions(with_substitutes(system, x), m)
     motions = found.flat(system, np.eye(found.columns.size)[None])[0]
     M = motions.T @ dense_mass(system, m) @ motions
     return np.sqrt(eigh(found.stiffness(system, m)[0], M, eigvals_only=True))
@@ -195,7 +195,7 @@ def test_permuted_and_mirrored_legs_give_the_same_robot():
 def test_gaps_closed_in_ten_steps_lead_to_the_same_state():
     """Legs whose hinges are not where the rigid robot has them, and a payload off its place: all by bending."""
     system, x = hold(*hexapod(), "beta")
-    x = replace(x, pose=turned(x.pose, np.array([[0.01, -0.02, 0.01, 0.05, -0.03, 0.04]])))
+    x = replace(x, pose=displace_pose(x.pose, np.array([[0.01, -0.02, 0.01, 0.05, -0.03, 0.04]])))
     far = np.zeros((1, 6, system.ports.size))
     far[0, :, list(system.ports).index(1)] = 0.1 * np.array([1, -1, 1, 1, -1, -1])
     states, _, command, wrench = solved(system, x, gap=far)

@@ -12,7 +12,7 @@ from flexapod.analysis.description.robot_description import describe
 from flexapod.common.errors import InputError
 from flexapod.model import Loop, Motor, Ripple, Rotor
 from flexapod.output.text.check import check_items
-from flexapod.output.text.terminal import show
+from flexapod.output.text.terminal import print_items
 
 RIPPLE = Ripple(torque=0.4, per_turn=6, harmonics=[1.0, 0.0, 0.3])
 MOTOR = Motor(ripple=RIPPLE, torque_constant=0.8)
@@ -94,9 +94,9 @@ def test_currents_are_in_check(capsys):
     assert one.current == pytest.approx(one.torque.value / 0.5) and one.rms_current == pytest.approx(
         one.rms_torque / 0.5
     )
-    show(check_items(found))
+    print_items(check_items(found))
     assert "current [A]" in capsys.readouterr().out
-    show(check_items(describe(model.loads(TEXT))))
+    print_items(check_items(describe(model.loads(TEXT))))
     assert "current [A]" not in capsys.readouterr().out
 
 

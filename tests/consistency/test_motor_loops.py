@@ -346,7 +346,9 @@ class TestFiles:
 def test_elimination_without_symmetry_equals_the_dense_system():
     given = study(mixed(), fidelity="lumped", step=1e-3, duration=0.02)
     prepared = prepare(given)
-    law = robot_law(prepared.system, given.robot, given.load, partial(kinematics.poses, given.robot, given.motion))
+    law = robot_law(
+        prepared.system, given.robot, given.load, partial(kinematics.rigid_poses, given.robot, given.motion)
+    )
     tables, method = law(np.arange(9) * 1e-3), GeneralizedAlpha(given.simulation.rho_inf)
     flow, _ = native.first_record(prepared.system, prepared.start, *tables)
     ours, theirs = (

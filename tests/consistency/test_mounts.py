@@ -12,9 +12,9 @@ from tests.mechanisms import ROBOTS
 from tests.runs import balance, run_robot
 
 import flexapod as fx
-from flexapod.analysis.results.attributes import study_of
+from flexapod.analysis.results.attributes import result_study
 from flexapod.common.errors import InputError
-from flexapod.kinematics.rotations import quaternion, turned
+from flexapod.kinematics.rotations import displace_pose, quaternion
 from flexapod.mechanics.elements.mount import PlatformMounting
 from flexapod.mechanics.elements.slot import Slot
 from flexapod.mechanics.leg.kernel_functions import payload_functions
@@ -23,7 +23,7 @@ from flexapod.mechanics.symbolic.functions import Interpreted
 from flexapod.model import AxialSpring, loads, preset, to_toml
 from flexapod.model.leg.joint import Joint
 from flexapod.model.study.mount import BaseMotion, Mount
-from flexapod.output.exchange.pose_deck import abaqus_deck, left_out
+from flexapod.output.exchange.pose_deck import abaqus_deck, deck_omissions
 from flexapod.output.report.replay import replay
 from flexapod.output.scene.geometry import RobotMotion
 from flexapod.solve.statics.buckling import leg_loads
@@ -239,7 +239,7 @@ def test_the_plate_below_the_payload_keeps_the_balance_of_power(seed):
     def energy(h):
         now = u + h * u_dot
         step = np.concatenate([h * u[:3] + h**2 / 2 * u_dot[:3], h * u[3:] + h**2 / 2 * u_dot[3:]])
-        return energies(turned(pose, step), now, p, m + h * v + h**2 / 2 * a, v + h * a)[0].sum()
+        return energies(displace_pose(pose, step), now, p, m + h * v + h**2 / 2 * a, v + h * a)[0].sum()
 
     r, _ = residual(pose, u, u_dot, np.zeros(6), np.zeros(6), p, m, v, a)
     h = 1e-3
@@ -333,15 +333,15 @@ def test_a_frame_that_gives_way_joint_by_joint_is_a_spring_of_the_joints():
 
 def test_plates_are_drawn_where_the_legs_end(shaken):
     data = shaken[5e-4]
-    given = study_of(data)
+    given = result_study(data)
     motion = RobotMotion(given, data)
     for time in data.time.values[[0, 80, -1]]:
-        drawn, at = motion.at(float(time), 1.0), data.sel(time=time)
+        drawn, at = motion.instant_at(float(time), 1.0), data.sel(time=time)
         far = np.linalg.norm(drawn.flexible.platform - drawn.flexible.base, axis=1)
         # Pistons are as long as they are; turns of 1e-5 rad, squared, and what joints give way: nothing here.
         np.testing.assert_allclose(far, at.leg_length, rtol=0, atol=1e-9)
         assert not drawn.rigid.plates.any()
-    first, moved = motion.at(0.1, 1.0).flexible, motion.at(0.1, 100.0).flexible
+    first, moved = motion.instant_at(0.1, 1.0).flexible, motion.instant_at(0.1, 100.0).flexible
     np.testing.assert_allclose(moved.plates, 100 * first.plates)
     told = replay(given, data)
     base = next(trace for trace in told["traces"] if trace.get("name") == "base")["take"]
@@ -360,7 +360,7 @@ def test_decks_and_engines_do_not_take_mounts(name):
 def test_decks_say_what_they_leave_out():
     shake = BaseMotion(time=np.array([0.0, 1.0]), values=np.zeros((2, 6)))
     robot = machine(base_joint=SOFT.replace(play=1e-5)).replace(base_motion=shake)
-    assert left_out(robot) == ["damping", "play", "robot.base_motion: the base is at rest"]
+    assert deck_omissions(robot) == ["damping", "play", "robot.base_motion: the base is at rest"]
 
 
 def test_a_plate_without_mass_between_joints_and_mount_that_give_way():

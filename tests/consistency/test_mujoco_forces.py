@@ -10,7 +10,7 @@ from flexapod.model import AxisMotion, preset
 from flexapod.verification.cases import mujoco_forces as case
 from flexapod.verification.engines import mujoco_forces
 from flexapod.verification.engines.mujoco_forces import mjcf
-from flexapod.verification.robots import unlike_legs, without_cylinders
+from flexapod.verification.robots import with_unequal_legs, without_cylinders
 
 pytestmark = pytest.mark.xdist_group("pack of mujoco_forces")  # one process computes its cases
 mujoco = pytest.importorskip("mujoco")
@@ -33,7 +33,7 @@ def test_forces_on_motions_of_all_degrees_of_freedom(checks):
     assert max(check.error for check in checks) < 1e-11
 
 
-@pytest.mark.parametrize("change", [unlike_legs, without_cylinders])
+@pytest.mark.parametrize("change", [with_unequal_legs, without_cylinders])
 def test_the_chains_close_where_our_kinematics_says(change):
     robot = change(ROBOT)
     found, ours = (
@@ -66,7 +66,7 @@ def test_the_spin_of_the_universal_joint_is_felt(part):
 
 
 def test_every_mass_is_in_the_model():
-    robot = unlike_legs(ROBOT)
+    robot = with_unequal_legs(ROBOT)
     model = mujoco.MjModel.from_xml_string(mjcf(robot))
     data = mujoco.MjData(model)
     data.qpos[2:18:3] = robot.home_lengths
@@ -83,7 +83,7 @@ def test_every_mass_is_in_the_model():
 
 
 def test_without_the_engine(monkeypatch):
-    monkeypatch.setattr(type(mujoco_forces.MUJOCO), "found", lambda self: False)
+    monkeypatch.setattr(type(mujoco_forces.MUJOCO), "is_available", lambda self: False)
     with pytest.raises(ComputationError, match=r"MuJoCo is not installed.*pip install"):
         mujoco_forces.inverse_dynamics(ROBOT, path(ROBOT))
 

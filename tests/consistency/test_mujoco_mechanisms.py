@@ -29,7 +29,7 @@ def test_forces_are_those_of_mujoco(name):
     path = kinematics.poses(robot, motion, np.linspace(0.2, 0.8, 3) * DURATION)
     theirs = mujoco_forces.inverse_dynamics(robot, path, wrench)
     system = robot_system(robot, Simulation(fidelity="rigid"), 0.0)
-    ours = joint_forces(system, *rigid_motion(system, robot, path), wrench)
+    ours = joint_forces(system, *rigid_motion(system, kinematics.RigidPoses(robot, path)), wrench)
     places = [system.kernel.shapes.index("chi" if leg.driven == "carriage" else "l") for leg in robot.legs]
     driven = np.array([bool(leg.driven) for leg in robot.legs])
     drive = np.where(driven, ours.held[:, range(robot.count), places], 0.0)

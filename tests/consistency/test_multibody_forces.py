@@ -18,11 +18,11 @@ def test_forces_at_the_rigid_path(kind):
     system, wrench = robot_system(study.robot, study.simulation, 0.0), np.array([30.0, -20, 10, 5, -4, 3])
     for t in (0.0, 0.11, 0.23):
         path = kinematics.poses(study.robot, motion, np.array([t]))
-        x = rigid_state(system, study.robot, path)
+        x = rigid_state(system, kinematics.RigidPoses(study.robot, path))
         r, g, _ = system.residual(x, np.zeros((6, 1, 4)), wrench)
         assert np.abs(g).max() < 1e-15  # metres of order one, to rounding
         # KKT: G^T (lam, -f) = -r, as many equations as the 24 multipliers once the payload's are included.
-        G = np.vstack([system.matrices(x, wrench).G, np.eye(system.size)[system.fixed]])
+        G = np.vstack([system.matrices(x, wrench).G, np.eye(system.size)[system.fixed_mask]])
         multipliers, *_ = np.linalg.lstsq(G.T, -r, rcond=None)
         forces = kinematics.inverse_dynamics(study.robot, path, wrench)
         scale = np.abs(forces.actuator_force).max()

@@ -29,7 +29,10 @@ def exechon(fidelity, tilt=0.0):
 def test_rigid_legs_share_what_is_open():
     study = exechon("rigid")
     data = fx.run(study)
-    forces = rigid_forces(study.robot, fx.kinematics.poses(study.robot, study.motion, data.time.values), np.zeros(6))
+    forces = rigid_forces(
+        fx.kinematics.rigid_poses(study.robot, study.motion, data.time.values),
+        np.zeros(6),
+    )
     assert forces.open_forces == 2
     assert "rigid statics leaves 2 forces open" in data.attrs["warnings"]
     # second order in 4000 steps of a motion, when the integrator's own start, 1e-3 of the forces, has died away

@@ -239,7 +239,7 @@ def test_an_entry_point_makes_it_known(tmp_path, monkeypatch):
     meta = tmp_path / "installed_element-1.0.dist-info"
     meta.mkdir()
     (meta / "METADATA").write_text("Metadata-Version: 2.1\nName: installed-element\nVersion: 1.0\n")
-    (meta / "entry_points.txt").write_text("[flexapod.mechanics.elements]\ninstalled = installed_element:Maxwell\n")
+    (meta / "entry_points.txt").write_text("[flexapod.elements]\ninstalled = installed_element:Maxwell\n")
     monkeypatch.syspath_prepend(tmp_path)
     assert fx.loads(text(TABLE.replace("maxwell", "installed"))).robot.legs[0].elements[0].stiffness == 2e4
 

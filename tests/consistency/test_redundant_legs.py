@@ -21,7 +21,7 @@ def test_forces_of_eight_rigid_legs_are_those_of_the_rigid_robot():
         study = study.replace(initial=study.initial.replace(start="moving"))
         run = run_robot(study)
         path = kinematics.poses(study.robot, study.motion, run["time"])
-        forces = rigid_forces(study.robot, path, np.zeros(6))
+        forces = rigid_forces(kinematics.RigidPoses(study.robot, path), np.zeros(6))
         assert forces.open_forces == 2
         scale = np.abs(forces.drive_force).max()
         errors.append(np.abs(run["drive"][..., 0] - forces.drive_force).max() / scale)
@@ -42,7 +42,7 @@ def test_drives_with_a_force_of_their_own_have_it():
     """Gas springs of 500 N were shown with the 114 N of stiffnesses that share; now no force is left open."""
     study = fx.load(Path(__file__).parents[2] / "examples" / "mechanisms" / "eight-legs.toml")
     home = kinematics.home_pose(study.robot)
-    forces = rigid_forces(study.robot, home, np.zeros(6))
+    forces = rigid_forces(kinematics.RigidPoses(study.robot, home), np.zeros(6))
     np.testing.assert_allclose(forces.drive_force[0, 6:], 500.0, rtol=1e-12)
     assert forces.open_forces == 0
     weight = study.robot.payload.mass * study.robot.gravity

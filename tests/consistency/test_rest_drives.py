@@ -14,7 +14,7 @@ from flexapod.model.leg.drive import ServoDrive
 from flexapod.solve.batch import port_forces
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.statics.ideal_robot import rigid_forces
-from flexapod.solve.statics.static_loads import at_drives
+from flexapod.solve.statics.static_loads import drive_values
 
 ROBOTS = {"stroke": hexapod, "carriage": lambda: sliders("PUS"), "hinges": three_rps}
 SPRING = Feedback(stiffness=3e6, damping=1e3)
@@ -36,14 +36,14 @@ def at_rest(model, simulation):
     assert locked.equilibria.code == 0
     states = locked.equilibria.states
     forces = port_forces(locked.system, states, locked.command, locked.acts.force)
-    return locked, states, at_drives(locked.system, model, forces)[0]
+    return locked, states, drive_values(locked.system, model, forces)[0]
 
 
 @pytest.mark.parametrize("what", ROBOTS)
 @pytest.mark.parametrize("simulation", [RIGID, LUMPED], ids=["rigid", "lumped"])
 def test_prescribed_drives_hold_what_the_rigid_robot_needs(what, simulation):
     model = ROBOTS[what]()
-    needed = rigid_forces(model, kinematics.home_pose(model), np.zeros(6)).drive_force[0]
+    needed = rigid_forces(kinematics.RigidPoses(model, kinematics.home_pose(model)), np.zeros(6)).drive_force[0]
     _, states, force = at_rest(model, simulation)
     # Rigid legs: the same statics twice. Lumped ones sag by some micrometres of half a metre.
     np.testing.assert_allclose(force, needed, rtol=1e-10 if simulation is RIGID else 1e-3)
@@ -67,5 +67,5 @@ def test_servos_give_way_by_their_force_over_their_stiffness(what):
     name = "chi" if there[0, 0] else "l"
     k = locked.system.kernel.shapes.index(name)
     np.testing.assert_allclose(4e7 * (locked.start.q - states.q)[0, :, k], force, rtol=1e-6)
-    needed = rigid_forces(model, kinematics.home_pose(model), np.zeros(6)).drive_force[0]
+    needed = rigid_forces(kinematics.RigidPoses(model, kinematics.home_pose(model)), np.zeros(6)).drive_force[0]
     np.testing.assert_allclose(force, needed, rtol=1e-3)

@@ -26,7 +26,7 @@ def moving(instants=7):
     robot = study.robot.replace(payload=study.robot.payload.replace(com=[0.02, -0.03, 0.1], tool=[0.1, 0.0, 0.2]))
     path = kinematics.poses(robot, study.motion, np.linspace(0.05, 0.9 * study.duration, instants))
     system = robot_system(robot, study.simulation, 0.0)
-    return robot, path, system, *rigid_motion(system, robot, path)
+    return robot, path, system, *rigid_motion(system, kinematics.RigidPoses(robot, path))
 
 
 def test_six_legs_need_what_newton_and_euler_say():

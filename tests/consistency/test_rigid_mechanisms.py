@@ -12,7 +12,7 @@ from flexapod.common.errors import ComputationError, InputError
 from flexapod.kinematics import mechanism
 from flexapod.kinematics.jacobian import length_jacobian
 from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN, limbs
-from flexapod.kinematics.mobility import drive_jacobian, holding
+from flexapod.kinematics.mobility import constraint_wrenches, drive_jacobian
 from flexapod.kinematics.screws import screws
 from flexapod.model.motion import AxisMotion, CombinedMotion
 
@@ -53,7 +53,8 @@ def test_screws_are_derivatives_of_tips_and_frames():
 def test_the_general_way_is_the_closed_form_where_there_is_one():
     t = np.linspace(0.0, 1.0, 41)
     robot, path, closed = moved("6-UPS", t)
-    found = mechanism.leg_state(limbs(robot, rigid=True), path)
+    legs = limbs(robot, rigid=True)
+    found = mechanism.leg_state(legs, path, mechanism.legs_at(legs, path))
     for name in ("length", "alpha", "beta", "rate", "alpha_dot", "beta_dot", "accel", "alpha_ddot", "beta_ddot"):
         expected = getattr(closed, name)
         # rounding alone, through a matrix of condition below 10
@@ -130,7 +131,7 @@ def test_wrenches_of_legs_UPS_are_rows_of_the_length_jacobian():
     legs, point = limbs(robot, rigid=True), np.array([0.1, 0.0, 0.2])
     expected = length_jacobian(robot.base_joints, robot.platform_joints, path.position, path.rotation, point)
     q = mechanism.legs_at(legs, path).q
-    np.testing.assert_allclose(holding(legs, q, path, point), expected, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(constraint_wrenches(legs, q, path, point), expected, rtol=0, atol=1e-14)
     np.testing.assert_allclose(drive_jacobian(legs, q, path, point), expected, rtol=0, atol=1e-14)
     crossed = ROBOTS["6-UCU"]()
     ours, theirs = kinematics.singularity(crossed, path), kinematics.singularity(robot, path)

@@ -8,7 +8,7 @@ from scipy.linalg import expm
 
 import flexapod as fx
 from flexapod.common.errors import InputError
-from flexapod.control import Function, StateSpace
+from flexapod.control import FunctionController, StateSpace
 from flexapod.mechanics.symbolic.compiler import compiler
 
 pytestmark = pytest.mark.skipif(compiler() is None, reason="there is no C compiler")
@@ -250,7 +250,9 @@ def test_a_function_gives_the_bits_of_the_law(study, steps):
         state = law.a * state + law.b * y
         return u
 
-    called = fx.simulate(study, controller=Function(function=asked, inputs=FORCES, outputs=DRIVES), sample=T, **steps)
+    called = fx.simulate(
+        study, controller=FunctionController(function=asked, inputs=FORCES, outputs=DRIVES), sample=T, **steps
+    )
     compiled = fx.simulate(study, controller=law.system(), **steps)
     np.testing.assert_array_equal(called.tool_position.values, compiled.tool_position.values)
     np.testing.assert_array_equal(called.control_input.values, compiled.control_input.values)
@@ -261,7 +263,7 @@ def test_what_a_function_raises_is_raised(study):
         raise ZeroDivisionError("of the controller")
 
     with pytest.raises(ZeroDivisionError, match="of the controller"):
-        fx.simulate(study, controller=Function(function=fails, inputs=FORCES, outputs=DRIVES), sample=T)
+        fx.simulate(study, controller=FunctionController(function=fails, inputs=FORCES, outputs=DRIVES), sample=T)
 
 
 def test_noise(study):
@@ -294,19 +296,19 @@ def test_samples_off_the_outputs_and_beside_jumps(study):
         ({"quantise": {"strike": 1.0}}, "no channel of this controller"),
         ({"delay_samples": -1}, "a whole number"),
         ({"controller": None, "step": None, "sample": T}, "there is none"),
-        ({"controller": Function(function=len, inputs=("strok:1",), outputs=("drive:1",))}, "'stroke'"),
-        ({"controller": Function(function=len, inputs=("stroke:1",), outputs=("motor:1",))}, "not a channel"),
+        ({"controller": FunctionController(function=len, inputs=("strok:1",), outputs=("drive:1",))}, "'stroke'"),
+        ({"controller": FunctionController(function=len, inputs=("stroke:1",), outputs=("motor:1",))}, "not a channel"),
         (
-            {"controller": Function(function=len, inputs=("force-sensor:base:1",), outputs=("drive:1",))},
+            {"controller": FunctionController(function=len, inputs=("force-sensor:base:1",), outputs=("drive:1",))},
             "not read in time",
         ),
-        ({"controller": Function(function=len, inputs=("stroke",), outputs=("drive:1",))}, "not one channel"),
+        ({"controller": FunctionController(function=len, inputs=("stroke",), outputs=("drive:1",))}, "not one channel"),
         ({"saturate": -1.0}, "below 0"),
     ],
 )
 def test_refusals(study, given, words):
     settings = {
-        "controller": Function(function=len, inputs=FORCES, outputs=DRIVES),
+        "controller": FunctionController(function=len, inputs=FORCES, outputs=DRIVES),
         "sample": T,
         "step": T / 10,
     } | given
@@ -315,7 +317,7 @@ def test_refusals(study, given, words):
 
 
 def test_what_is_held_is_not_moved():
-    law = Function(function=len, inputs=STROKES, outputs=DRIVES)
+    law = FunctionController(function=len, inputs=STROKES, outputs=DRIVES)
     with pytest.raises(InputError, match="keeps its command whatever the force"):
         fx.simulate(fx.preset("paper-robot"), controller=law, sample=1e-3)
 

@@ -9,7 +9,7 @@ from tests.runs import balance, run_robot
 
 import flexapod as fx
 from flexapod.common.errors import InputError
-from flexapod.mechanics.elements.springs import in_series, springs_along
+from flexapod.mechanics.elements.springs import series_stiffness, springs_along
 from flexapod.model import AxialSpring, AxisMotion, Feedback, Joint, PrescribedDrive, ServoDrive, Simulation, Study
 
 STILL = {"gravity": [0, 0, 0]}
@@ -20,7 +20,7 @@ EVERYTHING = {"base_joint": SOFT, "platform_joint": SOFT, "springs": (AxialSprin
 def stiffness(robot, place="nut"):
     """Of the springs at a place of the first leg, at home [N/m]."""
     springs = [spring for spring in springs_along(robot.legs[0]) if spring.at == place]
-    return in_series(springs, robot.home_lengths[0], 0.0)[0]
+    return series_stiffness(springs, robot.home_lengths[0], 0.0)[0]
 
 
 def endless(**more):

@@ -7,7 +7,7 @@ from scipy.sparse import csc_array, csr_array
 from scipy.sparse.linalg import eigsh
 
 from flexapod.model import Rectangle
-from flexapod.solve.fem.hexahedra import extruded, integrals, mass, slope_stiffness, stiffness
+from flexapod.solve.fem.hexahedra import extrude_section, integrals, mass, slope_stiffness, stiffness
 from flexapod.solve.fem.reduction import reduced_beam
 from flexapod.solve.fem.section_mesh import free_unknowns, section_averages, section_mesh
 from flexapod.solve.fem.sliding import HubMotion, SlidingBeam, mouth_of
@@ -26,7 +26,7 @@ def at(length, spin=0.0):
 def unreduced(kind, size, poisson, intervals, held_from, spin):
     """Frequencies of the whole solid, every unknown kept, its averages held at the stations from `held_from` on."""
     section, H = section_mesh(FLAT, size, kind, whole=False), LENGTH / intervals
-    mesh = extruded(section, LENGTH, intervals * max(1, round(H / size)))
+    mesh = extrude_section(section, LENGTH, intervals * max(1, round(H / size)))
     parts, averages = integrals(mesh), section_averages(section)
     density, length = MATERIAL["density"], held_from * H
 

@@ -22,8 +22,8 @@ def test_closures_of_the_rigid_path(t):
     """
     study = fx.preset("paper-robot")
     system = robot_system(study.robot, study.simulation, 0.0)
-    x = rigid_state(system, study.robot, kinematics.poses(study.robot, study.motion, np.array([t])))
-    law = robot_law(system, study.robot, study.load, partial(kinematics.poses, study.robot, study.motion))
+    x = rigid_state(system, kinematics.rigid_poses(study.robot, study.motion, np.array([t])))
+    law = robot_law(system, study.robot, study.load, partial(kinematics.rigid_poses, study.robot, study.motion))
     table, wrench = law(np.array([t]))
     found = accelerations(system, x, table[0], wrench[0])
     G = system.matrices(x, np.zeros(6)).G

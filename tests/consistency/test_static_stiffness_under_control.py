@@ -5,8 +5,9 @@ import pytest
 from tests.consistency.test_sampled_loops import PID, STUDY, K, T, height
 
 import flexapod as fx
-from flexapod.analysis.predicted_damping import control_words, static_stiffness
+from flexapod.analysis.predicted_damping import control_effect, static_stiffness
 from flexapod.control import IFF, Decentralised, integrator
+from flexapod.output.text.description import control_words
 
 FORCES = '[control]\nlaw = "iff"\ngain = 200\nsample = "0.5 ms"\n'
 
@@ -38,7 +39,7 @@ def test_springs_by_hand(table, left):
 
 
 def test_without_a_controller_there_is_nothing_to_say():
-    assert static_stiffness(fx.loads(STUDY)) is None and control_words(fx.loads(STUDY)) == ()
+    assert static_stiffness(fx.loads(STUDY)) is None and control_words(control_effect(fx.loads(STUDY))) == ()
 
 
 def test_flexures_beside_the_drives_keep_some():
@@ -61,9 +62,9 @@ def test_a_parallel_stiffness_is_that_of_springs_in_place_of_the_drives():
 
 
 def test_words():
-    words = control_words(fx.loads(STUDY + FORCES))
+    words = control_words(control_effect(fx.loads(STUDY + FORCES)))
     assert "none with it" in words[0] and "static stiffness is lost" in words[1]
-    assert len(control_words(fx.loads(STUDY + FORCES + "high_pass = 5\n"))) == 1
+    assert len(control_words(control_effect(fx.loads(STUDY + FORCES + "high_pass = 5\n")))) == 1
 
 
 @pytest.mark.parametrize(

@@ -10,8 +10,8 @@ from tests.stepped import function, leg_of, section, shapes_of, vector
 
 import flexapod as fx
 from flexapod.common.errors import InputError
-from flexapod.mechanics.elements.steps import held
-from flexapod.mechanics.symbolic.vocabulary import expanded
+from flexapod.mechanics.elements.steps import tip_elimination
+from flexapod.mechanics.symbolic.vocabulary import taylor_series
 from flexapod.model.file.files import preset_text
 from flexapod.solve.sections import numeric_pieces
 
@@ -48,7 +48,7 @@ def place(leg, shapes, q, xi):
     for direction, a in enumerate(amplitudes):
         beyond = 0.0
         parts = numeric_pieces(leg, shapes.beam.b, s, direction)
-        a = a - np.eye(k)[0] * (held(parts[0].value_start)[:, 0] @ a)
+        a = a - np.eye(k)[0] * (tip_elimination(parts[0].value_start)[:, 0] @ a)
         for piece in reversed(parts):
             for i in np.flatnonzero((x > piece.start) & (x <= piece.end)):
                 at, w = gauss(x[i], piece.end)
@@ -200,7 +200,7 @@ def test_a_taper_without_pieces_that_stand_for_it_is_refused():
 def test_series_of_shapes_have_the_derivatives_of_the_shapes():
     # What is expanded about the value of x, differentiated twice and put back: x^3 and sin 2x, by hand.
     x = casadi.SX.sym("x")
-    (cube, wave), (at, known) = expanded([x**3, casadi.sin(2 * x)], x)
+    (cube, wave), (at, known) = taylor_series([x**3, casadi.sin(2 * x)], x)
     found = [casadi.jacobian(cube * wave, x)]
     found.append(casadi.jacobian(found[0], x))
     exact = casadi.Function("f", [x], [casadi.substitute(casadi.vertcat(cube, wave, *found), at, known)])

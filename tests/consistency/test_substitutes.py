@@ -17,7 +17,7 @@ from flexapod.solve.modal.modes import modes_of
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.statics.equilibrium import TOO_FAR, equilibria
 from flexapod.solve.statics.ideal_robot import with_substitutes
-from flexapod.solve.statics.locked_robot import the_equilibrium
+from flexapod.solve.statics.locked_robot import single_equilibrium
 
 MOVES = {"3-PUU": slice(0, 3), "3-RPS": slice(2, 5), "6-FPF": slice(0, 6), "3-UPS+UP": slice(2, 5)}
 SHAPES = Simulation(fidelity="assumed-modes", modes=2)
@@ -101,7 +101,7 @@ def test_motions_change_little_from_one_pose_to_the_next():
 def test_a_pose_too_far_from_where_motions_were_chosen_is_refused_with_its_numbers():
     robot = light("3-PUU")
     system = of_robot(robot, fidelity="assumed-modes", modes=2)
-    home = rigid_rest(system, robot, kinematics.home_pose(robot))
+    home = rigid_rest(system, kinematics.RigidPoses(robot, kinematics.home_pose(robot)))
     system = with_substitutes(system, home)
     shapes, of_leg = system.kernel.shapes, system.substitutes.copy()
     pivot, first = shapes.index("gamma3"), np.arange(system.legs) * system.n
@@ -114,4 +114,4 @@ def test_a_pose_too_far_from_where_motions_were_chosen_is_refused_with_its_numbe
     assert f"moves by {found.most[0]:.3g} here" in found.one(0).reason and "at most 100" in found.one(0).reason
     locked = replace(locked_poses(robot, SHAPES, kinematics.home_pose(robot)), equilibria=found)
     with pytest.raises(ComputationError, match=r"too far from home.*nearer to the pose"):
-        the_equilibrium(locked)
+        single_equilibrium(locked)

@@ -7,7 +7,7 @@ from tests.sweeps import quick_text
 import flexapod as fx
 from flexapod.analysis import summary
 from flexapod.analysis.scalars import ROBOT_SCALARS
-from flexapod.design.sweeps.outputs import kept
+from flexapod.design.sweeps.outputs import select_outputs
 from flexapod.design.sweeps.plan import read_plan
 from flexapod.design.sweeps.samples import Points
 from flexapod.design.sweeps.worker import compute_point
@@ -33,7 +33,7 @@ def test_scalars_are_those_of_a_run(changes):
     study = loads(text(*changes))
     plan = read_plan({"vary": [{"key": "payload.mass", "values": [100]}], "keep": {"scalars": list(ROBOT_SCALARS)}})
     points = Points(study, plan)
-    result = compute_point(kept(plan.keep, study, points.resolve()), points.study(0))
+    result = compute_point(select_outputs(plan.keep, study, points.resolve()), points.study(0))
     assert result.failure == ""
     found, data = result.values, fx.run(study)
     com, tool = summary(data), summary(data, "tool")
@@ -65,7 +65,9 @@ def test_stress_is_force_over_section_where_nothing_bends():
     study = loads(text())
     plan = read_plan({"vary": [{"key": "payload.mass", "values": [100]}], "keep": {"scalars": ["stress_peak_by_leg"]}})
     points = Points(study, plan)
-    stress = compute_point(kept(plan.keep, study, points.resolve()), points.study(0)).values["stress_peak_by_leg"]
+    stress = compute_point(select_outputs(plan.keep, study, points.resolve()), points.study(0)).values[
+        "stress_peak_by_leg"
+    ]
     data = fx.run(study)
     along = np.linalg.norm(data.joint_force.values, axis=2).max(axis=0)  # along the leg but for the leg's own weight
     area = np.pi * 0.027**2 / 4

@@ -28,7 +28,9 @@ class Run:
         study = override(preset("machine-hexapod"), step=STEP, **settings)
         march = prepare(study)
         self.system, self.flow, self.before, self.rows = march.system, march.start, None, []
-        law = robot_law(self.system, study.robot, study.load, lambda t: kinematics.poses(study.robot, study.motion, t))
+        law = robot_law(
+            self.system, study.robot, study.load, lambda t: kinematics.rigid_poses(study.robot, study.motion, t)
+        )
         self.tables = law(np.arange(STEPS + 1) * STEP)
 
     def advance(self, first: int, last: int) -> None:

@@ -12,7 +12,7 @@ from xarray import Dataset
 
 import flexapod as fx
 from flexapod.analysis import open_results, save
-from flexapod.analysis.results.attributes import FORMER, TABLES, attributes, robot_of, study_of
+from flexapod.analysis.results.attributes import FORMER, TABLES, attributes, result_study, robot_of
 from flexapod.analysis.results.packed_tables import pack, unpack
 from flexapod.app.browser.document import Document, read
 from flexapod.app.browser.header import open_source
@@ -21,7 +21,7 @@ from flexapod.common.tables.named_files import Stored
 from flexapod.common.tables.reference import reference
 from flexapod.common.tables.toml import toml_text
 from flexapod.model.file.page import study_data
-from flexapod.model.stored import stored_tables
+from flexapod.model.stored_tables import stored_tables
 from flexapod.model.study.mount import BaseMotion
 
 EXAMPLES = {
@@ -90,7 +90,7 @@ def test_every_table_that_a_file_may_hold_comes_back(title, empty):
     assert attributes(again)["study_hash"] == digest
     assert again.source_text == text
     data = open_results("results.nc")
-    assert arrays_of(study_of(data)) == arrays_of(study)
+    assert arrays_of(result_study(data)) == arrays_of(study)
     if isinstance(study, fx.Study):
         assert arrays_of(robot_of(data)) == arrays_of(study.robot)
 

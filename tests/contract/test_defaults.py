@@ -10,7 +10,7 @@ import pytest
 import flexapod as fx
 from flexapod.design.first_robot.catalogue import SCREWS
 from flexapod.model import MATERIALS
-from flexapod.model.file.page import listed
+from flexapod.model.file.page import list_entries
 from flexapod.model.leg import rolling
 from flexapod.model.study.tolerances import CLASSES
 
@@ -40,7 +40,7 @@ def test_every_row_has_a_source():
 def test_defaults_of_study_files():
     told = {name.replace("`", ""): value for name, value, _ in table("Defaults")}
     found = {}
-    for entry in listed():
+    for entry in list_entries():
         for row in entry.rows:
             if row.default[:1] in set("[123456789") or row.default.startswith("0."):
                 key = f"{entry.entry.table.replace('[]', '')}.{row.key}"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests import legs_of_all_kinds as legs
 
-from flexapod.kinematics.rotations import matrix, quaternion, turned
+from flexapod.kinematics.rotations import displace_pose, matrix, quaternion
 
 ROOT = Path(__file__).parents[2]
 KINDS = list(legs.KINDS)
@@ -147,7 +147,7 @@ def test_derivatives_of_a_pose_closure(kind, seed):
     found = legs.call(ours, "leg_matrices", x)
 
     def at(q=0.0, step=None):
-        pose = x["pose"] if step is None else turned(x["pose"], step)
+        pose = x["pose"] if step is None else displace_pose(x["pose"], step)
         return legs.call(ours, "leg_residual", x | {"q": x["q"] + q, "pose": pose})
 
     def by_q(name):

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from flexapod import model
-from flexapod.app.browser.document import Document, edited
+from flexapod.app.browser.document import Document, edit_values
 from flexapod.app.browser.header import open_source
 from flexapod.app.browser.uploads import read_upload
 from flexapod.common.errors import InputError
@@ -117,11 +117,11 @@ def test_who_changes_a_study_on_the_page_names_no_other_file(form, tmp_path):
     (outside / "study.toml").write_text(EXAMPLES[title])
     for document in (
         read_upload("a.toml", EXAMPLES[title].encode(), sent),
-        open_source(outside / "study.toml").document.beside(sent),
+        open_source(outside / "study.toml").document.with_folder(sent),
     ):
-        assert edited(document, {"motion.hold": 1.0}).study is not None
-        assert "was not sent" in str(edited(document, {"motion.file": form}).error)
-    assert "was not sent" in str(edited(Document(EXAMPLES[title], str(outside / "study.toml")), {}).error)
+        assert edit_values(document, {"motion.hold": 1.0}).study is not None
+        assert "was not sent" in str(edit_values(document, {"motion.file": form}).error)
+    assert "was not sent" in str(edit_values(Document(EXAMPLES[title], str(outside / "study.toml")), {}).error)
 
 
 def test_a_table_that_was_sent_is_read_and_long_cells_are_cut(tmp_path):

@@ -26,7 +26,7 @@ def reference(axial_modes):
     """Coordinates (T, n) at the outputs by SciPy: the strut's equations, their closure differentiated twice."""
     march = prepare(strut(axial_modes=axial_modes, tolerance=1e-3))
     system, x = march.system, march.start
-    free, table = np.flatnonzero(~system.fixed), np.zeros((1, system.ports.size, 4))
+    free, table = np.flatnonzero(~system.fixed_mask), np.zeros((1, system.ports.size, 4))
     held = {int(k): j for j, k in enumerate(system.ports)}
     for k in np.flatnonzero(system.held[0]):
         table[0, held[int(k)], 0] = x.q[0, k]
@@ -42,7 +42,7 @@ def reference(axial_modes):
         found = system.matrices(now, zero)
         r = system.residual(now, table, zero)[0][free]
         M, G, tau = found.M[np.ix_(free, free)], found.G[:, free], 1e-4
-        behind, before = (system.matrices(system.moved(now, s * tau * now.v), zero).G[:, free] for s in (1, -1))
+        behind, before = (system.matrices(system.displace(now, s * tau * now.v), zero).G[:, free] for s in (1, -1))
         bend = (behind - before) @ y[m:] / (2 * tau)
         whole = np.block([[M, G.T], [G, np.zeros((len(G), len(G)))]])
         return np.concatenate([y[m:], np.linalg.solve(whole, -np.concatenate([r, bend]))[:m]])

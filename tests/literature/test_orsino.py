@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from tests.literature.test_oracle_mechanisms import orsino_motion
 
+from flexapod.kinematics import RigidPoses
 from flexapod.kinematics.laws import Law
 from flexapod.kinematics.trajectory import Poses, poses_from_coordinates
 from flexapod.model import Home, Robot, Simulation
@@ -50,6 +51,6 @@ def test_printed_forces(mixed, printed):
         part[0, [0, 1, 5]] = values
     path = poses_from_coordinates(Poses.at_rest(study.home_position, study.home_rotation), Law(*law), np.zeros(3))
     system = robot_system(study, Simulation(fidelity="rigid"), 0.0)
-    held = joint_forces(system, *rigid_motion(system, study, path), np.zeros(6)).held[0]
+    held = joint_forces(system, *rigid_motion(system, RigidPoses(study, path)), np.zeros(6)).held[0]
     driven = [system.kernel.shapes.index("l" if leg.driven == "stroke" else "chi") for leg in study.legs]
     np.testing.assert_allclose(held[np.arange(3), driven], printed, rtol=0, atol=5.1e-6)  # five decimals

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.oracles.stewart_cases import base_circle, platform_circle
 
-from flexapod.kinematics.jacobian import characteristic_length, length_jacobian, scaled
+from flexapod.kinematics.jacobian import characteristic_length, dimensionless_jacobian, length_jacobian
 from flexapod.kinematics.trajectory import rotation_matrix
 
 RNG = np.random.default_rng(1991)
@@ -14,7 +14,9 @@ ROUND_OFF = 1e-15  # a few units in the last place of the largest singular value
 
 
 def smallest(base, platform, position=POSITIONS, rotation=ROTATIONS):
-    jacobian = scaled(length_jacobian(base, platform, position, rotation), characteristic_length(platform))
+    jacobian = dimensionless_jacobian(
+        length_jacobian(base, platform, position, rotation), characteristic_length(platform)
+    )
     return np.linalg.svd(jacobian, compute_uv=False)[..., -1]
 
 
@@ -52,7 +54,9 @@ def test_standard_layout_is_regular():
 
 def test_similar_hexagons_have_rank_3_at_home():
     """All legs meet in the centre of similarity: six concurrent lines carry forces but no moment about it."""
-    jacobian = scaled(length_jacobian(base_circle(0.5, 10), base_circle(0.3, 10), [0, 0, 0.9], np.eye(3)), 0.3)
+    jacobian = dimensionless_jacobian(
+        length_jacobian(base_circle(0.5, 10), base_circle(0.3, 10), [0, 0, 0.9], np.eye(3)), 0.3
+    )
     values = np.linalg.svd(jacobian, compute_uv=False)
     assert np.all(values[:3] > 0.1)
     assert np.all(values[3:] < ROUND_OFF)

@@ -16,7 +16,7 @@ from flexapod.analysis.description.robot_description import describe
 from flexapod.common.errors import InputError
 from flexapod.common.units import to_si
 from flexapod.design.first_robot import Request, first_robot, parse_request, sizing
-from flexapod.output.text.answers import first_words
+from flexapod.output.text.answers import first_robot_sentences
 
 RANDOM = np.random.default_rng(20240614)
 HOMES = np.geomspace(0.05, 5.0, 40)  # m
@@ -27,7 +27,7 @@ MATERIALS = RANDOM.choice(tuple(model.MATERIALS), 40)
 
 
 def wish(home, payload, share, motion, material):
-    stroke = share * sizing.longest_stroke(sizing.joints_of(Request(home=home, payload=payload)), 0.02 * home)
+    stroke = share * sizing.longest_stroke(sizing.size_joints(Request(home=home, payload=payload)), 0.02 * home)
     return (
         f"home={home:.5g} m, payload={payload:.5g} kg, stroke={1e3 * stroke:.5g} mm, motion={motion}, "
         f"material={material}"
@@ -192,7 +192,7 @@ def test_a_number_without_a_unit_is_in_si_as_everywhere_on_the_command_line():
 
 
 def test_lengths_of_legs_are_told_in_one_unit():
-    words = first_words(first_robot(parse_request("home=900 mm, payload=100 kg, stroke=200 mm, drive=ideal")))
+    words = first_robot_sentences(first_robot(parse_request("home=900 mm, payload=100 kg, stroke=200 mm, drive=ideal")))
     assert words[0].startswith("Legs of 968.8 mm at home, 868.8 to 1069 mm; pistons"), words[0]
 
 

@@ -22,11 +22,11 @@ class Seal(fx.Element):
         return {"friction": (*StrokeFriction(force=self.force).numbers, 0.0)}
 
     @classmethod
-    def slides(cls, p, q, v):
+    def sliding_speed(cls, p, q, v):
         """With the stroke."""
         return v.l
 
     @classmethod
-    def ways(cls, has):
+    def friction_directions(cls, has):
         """One."""
         return ("",)

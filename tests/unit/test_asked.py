@@ -8,7 +8,7 @@ import xarray as xr
 from tests.runs import paper_robot
 
 import flexapod as fx
-from flexapod.analysis.results.lazy_arrays import Asked
+from flexapod.analysis.results.lazy_arrays import LazyArrays
 
 SHORT = {"fidelity": "lumped", "duration": 0.02}
 
@@ -20,11 +20,11 @@ def data():
 
 def test_an_array_is_made_once_and_what_made_it_is_dropped():
     made = []
-    values = Asked({"there": np.ones(2), "later": lambda: made.append(1) or np.zeros(3)})
+    values = LazyArrays({"there": np.ones(2), "later": lambda: made.append(1) or np.zeros(3)})
     assert list(values) == ["there", "later"]
-    assert values.there("later") is None
+    assert values.peek("later") is None
     assert not made
-    assert values["later"] is values["later"] is values.there("later")
+    assert values["later"] is values["later"] is values.peek("later")
     assert made == [1]
 
 

@@ -78,17 +78,17 @@ def test_breaks_of_an_actuator():
 
 def test_stops_on_outputs_and_between_them():
     breaks = Breaks(jumps=(2e-3, 3.2e-3, 9e-3), corners=(1e-3, 3.5e-3, 3.7e-3))
-    stops = Stops.of(breaks, 1e-3, 5e-4, outputs=5)
+    stops = Stops.from_breaks(breaks, 1e-3, 5e-4, outputs=5)
     assert stops.ends == {2: Stop(first=2e-3, last=2e-3, jumps=True)}  # a corner there needs nothing
     assert [stop.first for stop in stops.inside[3]] == [3.2e-3, 3.5e-3, 3.7e-3]
-    corner = Stops.of(Breaks(corners=(3.5e-3,)), 1e-3, 5e-4, outputs=5)
-    assert not corner.within(3, 2)  # steps of 0.5 ms end there anyway
-    assert corner.within(3, 1)
+    corner = Stops.from_breaks(Breaks(corners=(3.5e-3,)), 1e-3, 5e-4, outputs=5)
+    assert not corner.unaligned_stops(3, 2)  # steps of 0.5 ms end there anyway
+    assert corner.unaligned_stops(3, 1)
     assert [stops.next(done, 5, 2) for done in range(5)] == [2, 2, 3, 4, 5]
 
 
 def test_a_ramp_shorter_than_a_microsecond_is_a_jump():
-    joined = Stops.of(Breaks(corners=(2.5e-3, 2.5005e-3)), 1e-3, None, outputs=5)
+    joined = Stops.from_breaks(Breaks(corners=(2.5e-3, 2.5005e-3)), 1e-3, None, outputs=5)
     assert joined.inside == {2: [Stop(first=2.5e-3, last=2.5005e-3, jumps=True)]}
     sudden, steep = (
         run_robot(loaded(x))
@@ -191,7 +191,7 @@ def test_a_motion_cannot_jump():
 
 def test_outputs_without_breaks_cost_nothing():
     """Each output was looked at: a rigid actuator of 150,000 outputs took twice as long as the integration itself."""
-    stops = Stops.of(Breaks(jumps=(0.5,), corners=(0.70003,)), 1e-3, None, 10**8)
+    stops = Stops.from_breaks(Breaks(jumps=(0.5,), corners=(0.70003,)), 1e-3, None, 10**8)
     begun = time.process_time()
     assert [stops.next(done, 10**8, 1.0) for done in (0, 500, 700, 701)] == [500, 700, 701, 10**8]
     assert time.process_time() - begun < 1.0  # 10 s and more if one after the other

@@ -136,7 +136,7 @@ CASES = {
     "PID.low_pass": (500.0, "0.5 kHz", "500 s", lambda x: closed(PID(1e3, derivative=10.0, low_pass=x))),
     "DVF.low_pass": (500.0, "0.5 kHz", "500 s", lambda x: closed(control.DVF(10.0, low_pass=x))),
     "Fused.corner": (5.0, "5 Hz", "5 s",
-        lambda x: closed(control.Fused(control.gain(1.0), low="stroke", high="force-sensor:drive", corner=x))),
+        lambda x: closed(control.SensorFusion(control.gain(1.0), low="stroke", high="force-sensor:drive", corner=x))),
     "Tracker.frequency": (30.0, "30 Hz", "30 s", lambda x: control.Tracker(frequency=x).start()),
     "Tracker.lowest": (3.0, "3 Hz", "30 s", lambda x: tracked(lowest=x)),
     "Tracker.highest": (300.0, "0.3 kHz", "30 s", lambda x: tracked(highest=x)),
@@ -205,7 +205,7 @@ def ends(start, end):
 
 def limits(**given):
     """What `time_optimal` takes the drives to be able to do."""
-    found = loaded_path.limits_of(SCREWS, *(given.get(name) for name in ("speed", "acceleration", "force")))
+    found = loaded_path.drive_limits(SCREWS, *(given.get(name) for name in ("speed", "acceleration", "force")))
     return [getattr(found, name) or 0.0 for name in ("speed", "acceleration", "force")]
 
 

@@ -4,7 +4,7 @@ import pytest
 
 import flexapod as fx
 from flexapod import model
-from flexapod.analysis.results.attributes import KEPT, attributes, robot_of, study_of
+from flexapod.analysis.results.attributes import KEPT, attributes, result_study, robot_of
 
 
 @pytest.fixture
@@ -21,14 +21,14 @@ def test_the_study_is_handed_on_without_reading_its_text(study, monkeypatch):
     data = _Data(attributes(study))
     monkeypatch.setattr(model, "loads", None)
     monkeypatch.setattr(model, "loads_robot", None)
-    assert study_of(data) is study
+    assert result_study(data) is study
     assert robot_of(data) is study.robot
 
 
 def test_a_result_whose_text_is_another_is_read(study):
     data = _Data(attributes(study))
     other = _Data(data.attrs | {"study": study.source_text.replace('mass = "100 kg"', 'mass = "90 kg"')})
-    assert study_of(other).robot.payload.mass == 90
+    assert result_study(other).robot.payload.mass == 90
     assert robot_of(other).payload.mass == 90
 
 
@@ -36,6 +36,6 @@ def test_only_the_last_studies_are_kept(study):
     first = _Data(attributes(study))
     for k in range(KEPT):
         attributes(model.override(study, duration=1.0 + k))
-    again = study_of(first)
+    again = result_study(first)
     assert again is not study
     assert again == study

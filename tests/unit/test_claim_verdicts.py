@@ -30,12 +30,12 @@ from flexapod.verification.paper.claim import (
     USELESS,
     VARIANT,
     Claim,
-    judged,
-    size,
-    up,
+    choose_verdict,
+    round_up,
+    size_verdict,
 )
-from flexapod.verification.paper.claim import times as times_in_words
-from flexapod.verification.paper.claims import by_whose, claims, counted
+from flexapod.verification.paper.claim import ratio_words as times_in_words
+from flexapod.verification.paper.claims import claims, group_by_owner, verdict_summary
 from flexapod.verification.paper.study import PaperStudy
 from flexapod.verification.paper.variants import with_half_angle
 
@@ -273,18 +273,23 @@ def test_claims_say_whose_they_are():
 
 
 def test_counts_are_those_of_the_rows():
-    by = by_whose([*unchanged().values()])
+    by = group_by_owner([*unchanged().values()])
     assert [len(some) for some in by.values()] == [22, 7, 17]
-    words = counted(by["The paper's own claims"])
+    words = verdict_summary(by["The paper's own claims"])
     assert words.startswith("22 rows: holds 6, does not hold 5, ")
     assert sum(int(n) for n in re.findall(r" (\d+)[,.]", words)) == 22
 
 
 def test_what_is_within_is_rounded_up():
     """1.58 % was said to be within 1 %, 2.84 % within 3 %."""
-    assert [up(1.42), up(1.421, 3), up(2.5), up(0.0299), up(9.99), up(0.0)] == pytest.approx(
-        [1.5, 1.43, 2.5, 0.03, 10, 0], rel=1e-9
-    )
+    assert [
+        round_up(1.42),
+        round_up(1.421, 3),
+        round_up(2.5),
+        round_up(0.0299),
+        round_up(9.99),
+        round_up(0.0),
+    ] == pytest.approx([1.5, 1.43, 2.5, 0.03, 10, 0], rel=1e-9)
     lumped, robot = (
         np.abs(study_parts(ANGLES)[name].com_deviation.values).max(axis=0) for name in ("robot-lumped", "robot")
     )
@@ -321,13 +326,26 @@ def test_welded_rows_say_how_far_to_trust_them():
 
 
 def test_rules():
-    assert [judged(True), judged(False, True), judged(False), judged(True, best=REACHES)] == [
+    assert [
+        choose_verdict(True), choose_verdict(False, True), choose_verdict(False), choose_verdict(True, best=REACHES),
+    ] == [
         HOLDS, IN_PART, NOT, REACHES,
     ]  # fmt: skip
-    assert judged(np.nan > 1, np.nan > 0) == NOT
-    assert size([1.0, 2.5e-3, 5e-3]) == size([0.0, 7.5e-3, 15e-3]) == size([0, 1, 1], [0, 5e-3, 0.01]) == REACHES
+    assert choose_verdict(np.nan > 1, np.nan > 0) == NOT
+    assert (
+        size_verdict([1.0, 2.5e-3, 5e-3])
+        == size_verdict([0.0, 7.5e-3, 15e-3])
+        == size_verdict([0, 1, 1], [0, 5e-3, 0.01])
+        == REACHES
+    )
     below, above, neither = [0, 2.4e-3, 0.01], [0, 36e-3, 15e-3], [0, np.nan, 0.01]
-    assert size(below) == size(above) == size(neither) == size([0, 2.5e-3, 1], [0, 1, 5e-3]) == MISSES
+    assert (
+        size_verdict(below)
+        == size_verdict(above)
+        == size_verdict(neither)
+        == size_verdict([0, 2.5e-3, 1], [0, 1, 5e-3])
+        == MISSES
+    )
     assert times_in_words(1e-6, 5e-3) == "5000 times smaller" and times_in_words(2e-2, 1e-2) == "2 times larger"
 
 
@@ -381,11 +399,11 @@ def test_equilibrium_is_followed_to_its_fold(near_hexagons, monkeypatch):
     """Beyond the fold other equilibria exist near the rigid pose (at 24 deg, say), not continuing that of home."""
     from flexapod.analysis import modes
 
-    found = statics.at_rest(near_hexagons)
+    found = statics.equilibrium_path(near_hexagons)
     monkeypatch.setattr(statics, "POSES", 31)
     monkeypatch.setattr(statics, "NEXT", 0.004)
     monkeypatch.setattr(statics, "FINEST", 1e-4)
-    finer = statics.at_rest(near_hexagons)
+    finer = statics.equilibrium_path(near_hexagons)
     assert found.end is not None and finer.end is not None
     assert abs(found.end - finer.end) < 0.02  # both to a step of 0.01 deg before the fold
     assert np.isnan(found.frequency)
@@ -395,5 +413,5 @@ def test_equilibrium_is_followed_to_its_fold(near_hexagons, monkeypatch):
 
 
 def test_equilibrium_that_lasts_has_no_end():
-    found = statics.at_rest(with_half_angle(preset("paper-robot"), 29.0))
+    found = statics.equilibrium_path(with_half_angle(preset("paper-robot"), 29.0))
     assert found.end is None and found.frequency == pytest.approx(0.566, abs=5e-4)

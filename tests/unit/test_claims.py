@@ -10,7 +10,7 @@ from tests.paper_parts import part, study_parts, whole_study
 
 from flexapod.verification.paper import claims_actuator
 from flexapod.verification.paper.claim import BREAKS, HOLDS, IN_PART, MISSES, NOT, OPEN
-from flexapod.verification.paper.claims import claims, markdown
+from flexapod.verification.paper.claims import claims, claims_markdown
 from flexapod.verification.paper.study import STEPS, PaperStudy
 
 pytestmark = pytest.mark.xdist_group("claims")  # one process computes the parts
@@ -40,7 +40,7 @@ def nudged(factor):
         name: data.assign({key: factor * values for key, values in data.data_vars.items() if values.dtype.kind == "f"})
         for name, data in study_parts().items()
     }
-    return markdown(claims(PaperStudy(parts=parts))).splitlines()
+    return claims_markdown(claims(PaperStudy(parts=parts))).splitlines()
 
 
 def test_page_says_what_the_program_says():
@@ -51,7 +51,7 @@ def test_page_says_what_the_program_says():
     """
     text = PAGE.read_text(encoding="utf-8").split("\n## Claims, one by one\n")[1]
     page = text[text.index("### ") :].splitlines()
-    ours = markdown(claims(whole_study())).splitlines()
+    ours = claims_markdown(claims(whole_study())).splitlines()
     assert len(page) == len(ours)
     off = [(theirs, mine) for theirs, mine in zip(page, ours, strict=True) if theirs != mine]
     if off:
@@ -168,7 +168,7 @@ def test_leg_errors_for_the_papers_deviation():
 
 
 def test_row_is_one_line_of_markdown():
-    lines = [line for line in markdown(claims(whole_study())).splitlines() if line.startswith("|")]
+    lines = [line for line in claims_markdown(claims(whole_study())).splitlines() if line.startswith("|")]
     assert {line.count(" | ") for line in lines} == {4} and len(lines) == len(claims(whole_study())) + 3 * 2
 
 

@@ -20,7 +20,7 @@ def test_legs_that_few_instants_tell_apart_are_apart_at_all(monkeypatch):
     for wide in np.linspace(1.0, 6.0, 21):
         monkeypatch.setattr(bodies, "CYLINDER", wide)
         gaps.append(bodies.clearance(path.robot, tips, path.axes, path.legs.length).gap.min())
-        told.append(checks._apart(path))
+        told.append(checks._legs_clear(path))
     assert all(gap > 0 for gap, apart in zip(gaps, told, strict=True) if apart)
     assert told[0]
     assert min(gaps) < 0

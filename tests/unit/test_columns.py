@@ -41,13 +41,13 @@ def test_tables_of_a_run_and_of_modes(capsys):
     from types import SimpleNamespace
 
     from flexapod.output.text.answers import axes_table
-    from flexapod.output.text.terminal import show
+    from flexapod.output.text.terminal import print_items
 
     axes = [
         SimpleNamespace(axis=a, peak=peak, time=1.0, rms=peak / 3, excursion=0.1, per_cent=None)
         for a, peak in zip("xyz", (4.33e-6, 1.2e-5, 9e-7), strict=True)
     ]
-    show([axes_table(SimpleNamespace(shown_axes=axes, point="tool"))])
+    print_items([axes_table(SimpleNamespace(shown_axes=axes, point="tool"))])
     head, *lines = capsys.readouterr().out.splitlines()
     assert "peak [µm]" in head and "rms [µm]" in head and "rigid travel [mm]" in head
     rows = [line.split() for line in lines if line.strip()]

@@ -293,7 +293,7 @@ def read_only(_: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     def refused(*_: object, **__: object) -> None:
         raise OSError(errno.EROFS, os.strerror(errno.EROFS))
 
-    monkeypatch.setattr(cache, "whole", refused)
+    monkeypatch.setattr(cache, "atomic_file", refused)
     return "Read-only file system"
 
 

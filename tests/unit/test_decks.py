@@ -9,10 +9,10 @@ from tests.mechanisms import ROBOTS
 from flexapod import InputError
 from flexapod.kinematics import home_pose
 from flexapod.model import ConstantWrench, Cylinder, ForceDrive, Joint, Load, ServoDrive, Study, preset
-from flexapod.output.exchange.decks import Deck, Tie, cross_matrix, solved
+from flexapod.output.exchange.decks import Deck, Tie, cross_matrix, dependent_displacements
 from flexapod.output.exchange.decks_legs import legs_at_pose
 from flexapod.output.exchange.decks_robot import point_masses
-from flexapod.output.exchange.pose_deck import abaqus_deck, left_out
+from flexapod.output.exchange.pose_deck import abaqus_deck, deck_omissions
 
 SHARED = {
     "HEADING", "NODE", "ELEMENT", "MASS", "MATERIAL", "ELASTIC", "DENSITY", "SOLID SECTION", "SPRING", "BOUNDARY",
@@ -50,7 +50,7 @@ def test_solved_ties_hold_for_every_rigid_motion():
     motion = np.vstack([np.hstack([np.eye(3), cross_matrix(r)]) for r in points])
     terms = tuple((node, axis) for node in range(1, 6) for axis in (1, 2, 3))
     keep = [(2, 1), (5, 3)]
-    found = solved([Tie(terms=terms, rows=np.eye(15), motion=motion)], keep=keep)
+    found = dependent_displacements([Tie(terms=terms, rows=np.eye(15), motion=motion)], keep=keep)
     assert len(found) == 15 - 6
     assert not set(found) & set(keep)
     assert not set(found) & {other for others in found.values() for other in others}
@@ -177,10 +177,10 @@ def test_servo_stiffness_is_written(robot):
 
 
 def test_what_is_left_out_is_said(robot):
-    assert left_out(robot) == ["damping"]
+    assert deck_omissions(robot) == ["damping"]
     piston = robot.legs[0].piston.replace(axial_inertia=0.1)
-    assert "axial_inertia" in left_out(with_legs(robot, piston=piston))[1]
-    assert left_out(with_legs(robot, piston=piston.replace(axial_inertia=0.01))) == ["damping"]
+    assert "axial_inertia" in deck_omissions(with_legs(robot, piston=piston))[1]
+    assert deck_omissions(with_legs(robot, piston=piston.replace(axial_inertia=0.01))) == ["damping"]
 
 
 @pytest.mark.parametrize(

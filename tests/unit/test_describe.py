@@ -9,7 +9,7 @@ from tests.runs import paper_robot, with_legs
 import flexapod as fx
 from flexapod.analysis.description.leg_description import _stress
 from flexapod.analysis.description.robot_description import describe
-from flexapod.analysis.results.idealizations import held
+from flexapod.analysis.results.idealizations import soft_drives
 from flexapod.model import (
     AxisMotion,
     ConstantLaw,
@@ -22,6 +22,7 @@ from flexapod.model import (
     Tube,
     override,
 )
+from flexapod.output.text.description import locked_drive_words
 
 
 def rolling(duration, amplitude=0.4643, profile="quintic", hold=0.25, **settings):
@@ -247,10 +248,15 @@ def test_driven_actuator_has_no_path_to_describe():
 
 def test_what_gives_way_is_not_called_locked():
     servo = with_legs(paper_robot(), lambda leg: leg.replace(drive=ServoDrive(stiffness=2e7, damping=1e3)))
-    assert describe(paper_robot()).held == "Drives locked"
-    assert describe(servo).held == "Commands of the drives held, with the springs and dampers of the servo drives"
+    assert locked_drive_words(describe(paper_robot()).held) == "Drives locked"
+    assert (
+        locked_drive_words(describe(servo).held)
+        == "Commands of the drives held, with the springs and dampers of the servo drives"
+    )
     force = with_legs(paper_robot(), lambda leg: leg.replace(drive=ForceDrive()))
-    assert held(force.robot) == "Drives locked"  # what would have to be: there is no feedback to hold anything
+    assert (
+        locked_drive_words(soft_drives(force.robot)) == "Drives locked"
+    )  # what would have to be: no feedback holds anything
 
 
 def sample(name):

@@ -8,13 +8,13 @@ import pytest
 from flexapod.common.quantities import columns, sentence
 from flexapod.output.text import html
 from flexapod.output.text.parts import Bullets, Chapter, Lines, Remarks, Text, TextTable
-from flexapod.output.text.terminal import show, tell
+from flexapod.output.text.terminal import print_answer, print_items
 
 LEGS = TextTable(["force [N]", "kind"], [["1", "2.50", "strut"], ["10", "12.00", "<piston>"]], left=(0, 2), of="leg")
 
 
 def printed(capsys, *items, **more):
-    show(items, **more)
+    print_items(items, **more)
     return [line.rstrip() for line in capsys.readouterr().out.splitlines()]
 
 
@@ -68,11 +68,11 @@ def test_marks_are_styles_of_cells():
 
 def test_an_answer_is_words_or_data(capsys):
     found = {"share": float("nan"), "files": [Path("a.nc")], "kinds": ("x", 1)}
-    tell(["Found."], lambda: found, json=True)
+    print_answer(["Found."], lambda: found, json=True)
     assert json.loads(capsys.readouterr().out) == {"share": None, "files": ["a.nc"], "kinds": ["x", 1]}
-    tell(["Found."], lambda: pytest.fail("no data are asked for"), json=False)
+    print_answer(["Found."], lambda: pytest.fail("no data are asked for"), json=False)
     assert capsys.readouterr().out == "Found.\n"
-    tell((pytest.fail("no words are asked for") for _ in "x"), lambda: found, json=True)
+    print_answer((pytest.fail("no words are asked for") for _ in "x"), lambda: found, json=True)
 
 
 def test_columns_of_one_unit_and_sentences():

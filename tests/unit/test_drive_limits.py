@@ -5,7 +5,7 @@ import pytest
 from tests.machines import SCREW, study, symmetric
 
 from flexapod.analysis.results.rigid_path import RigidPath
-from flexapod.commissioning.feedforward.loaded_path import limits_of
+from flexapod.commissioning.feedforward.loaded_path import drive_limits
 from flexapod.model import Limits, Rotor
 
 LEAD, RATIO, ROTOR, EFFICIENCY, G, MASS = 0.01, 3.0, 2e-3, 0.9, 9.81, 1000.0
@@ -25,7 +25,7 @@ def test_shares_of_a_heavy_platform_that_rises_and_falls():
     motion = given.motion
     t = np.linspace(0.012, 0.088, 9)
     path = RigidPath(given, t)
-    fast, strong = limits_of(given, None, None, None).shares(path)
+    fast, strong = drive_limits(given, None, None, None).shares(path)
 
     # heave, its rate and acceleration from the path alone; legs stretch from one circle to the other
     z, rate, bend = path.poses.position[:, 2], path.poses.velocity[:, 2], path.poses.acceleration[:, 2]

@@ -56,8 +56,8 @@ def test_each_format_says_how_its_file_is_named():
 
 def test_what_names_other_files_is_written_last(tmp_path, monkeypatch):
     """Stopped in the middle, a time series for ParaView once named files that were not there."""
-    order, replacing = [], formats.replacing
-    monkeypatch.setattr(formats, "replacing", lambda path: order.append(path.name) or replacing(path))
+    order, replacing = [], formats.replace_file
+    monkeypatch.setattr(formats, "replace_file", lambda path: order.append(path.name) or replacing(path))
     study = fx.preset("small-hexapod")
     data = fx.simulate(study, fidelity="rigid", duration=0.002, output_step=0.001)
     made = fx.export(study, "vtk", tmp_path / "a.pvd", data=data)

@@ -12,7 +12,7 @@ import pytest
 from flexapod import model
 from flexapod.common import files
 from flexapod.common.errors import InputError
-from flexapod.common.files import read_bytes, read_text, replacing, whole
+from flexapod.common.files import atomic_file, read_bytes, read_text, replace_file
 from flexapod.common.tables import csv_tables
 from flexapod.design.sweeps.plan import read_plan
 from flexapod.mechanics.symbolic import cache
@@ -75,11 +75,11 @@ def test_a_pipe_in_the_cache_of_kernels_is_removed(tmp_path):
 def test_a_file_appears_whole_or_not_at_all(tmp_path):
     path = tmp_path / "deep" / "a.txt"
     for end in (KeyboardInterrupt, OSError, ValueError):
-        with pytest.raises(end), whole(path) as temporary:
+        with pytest.raises(end), atomic_file(path) as temporary:
             temporary.write_text("half", encoding="utf-8")
             raise end
         assert list(path.parent.iterdir()) == []
-    with replacing(path) as temporary:
+    with replace_file(path) as temporary:
         temporary.write_text("whole", encoding="utf-8")
     assert path.read_text(encoding="utf-8") == "whole"
     mask = os.umask(0)
@@ -106,7 +106,7 @@ def test_a_full_disk_in_words(tmp_path, full):
     path = tmp_path / "a.bin"
     with (
         pytest.raises(InputError, match=r"a.bin: cannot be written: File too large.*has space"),
-        replacing(path) as part,
+        replace_file(path) as part,
     ):
         part.write_bytes(bytes(20_000))
     assert list(tmp_path.iterdir()) == []
@@ -121,14 +121,14 @@ def test_names_that_are_not_utf8_are_refused_before_anything_is_computed(tmp_pat
         read_plan(bad)
     with pytest.raises(InputError, match="not UTF-8"):
         model.loads(preset_text("paper-robot"), path=bad)
-    with pytest.raises(InputError, match="not UTF-8"), replacing(bad):
+    with pytest.raises(InputError, match="not UTF-8"), replace_file(bad):
         pass
 
 
 def test_files_are_waited_for(tmp_path, monkeypatch):
     waited = []
     monkeypatch.setattr(files.os, "fsync", lambda handle: waited.append(stat.S_ISDIR(os.fstat(handle).st_mode)))
-    with whole(tmp_path / "a" / "b" / "c") as temporary:
+    with atomic_file(tmp_path / "a" / "b" / "c") as temporary:
         temporary.write_text("x", encoding="utf-8")
     assert waited == [False, True, True, True]  # the file, its folder, and the folders that were made
 
@@ -138,7 +138,7 @@ def test_folders_that_cannot_be_waited_for(tmp_path, monkeypatch):
         raise OSError(errno.EINVAL, "not here")
 
     monkeypatch.setattr(files.os, "fsync", refuse)
-    files.settle(tmp_path)
+    files.sync_folder(tmp_path)
 
 
 def named(process, dot=".", machine=None):
@@ -163,7 +163,7 @@ def test_what_killed_processes_left_is_removed_by_the_next_that_writes_there(tmp
     for name in (".flexapod-0123", ".flexapod.toml"):
         os.utime(tmp_path / name, (0, 0))
     (tmp_path / f"{named(gone)}.zarr" / "c").mkdir(parents=True)
-    with whole(tmp_path / "a.nc"):
+    with atomic_file(tmp_path / "a.nc"):
         pass
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(["a.nc", *kept])
 
@@ -176,7 +176,7 @@ def test_folders_of_killed_processes_in_the_temporary_one(tmp_path, gone, monkey
     kept = [tmp_path / name for name in ("flexapod-results", named(os.getppid(), ""))]
     for path in kept:
         path.mkdir()
-    with pytest.raises(KeyboardInterrupt), files.scratch() as folder:
+    with pytest.raises(KeyboardInterrupt), files.temporary_folder() as folder:
         assert stat.S_IMODE(folder.stat().st_mode) == 0o700
         (folder / "a").touch()
         assert sorted(tmp_path.iterdir()) == sorted([*kept, folder])
@@ -188,6 +188,6 @@ def test_only_files_are_replaced(tmp_path, pipe):
     """Whoever may write to a folder of devices once got a file in place of the device."""
     place = pipe
     for path, words in ((place, "not a regular file"), (tmp_path, "Is a directory"), (Path("."), "Is a directory")):
-        with pytest.raises(InputError, match=words), replacing(path):
+        with pytest.raises(InputError, match=words), replace_file(path):
             pytest.fail("it is written")
     assert stat.S_ISFIFO(place.stat().st_mode)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from flexapod.common.datasets import composed
+from flexapod.common.datasets import build_dataset
 
 WORDS = np.array(["", "it fell"], dtype=object)
 PARTS = {
@@ -36,7 +36,7 @@ PARTS = {
 @pytest.mark.parametrize("name", PARTS)
 def test_it_is_what_xarray_makes(name):
     data, coords = PARTS[name]
-    ours, theirs = composed(data, coords, {"study": name}), xr.Dataset(data, coords, {"study": name})
+    ours, theirs = build_dataset(data, coords, {"study": name}), xr.Dataset(data, coords, {"study": name})
     xr.testing.assert_identical(ours, theirs)
     for key in theirs.variables:
         assert ours[key].dtype == theirs[key].dtype and ours[key].encoding == theirs[key].encoding
@@ -49,7 +49,7 @@ def test_what_came_of_xarray_goes_in():
     """Variables and arrays of a Dataset, its labels among them."""
     data, coords = PARTS["numbers"]
     whole = xr.Dataset(data, coords)
-    again = composed({name: whole.variables[name] for name in data}, {name: whole[name] for name in coords})
+    again = build_dataset({name: whole.variables[name] for name in data}, {name: whole[name] for name in coords})
     xr.testing.assert_identical(again, whole)
     assert again.sel(output="yy").whole == 2
     again.response.attrs["units"] = again.output_units.attrs["units"] = "mm/N"  # of the new one alone
@@ -58,10 +58,11 @@ def test_what_came_of_xarray_goes_in():
 
 def test_lengths_that_differ_are_refused():
     with pytest.raises(ValueError, match="conflicting sizes"):
-        composed({"a": ("n", [1.0, 2.0])}, {"n": [1, 2, 3]})
+        build_dataset({"a": ("n", [1.0, 2.0])}, {"n": [1, 2, 3]})
 
 
 def test_dask_is_not_loaded():
-    code = "import sys; from flexapod.common.datasets import composed; composed({'a': ('n', [1.0])}, {'n': ['x']}); "
+    code = "import sys; from flexapod.common.datasets import build_dataset; "
+    code += "build_dataset({'a': ('n', [1.0])}, {'n': ['x']}); "
     code += "print('dask.array' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "False\n"

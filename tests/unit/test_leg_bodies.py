@@ -11,7 +11,7 @@ import flexapod as fx
 from flexapod import kinematics
 from flexapod.analysis.description.clearance import stroke_ends
 from flexapod.analysis.description.robot_description import describe
-from flexapod.analysis.results.bodies import CYLINDER, bodies_words, clearance, pairs_of_legs, turns
+from flexapod.analysis.results.bodies import CYLINDER, clearance, joint_angles, pairs_of_legs
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.app.cli.cli import app
 from flexapod.common.errors import InputError
@@ -21,6 +21,7 @@ from flexapod.kinematics.rotations import exponential
 from flexapod.model import Home, to_toml
 from flexapod.model.leg.joint import Joint
 from flexapod.model.leg.leg import Stroke
+from flexapod.output.text.answers import bodies_words
 
 LIMITED = {"base_joint": Joint(max_angle=0.2), "platform_joint": Joint(max_angle=0.1)}
 
@@ -92,7 +93,7 @@ def test_turns_are_those_of_the_platform_about_a_leg():
         robot = machine().replace(home=Home(position=[0, 0, 1.0], rotation=home))
         rotation = exponential(np.array([[0.3, 0, 0]])) @ robot.home_rotation
         axes = (robot.home_vectors / robot.home_lengths[:, None])[None]
-        found = turns(robot, axes, rotation)
+        found = joint_angles(robot, axes, rotation)
         np.testing.assert_allclose(found[..., 0], 0.0, atol=1e-12)
         about = np.arccos(np.clip(0.3**0 - (1 - np.cos(0.3)) * (1 - axes[0, :, 0] ** 2), -1, 1))
         np.testing.assert_allclose(found[0, :, 1], about, atol=1e-9)

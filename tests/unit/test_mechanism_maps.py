@@ -16,7 +16,7 @@ def codes(robot, **values):
     for name, column in values.items():
         columns[:, ["surge", "sway", "heave", "roll", "pitch", "yaw"].index(name)] = column
     path = fx.kinematics.poses_from_home(robot, columns)
-    return [REASONS[code].flag for code in rigid_codes(robot, path, from_home=True)]
+    return [REASONS[code].flag for code in rigid_codes(fx.kinematics.RigidPoses(robot, path), from_home=True)]
 
 
 def limited(robot, low, high):

@@ -12,12 +12,12 @@ from flexapod.common.resources import _glibc
 ROUNDS = """
 import resource
 import numpy as np
-from flexapod.common.resources import keep_freed
+from flexapod.common.resources import retain_freed_memory
 
 def eight():
     return [np.ones(1 << 18) for _ in range(8)]
 
-keep_freed()
+retain_freed_memory()
 eight()
 before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
 eight()
@@ -36,7 +36,7 @@ def test_what_a_run_frees_is_kept_for_the_next():
 #: Things in circles that live while a module is asked for that is there already: how many of 200000 are there at last.
 CIRCLES = """
 import weakref
-from flexapod.common.lazy_imports import loaded
+from flexapod.common.lazy_imports import load_module
 
 class Thing:
     pass
@@ -45,7 +45,7 @@ def round():
     things = [Thing() for _ in range(1000)]
     for thing in things:
         thing.itself = thing
-    loaded("flexapod.common.quantities")
+    load_module("flexapod.common.quantities")
     return [weakref.ref(thing) for thing in things]
 
 there = [reference for _ in range(200) for reference in round()]

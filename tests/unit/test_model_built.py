@@ -142,22 +142,24 @@ def test_what_a_robot_does_not_have_has_neither_errors_nor_heat():
 
 
 def test_a_check_says_how_far_the_machine_as_built_is_off():
-    from flexapod.analysis.pose_errors.accuracy_text import accuracy_words
+    from flexapod.analysis.pose_errors.home_accuracy import home_accuracy
+    from flexapod.output.text.description import accuracy_words
 
-    assert accuracy_words(study("")) == ()
+    assert accuracy_words(home_accuracy(study(""))) == ()
     text = '\n[geometry]\nleg_offset = "10 um"\n[heat]\npiston = 25\n[tolerances]\nleg_offset = "20 um"\n'
     found = loads((TEXT + text).replace("\nstroke =", '\nbase_joint = { play = "5 um" }\nstroke =', 1))
-    built, spread, play = accuracy_words(found)
+    built, spread, play = accuracy_words(home_accuracy(found))
     assert "most of it by heat of the pistons" in built and "standard deviations" in spread and "play" in play
 
 
 def test_what_check_says_of_temperatures_over_time(tmp_path):
-    from flexapod.analysis.pose_errors.accuracy_text import accuracy_words
+    from flexapod.analysis.pose_errors.home_accuracy import home_accuracy
+    from flexapod.output.text.description import accuracy_words
 
     (tmp_path / "heat.csv").write_text("time [s], piston [degC]\n0, 20\n600, 26\n1200, 24\n")
     more = '[heat]\nfile = "heat.csv"\nexpansion = { piston = 1.2e-5 }\n'
     found = study(more, tmp_path)
-    (words,) = accuracy_words(found)  # as drawn at the start
+    (words,) = accuracy_words(home_accuracy(found))  # as drawn at the start
     moved = float(np.linalg.norm(accuracy(found).pose_drift[1, :3]))
     assert words.startswith(
         f"the temperatures of heat.file move the tool at home by up to {text_of(moved, 'm', 3)} from"

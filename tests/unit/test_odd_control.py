@@ -46,7 +46,11 @@ def double():
         (lambda v: control.Tracker(frequency=1.0, width=v), "width", [0.0]),
         (lambda v: control.AdaptiveDamping(gain=v, tracker=control.Tracker(frequency=1.0)), "gain", []),
         (lambda v: control.AdaptiveDamping(gain=1.0, tracker=v), "tracker", [12.0]),
-        (lambda v: control.Function(function=v, inputs=("stroke:1",), outputs=("drive:1",)), "function", [2.0]),
+        (
+            lambda v: control.FunctionController(function=v, inputs=("stroke:1",), outputs=("drive:1",)),
+            "function",
+            [2.0],
+        ),
         (lambda v: control.by_jacobian(v), "jacobian", [[[1.0, NAN]]]),
         (lambda v: control.centre_of_stiffness(np.eye(6), v), "stiffness", []),
     ],
@@ -99,8 +103,8 @@ def test_numbers_of_numpy_and_of_arrays_without_axes_are_taken(system):
         (lambda x: x.psd({"drive": ([1.0, 2.0], 1.0)}), "density"),
         (lambda x: x.save(None), "path"),
         (lambda x: x.save("a\0.mat"), "path"),
-        (lambda x: x.close(control.Together(None)), "parts"),
-        (lambda x: x.close(control.Fused(2.0, low="stroke", high="stroke", corner=1.0)), "law"),
+        (lambda x: x.close(control.Parallel(None)), "parts"),
+        (lambda x: x.close(control.SensorFusion(2.0, low="stroke", high="stroke", corner=1.0)), "law"),
         (lambda x: x.close(control.Decoupled(None, into=[[1.0]], out=[[1.0]])), "law"),
         (lambda x: x.close(control.Decoupled(["x"], into=[[1.0]], out=[[1.0]])), "law"),
         (lambda x: x.close(control.Decoupled(control.gain(1.0), into="x", out=[[1.0]])), "into"),
@@ -198,7 +202,7 @@ def test_least_time_of_a_linear_system_has_its_own_arguments(double, given, key)
 )
 def test_commands_ahead_are_refused_before_anything_is_computed(call, given, key, monkeypatch):
     study = fx.preset("machine-hexapod")
-    for place in ("shaping.check_path", "compensation.check_path", "least_time.StraightWay"):
+    for place in ("shaping.check_path", "compensation.check_path", "least_time.StraightLine"):
         monkeypatch.setattr(
             f"flexapod.commissioning.feedforward.{place}", lambda *_: pytest.fail("something is computed")
         )
@@ -301,7 +305,7 @@ def test_samples_that_no_step_could_end_on():
 @pytest.mark.parametrize("given", ["x", None, [1j], [1.0, 2.0], [NAN]])
 def test_functions_that_return_no_numbers(given):
     """Some once ended in an error of the conversion."""
-    asked = control.Function(function=lambda t, y: given, inputs=("stroke:1",), outputs=("drive:1",))
+    asked = control.FunctionController(function=lambda t, y: given, inputs=("stroke:1",), outputs=("drive:1",))
     with pytest.raises(fx.InputError, match="at t = 0 s") as error:
         fx.simulate(fx.preset("nano-hexapod"), controller=asked, sample=2e-4, duration=0.001)
     assert error.value.key == "controller" and error.value.allowed == "1 finite numbers"

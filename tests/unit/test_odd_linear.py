@@ -126,7 +126,7 @@ def test_frequencies_that_are_none(robot, system, hz):
         (lambda x: x.close(control.IFF(NAN, sensor="stroke")), "gain"),
         (lambda x: x.close(control.PID(NAN)), "numerator"),
         (lambda x: x.close(control.Decentralised(3.0, sensor="stroke")), "law"),
-        (lambda x: x.close(control.Together(())), "parts"),
+        (lambda x: x.close(control.Parallel(())), "parts"),
         (lambda x: control.root_locus(x, control.PID(1.0), []), "gains"),
         (lambda x: control.root_locus(x, control.PID(1.0), [NAN]), "gains"),
         (lambda x: control.ring_down([], 1e-3), "samples"),
@@ -250,6 +250,10 @@ def test_what_is_refused_is_so_before_anything_is_computed(robot, call, key, mon
     def computed(*given, **named):
         raise AssertionError("computed first")
 
-    for name in ("solve.modal.at_poses.lock", "analysis.simulation.simulated", "analysis.checks.checks.check_path"):
+    for name in (
+        "solve.modal.at_poses.lock",
+        "analysis.simulation.run_simulation",
+        "analysis.checks.checks.check_path",
+    ):
         monkeypatch.setattr(f"flexapod.{name}", computed)
     refused(lambda: call(robot), key)

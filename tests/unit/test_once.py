@@ -67,8 +67,8 @@ def test_a_study_without_other_settings_is_itself_and_results_say_whose_they_are
 
 
 def test_a_study_is_described_with_each_pose_solved_once_and_no_time_integration(monkeypatch):
-    poses, plain = [], residual_vibration.the_modes
-    monkeypatch.setattr(residual_vibration, "the_modes", lambda locked: poses.append(locked) or plain(locked))
+    poses, plain = [], residual_vibration.single_pose_modes
+    monkeypatch.setattr(residual_vibration, "single_pose_modes", lambda locked: poses.append(locked) or plain(locked))
     assert describe(fx.preset("paper-robot")).vibration is not None
     assert len(poses) == 2  # the start and the end, whose modes the vibration takes
     code = (

@@ -15,7 +15,7 @@ from flexapod.verification.engines.engine import EXUDYN
 from flexapod.verification.engines.exudyn_robot import RobotResult
 from flexapod.verification.paper import engines
 from flexapod.verification.paper import study as paper
-from flexapod.verification.paper.engines import agreements, exudyn_flexible, exudyn_rigid, rigid_same_step, undamped
+from flexapod.verification.paper.engines import agreements, exudyn_flexible, exudyn_rigid, rigid_same_step, run_undamped
 
 
 def quick():
@@ -59,7 +59,7 @@ def parts(asked):
         patch.setattr(engines, "version", lambda _: "1.2.3")
         return {
             "robot-rigid-same-step": rigid_same_step(study, ignore),
-            "robot-undamped": undamped(study, ignore),
+            "robot-undamped": run_undamped(study, ignore),
             "robot-exudyn-rigid": exudyn_rigid(study, ignore),
             "robot-exudyn": exudyn_flexible(study, ignore),
         }
@@ -221,7 +221,7 @@ def test_results_that_cannot_be_compared_are_refused(draw, parts):
     assert draw({"ours": ours}) is not None
 
 
-@pytest.mark.skipif(not EXUDYN.found(), reason="needs Exudyn")
+@pytest.mark.skipif(not EXUDYN.is_available(), reason="needs Exudyn")
 def test_real_engine_agrees_with_us(parts):
     theirs = {"robot-exudyn-rigid": exudyn_rigid(quick(), ignore), "robot-exudyn": exudyn_flexible(quick(), ignore)}
     rows = agreements(parts | theirs)

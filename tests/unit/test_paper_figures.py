@@ -11,7 +11,7 @@ from mpl_toolkits.mplot3d import proj3d
 
 import flexapod as fx
 from flexapod import model, plot
-from flexapod.output.figures.robot3d import beside
+from flexapod.output.figures.robot3d import label_positions
 from flexapod.verification.paper import clamped_legs, engine_figures, figures, printed_figures
 from flexapod.verification.paper.clamped_legs import ARMS, COLUMNS, READINGS, ROLLS
 from flexapod.verification.paper.readings import tripod
@@ -62,7 +62,7 @@ def test_numbers_touch_neither_joints_nor_each_other(name):
 def test_a_number_is_beside_the_leg_and_away_from_its_pair():
     """Seen along y from the front, x is to the right and z up: a pair in the middle parts, a joint alone goes aside."""
     joints = np.array([[-0.05, 0, 0], [0.05, 0, 0], [0.0, 0, 0.9]])
-    moved = beside(joints, joints, -90, 0) - joints
+    moved = label_positions(joints, joints, -90, 0) - joints
     assert moved[0, 0] < 0 < moved[1, 0] and abs(moved[0, 1]) < 1e-12
     assert abs(moved[2, 0]) > abs(moved[2, 2])  # not on the leg, which rises
     assert np.linalg.norm(moved, axis=1) == pytest.approx(0.045 * np.hypot(0.1, 0.9))
@@ -205,7 +205,7 @@ def test_what_welded_robots_do_not_reach_is_said():
     reached = data.copy(deep=True)
     reached["deviation"] = 100 * data.deviation
     for found, said in ((data, True), (reached, False)):
-        figure = clamped_legs.welded_figure(found)
+        figure = clamped_legs.clamped_legs_figure(found)
         words = " ".join(text.get_text() for text in figure.axes[-1].texts)
         assert ("y 5 mm: not reached,\nat most 90 % of that" in words) == said
         assert ("z 10 mm: not reached,\nat most 30 % of that" in words) == said

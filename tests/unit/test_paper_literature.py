@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import flexapod as fx
-from flexapod.verification.paper.literature import GIVEN, HERE, IN_PART, NOT_YET, TOPICS, markdown
+from flexapod.verification.paper.literature import GIVEN, HERE, IN_PART, NOT_YET, TOPICS, literature_markdown
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")
@@ -44,5 +44,5 @@ def test_every_item_of_sections_4_3_and_4_4_has_a_row():
 
 
 def test_the_page_has_the_list():
-    assert markdown() in PAGE
+    assert literature_markdown() in PAGE
     assert all(call in PAGE for call in GIVEN.values())

@@ -84,13 +84,15 @@ def test_cube(studies):
 
 def test_inertia_about_the_platform_belongs_to_no_body(studies):
     payload = model.preset("paper-robot").robot.payload
-    moments = np.diag(readings.about_platform(payload))
+    moments = np.diag(readings.inertia_about_com(payload))
     np.testing.assert_allclose(moments, [17.88 - 100 * 0.373**2, 17.88, 17.88 - 100 * 0.373**2])
     assert moments[1] > moments[0] + moments[2]
     changed = studies["inertia-of-platform"].robot.payload.inertia
     np.testing.assert_allclose(changed, np.diag([moments[0], 2 * moments[0], moments[0]]), atol=1e-12)
     body = payload.replace(com=[0, 0.1, 0], tool=[0, 0.1, 0])
-    np.testing.assert_allclose(readings._nearest_body(readings.about_platform(body)), readings.about_platform(body))
+    np.testing.assert_allclose(
+        readings._nearest_body(readings.inertia_about_com(body)), readings.inertia_about_com(body)
+    )
 
 
 @pytest.mark.parametrize(
@@ -134,14 +136,14 @@ def test_what_is_counted_is_the_same_force_both_ways():
         "piston_mass": p["rhoA"] * p["Lp"], "piston_length": p["Lp"], "piston_axial": 0.0,
     }  # fmt: skip
     bodies = dynamics.LegBodies(**{name: np.array([[value]]) for name, value in upright.items()})
-    turn = JointTurn.of(np.array([[alpha]]), np.array([[beta]]))
+    turn = JointTurn.from_angles(np.array([[alpha]]), np.array([[beta]]))
     state = {"length": length, "rate": v[2], "accel": v_dot[2], "alpha_dot": v[0], "beta_dot": v[1]}
     state |= {"alpha_ddot": v_dot[0], "beta_ddot": v_dot[1]}
     legs = dynamics.LegArrays(turn=turn, **{name: np.array([[value]]) for name, value in state.items()})
     gravity = turn.into_leg([np.array([[x]]) for x in g])
     motion = dynamics.leg_motion(bodies, legs)
-    across, _ = dynamics.across_the_leg(bodies, legs, motion, gravity)
-    along = dynamics.along_the_leg(bodies, motion, gravity, np.zeros((1, 1)))
+    across, _ = dynamics.transverse_forces(bodies, legs, motion, gravity)
+    along = dynamics.axial_drive_force(bodies, motion, gravity, np.zeros((1, 1)))
     expected = [-length * np.cos(beta) * across[1].item(), length * across[0].item(), along.item()]
     np.testing.assert_allclose(r, expected, rtol=1e-12)
 

@@ -75,7 +75,7 @@ MOTIONS = {
 def test_commands_are_those_of_the_rigid_path(name):
     robot, motion = three_rps(), MOTIONS[name]
     system = robot_system(robot, Simulation(fidelity="rigid"), 0.0)
-    poses = Counted(partial(kinematics.poses, robot, motion))
+    poses = Counted(partial(kinematics.rigid_poses, robot, motion))
     knots = kinematics.path_knots(motion, 0.5)
     exact, tabulated = (robot_law(system, robot, Load(), poses, x) for x in (None, knots))
     t = np.linspace(0, 0.5, 4001)

@@ -24,12 +24,12 @@ from flexapod.common.errors import InputError
 from flexapod.design.maps import workspace_map
 from flexapod.model import load, preset
 from flexapod.output.figures import style
-from flexapod.output.figures.column_width import narrowed
-from flexapod.output.figures.fast_axes import Panel, _Plain, settings
+from flexapod.output.figures.column_width import resize_figure
+from flexapod.output.figures.fast_axes import Panel, _Plain, rc_settings
 from flexapod.output.figures.style import figure as page_figure
-from flexapod.output.figures.style import ink
-from flexapod.output.report.figures import draw
-from flexapod.output.report.plotly_export import interactive
+from flexapod.output.figures.style import readable_color
+from flexapod.output.report.figures import draw_figures
+from flexapod.output.report.plotly_export import plotly_figure
 from flexapod.output.report.report import write_report
 from flexapod.output.scene.robot_scene import mode_scene, scene
 from flexapod.output.scene.style import ENERGIES
@@ -197,7 +197,7 @@ def test_files_are_what_matplotlib_draws(robot, tmp_path, monkeypatch, name):
     png, _ = plot.save(getattr(plot, name)(robot), tmp_path / "ours")
     monkeypatch.setattr(style, "Panels", Figure)
     monkeypatch.setattr(style, "Canvas", FigureCanvasAgg)
-    with matplotlib.rc_context(settings()):
+    with matplotlib.rc_context(rc_settings()):
         theirs = getattr(plot, name)(robot)
         theirs.savefig(tmp_path / "theirs.png", dpi=200)
     assert type(theirs.axes[0]) is not Panel
@@ -247,7 +247,9 @@ def test_figures_are_as_wide_as_a_page_and_legible(robot, name):
     figure.draw_without_rendering()
     texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text()]
     assert min(text.get_fontsize() for text in texts) >= 7.0
-    assert all(ink(to_hex(text.get_color())) == to_hex(text.get_color()) for text in texts)  # contrast on white
+    assert all(
+        readable_color(to_hex(text.get_color())) == to_hex(text.get_color()) for text in texts
+    )  # contrast on white
 
 
 def test_legs_of_equal_commands_are_alike(robot):
@@ -308,7 +310,7 @@ def test_a_drawing_stays_a_picture_on_the_page(robot, tmp_path):
     drawing, curves = plot.actuator_symbols(), plot.forces_overlaid(robot)
     for figure in (drawing, curves):
         plot.save(figure, tmp_path / "x", formats=("png",))
-    assert interactive(drawing) is None and interactive(curves) is not None
+    assert plotly_figure(drawing) is None and plotly_figure(curves) is not None
 
 
 def panels(figure):
@@ -332,7 +334,7 @@ def test_at_the_width_of_a_column_nothing_overlaps_or_is_cut(robot, actuator, sh
         "actuator_symbols": plot.actuator_symbols,
     }
     figure = draws.get(name, lambda: getattr(plot, name)(robot))()
-    made = narrowed(figure, 0.085 / 0.0254)
+    made = resize_figure(figure, 0.085 / 0.0254)
     made.draw_without_rendering()
     assert made.get_figwidth() == pytest.approx(0.085 / 0.0254) and made.get_figheight() < 0.24 / 0.0254
     assert len({round(axes.get_position().x0, 2) for axes in panels(made)}) <= 2
@@ -351,7 +353,7 @@ def test_at_the_width_of_a_column_nothing_overlaps_or_is_cut(robot, actuator, sh
 
 
 def test_titles_in_space_stay_clear_of_the_labels_above_them(robot):
-    made = narrowed(plot.robot_3d(robot), 0.085 / 0.0254)
+    made = resize_figure(plot.robot_3d(robot), 0.085 / 0.0254)
     made.draw_without_rendering()
     above, below = panels(made)
     title = below.title.get_window_extent()
@@ -365,7 +367,7 @@ def test_a_label_longer_than_its_panel_is_broken():
     figure = page_figure(height=3.0)
     for axes in figure.subplots(3, 1):
         axes.set_ylabel("largest difference of the two [µm]")
-    made = narrowed(figure, 0.085 / 0.0254)
+    made = resize_figure(figure, 0.085 / 0.0254)
     made.draw_without_rendering()
     labels = [axes.yaxis.label.get_window_extent() for axes in panels(made)]
     assert not any(one.overlaps(other) for one, other in pairwise(labels))
@@ -374,7 +376,7 @@ def test_a_label_longer_than_its_panel_is_broken():
 def test_slices_of_a_volume_fit_into_a_column():
     """Seven slices leave two places of the wide figure empty: that once ended the narrow one in an IndexError."""
     poses = {"surge": np.linspace(-0.2, 0.2, 5), "sway": np.linspace(-0.2, 0.2, 5), "heave": np.linspace(-0.15, 0.1, 7)}
-    made = narrowed(plot.workspace_map(workspace_map(preset("paper-robot"), poses, frequencies=1)), 0.085 / 0.0254)
+    made = resize_figure(plot.workspace_map(workspace_map(preset("paper-robot"), poses, frequencies=1)), 0.085 / 0.0254)
     made.draw_without_rendering()
     *slices, bar = panels(made)
     assert len(slices) == 7 and made.get_figheight() < 9.2
@@ -392,12 +394,12 @@ def texts(figure):
 
 
 def test_panels_in_a_column_keep_their_labels(robot):
-    made = narrowed(plot.com_path(robot), 0.085 / 0.0254)
+    made = resize_figure(plot.com_path(robot), 0.085 / 0.0254)
     by_height = sorted(panels(made), key=lambda axes: -axes.get_position().y0)
     assert [axes.get_title(loc="left")[-1] for axes in by_height] == ["Y", "Y", "Z", "Z"]
     assert all("mm" in axes.get_ylabel() or "µm" in axes.get_ylabel() for axes in by_height)
     assert [bool(axes.get_xlabel()) for axes in by_height] == [False, False, False, True]  # they share time
-    forces = narrowed(plot.actuator_forces(robot), 0.085 / 0.0254)
+    forces = resize_figure(plot.actuator_forces(robot), 0.085 / 0.0254)
     lowest = [axes for axes in panels(forces) if axes.get_xlabel()]
     assert len(lowest) == 2 and lowest[0].get_position().y0 == pytest.approx(lowest[1].get_position().y0)
 
@@ -405,9 +407,9 @@ def test_panels_in_a_column_keep_their_labels(robot):
 @pytest.mark.parametrize("color", ["#E69F00", "#56B4E9", "#009E73", "#333333"])
 def test_words_in_colour_have_contrast(color):
     """4.5 to 1 on white (WCAG 2.2, 1.4.3); what is dark enough stays as it is."""
-    linear = [p / 12.92 if p <= 0.04045 else ((p + 0.055) / 1.055) ** 2.4 for p in to_rgb(ink(color))]
+    linear = [p / 12.92 if p <= 0.04045 else ((p + 0.055) / 1.055) ** 2.4 for p in to_rgb(readable_color(color))]
     assert 1.05 / (np.dot([0.2126, 0.7152, 0.0722], linear) + 0.05) >= 4.5
-    assert (ink(color) == color) == (color == "#333333")
+    assert (readable_color(color) == color) == (color == "#333333")
 
 
 def test_path_of_a_beam_is_that_of_its_tip(actuator):
@@ -428,7 +430,7 @@ def test_folder_that_is_a_file_is_refused(robot, tmp_path):
 
 
 def test_report_of_a_run_has_its_figures_and_its_answer(actuator, tmp_path):
-    figures = draw(actuator[3], tmp_path)
+    figures = draw_figures(actuator[3], tmp_path)
     text = write_report(actuator[3], tmp_path, lambda: figures).read_text(encoding="utf-8")
     assert text.count("<figure") == len(figures) == 3  # one of them stands for the replay on paper
     assert "The tip leaves the hub" in text.split("</h1>")[0]
@@ -459,7 +461,7 @@ def test_text_in_a_report_is_text(robot, tmp_path):
 @pytest.mark.parametrize("name", ["flight-simulator", "nano-hexapod"])
 def test_words_of_a_wide_robot_stay_in_its_picture(name, width):
     made = plot.robot_3d(simulate(preset(name), fidelity="lumped", duration=0.002, step=1e-3))
-    drawn = made if width is None else narrowed(made, width / 0.0254)
+    drawn = made if width is None else resize_figure(made, width / 0.0254)
     drawn.canvas.draw()
     names = []
     for axes in drawn.axes:

@@ -10,7 +10,7 @@ from multiprocessing import active_children
 import pytest
 from tests.started import none_left, started_by
 
-from flexapod.common.processes import call, started
+from flexapod.common.processes import forked_map, run_program
 
 
 def slow_square(x):
@@ -19,7 +19,7 @@ def slow_square(x):
 
 
 def made(make, given, processes):
-    with started(make, given, processes) as joined:
+    with forked_map(make, given, processes) as joined:
         return joined()
 
 
@@ -57,7 +57,7 @@ def test_copies_work_before_they_are_waited_for(tmp_path):
     def marked(x):
         (tmp_path / str(x)).write_text(str(os.getpid()))
 
-    with started(marked, range(3), 2) as joined:
+    with forked_map(marked, range(3), 2) as joined:
         until(lambda: len(list(tmp_path.iterdir())) == 3)
         assert str(os.getpid()) not in {path.read_text() for path in tmp_path.iterdir()}
         joined()
@@ -86,7 +86,7 @@ def endless(x):
 @pytest.mark.parametrize("make", [large, endless])
 def test_copies_that_nobody_asks_end_with_the_block(make):
     """A run whose results could not be saved left them asleep, as long as its process went on."""
-    with pytest.raises(OSError, match="disk"), started(make, range(6), 3):
+    with pytest.raises(OSError, match="disk"), forked_map(make, range(6), 3):
         until(lambda: len(active_children()) == 2)
         raise OSError("disk is full")
     assert active_children() == []
@@ -102,7 +102,7 @@ def test_a_copy_that_ends_by_itself_puts_its_files_away(tmp_path):
 
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)  # as in commands
     try:
-        with started(writes, range(2), 2):
+        with forked_map(writes, range(2), 2):
             until(lambda: list(tmp_path.iterdir()))
     finally:
         signal.signal(signal.SIGTERM, before)
@@ -111,11 +111,11 @@ def test_a_copy_that_ends_by_itself_puts_its_files_away(tmp_path):
 
 AT_ONCE = """
 import signal
-from flexapod.common.processes import started
+from flexapod.common.processes import forked_map
 for kind in (signal.SIGTERM, signal.SIGINT):
     signal.signal(kind, signal.default_int_handler)  # as in commands
 for _ in range(300):
-    with started(lambda x: x, range(2), 2):
+    with forked_map(lambda x: x, range(2), 2):
         pass
 """
 
@@ -128,11 +128,11 @@ def test_a_copy_that_is_ended_while_it_is_made_says_nothing():
 
 
 KILLED = {
-    "in a pipe": "with started(lambda x: bytes(10_000_000), range(9), 4): told(); time.sleep(600)",
-    "at work": "with started(lambda x: time.sleep(600), range(9), 4): told(); time.sleep(600)",
-    "program": "told(); call(['sh', '-c', 'sleep 600 & sleep 600'], Path(sys.argv[1]), 600)",
-    "program of a copy": "with started(lambda x: call(['sleep', '600'], Path(sys.argv[1]), 600), range(9), 4) as f:\n"
-    "    told(); f()",
+    "in a pipe": "with forked_map(lambda x: bytes(10_000_000), range(9), 4): told(); time.sleep(600)",
+    "at work": "with forked_map(lambda x: time.sleep(600), range(9), 4): told(); time.sleep(600)",
+    "program": "told(); run_program(['sh', '-c', 'sleep 600 & sleep 600'], Path(sys.argv[1]), 600)",
+    "program of a copy": "with forked_map(lambda x: run_program(['sleep', '600'], Path(sys.argv[1]), 600), range(9), 4)"
+    " as f:\n    told(); f()",
 }
 
 
@@ -140,7 +140,9 @@ KILLED = {
 @pytest.mark.parametrize("what", KILLED)
 def test_nothing_is_left_of_a_process_that_is_killed(what, tmp_path):
     """Copies slept for ever in the pipe that they held open themselves; compilers went on to their end."""
-    script = "import sys, time\nfrom pathlib import Path\nfrom flexapod.common.processes import call, started\n"
+    script = (
+        "import sys, time\nfrom pathlib import Path\nfrom flexapod.common.processes import forked_map, run_program\n"
+    )
     script += f"def told(): print('begun', flush=True)\n{KILLED[what]}\n"
     with started_by([sys.executable, "-c", script, str(tmp_path)]) as (process, others):
         assert process.stdout.readline() == b"begun\n"
@@ -151,8 +153,8 @@ def test_nothing_is_left_of_a_process_that_is_killed(what, tmp_path):
 
 
 def test_a_program_is_told_apart_by_its_end(tmp_path):
-    assert call(["sh", "-c", "echo said; exit 3"], tmp_path, 60) == ("said\n", 3)
-    assert call(["sh", "-c", "cat"], tmp_path, 60) == ("", 0)  # nothing to read
-    assert call(["sh", "-c", "kill -9 $$"], tmp_path, 60) == ("", -9)
+    assert run_program(["sh", "-c", "echo said; exit 3"], tmp_path, 60) == ("said\n", 3)
+    assert run_program(["sh", "-c", "cat"], tmp_path, 60) == ("", 0)  # nothing to read
+    assert run_program(["sh", "-c", "kill -9 $$"], tmp_path, 60) == ("", -9)
     with pytest.raises(OSError, match="No such file"):
-        call([str(tmp_path / "none")], tmp_path, 60)
+        run_program([str(tmp_path / "none")], tmp_path, 60)

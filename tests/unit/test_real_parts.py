@@ -13,7 +13,7 @@ from flexapod.analysis.error_budget.rows import names_of_rows
 from flexapod.analysis.results.causes import cause_names
 from flexapod.app.cli.cli import app
 from flexapod.common.errors import InputError
-from flexapod.mechanics.elements.springs import in_series, softening, springs_along
+from flexapod.mechanics.elements.springs import series_stiffness, softening, springs_along
 from flexapod.model import (
     MATERIALS,
     AxialSpring,
@@ -135,16 +135,16 @@ def test_a_pair_of_angular_contact_bearings():
 
 def test_five_springs_in_series_are_one():
     leg = machine(springs=tuple(AxialSpring(name=f"s{k}", stiffness=5e8, damping=5e3) for k in range(5))).legs[0]
-    assert in_series(springs_along(leg), 1.0, 0.0) == pytest.approx((1e8, 1e3), rel=1e-12)
+    assert series_stiffness(springs_along(leg), 1.0, 0.0) == pytest.approx((1e8, 1e3), rel=1e-12)
     mixed = machine(springs=(AxialSpring(name="a", stiffness=1e8, loss=0.1), AxialSpring(name="b", stiffness=3e8)))
-    stiffness, damping = in_series(springs_along(mixed.legs[0]), 1.0, 1 / (2 * np.pi * 20.0))
+    stiffness, damping = series_stiffness(springs_along(mixed.legs[0]), 1.0, 1 / (2 * np.pi * 20.0))
     loss = (0.1 / 1e8) / (1 / 1e8 + 1 / 3e8)  # shares of the strain energy
     assert damping == pytest.approx(loss * stiffness / (2 * np.pi * 20.0), rel=1e-12)
 
 
 def test_the_compliance_is_a_polynomial_about_home():
     springs = [x for x in springs_along(machine(drive=SCREW.replace(mounting="fixed-fixed")).legs[0]) if x.at == "nut"]
-    stiffness, (first, second) = in_series(springs, 1.1, 1.0)[0], softening(springs, 1.1)
+    stiffness, (first, second) = series_stiffness(springs, 1.1, 1.0)[0], softening(springs, 1.1)
     for away in (-0.05, 0.0, 0.2):
         whole = sum(float(x.at_length(np.array(1.1 + away))) for x in springs)
         assert (1 + away * (first + away * second)) / stiffness == pytest.approx(whole, rel=1e-12)

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from flexapod.app.cli.cli import app
 from flexapod.model import preset_text
-from flexapod.model.file.fields import listened
+from flexapod.model.file.fields import read_notes
 
 matplotlib.use("Agg")
 RECIPES = sorted((Path(__file__).parents[2] / "docs" / "how-to").glob("*.md"))
@@ -34,7 +34,7 @@ def test_recipe(recipe, tmp_path, monkeypatch):
             run_lines(text)
         else:
             data = merged(tomllib.loads(Path("robot.toml").read_text(encoding="utf-8")), tomllib.loads(text))
-            error = listened(data, tmp_path)[1]
+            error = read_notes(data, tmp_path)[1]
             assert error is None, error
     plt.close("all")
 

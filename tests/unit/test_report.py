@@ -21,7 +21,7 @@ from flexapod.output.text.answers import axes_table, distances_table, run_items
 from flexapod.output.text.html import replay as replay_figure
 from flexapod.output.text.parts import Lines
 from flexapod.output.text.study import modes_section, study_items
-from flexapod.output.text.terminal import show
+from flexapod.output.text.terminal import print_items
 
 POINTS = 6 + 6 * 9 + 2 * 6 + 4 + 2  # of a frame: bases, pistons, platforms, centres, tools
 PRESCRIBED = 'drive = { type = "prescribed" }'
@@ -309,7 +309,7 @@ def test_pictures_stand_below_the_figures_that_zoom(page):
 
 
 def test_the_terminal_tells_of_the_tool_first(tool, tmp_path, capsys):
-    show(run_items(*tool))
+    print_items(run_items(*tool))
     lines = capsys.readouterr().out
     assert lines.startswith("The tool misses its rigid path")
     assert lines.index("The payload's centre of mass") < lines.index("peak / travel")
@@ -321,7 +321,7 @@ def test_small_shares_of_the_travel_keep_their_digits(tool, capsys):
     shares = (None, 0.0123, 234.0)
     axes = [replace(axis, per_cent=share) for axis, share in zip(found.axes, shares, strict=True)]
     found = replace(found, axes=axes)
-    show([axes_table(found)])
+    print_items([axes_table(found)])
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[-1] for line in lines if line.split()[:1] in (["x"], ["y"], ["z"])] == ["n/a", "0.012", "230"]
     table = html.parts([distances_table(found)])

@@ -5,11 +5,11 @@ from tests.oracles.stewart_cases import base_circle, platform_circle
 
 from flexapod.kinematics.inverse import leg_frames, leg_state
 from flexapod.kinematics.jacobian import (
-    along_path,
     characteristic_length,
+    dimensionless_jacobian,
     length_jacobian,
-    scaled,
     scaled_path,
+    singularity_measures,
     stiffness,
 )
 from flexapod.kinematics.trajectory import Poses, rotation_matrix
@@ -36,18 +36,22 @@ def test_jacobian_times_twist_is_the_leg_rate_about_any_point():
 
 def test_measures_depend_neither_on_the_unit_of_length_nor_on_the_platform_frame():
     poses = random_poses(10)
-    first = along_path(scaled_path(BASE, PLATFORM, poses))
-    again = along_path(scaled_path(1e3 * BASE, 1e3 * PLATFORM, Poses.at_rest(1e3 * poses.position, poses.rotation)))
+    first = singularity_measures(scaled_path(BASE, PLATFORM, poses))
+    again = singularity_measures(
+        scaled_path(1e3 * BASE, 1e3 * PLATFORM, Poses.at_rest(1e3 * poses.position, poses.rotation))
+    )
     shift = np.array([0.3, -0.2, 0.5])
     there = Poses.at_rest(poses.position - poses.rotation @ shift, poses.rotation)
-    moved = along_path(scaled_path(BASE, PLATFORM + shift, there))
+    moved = singularity_measures(scaled_path(BASE, PLATFORM + shift, there))
     for other in (again, moved):
         np.testing.assert_allclose(other.smallest_singular_value, first.smallest_singular_value, rtol=1e-11)
         np.testing.assert_allclose(other.determinant, first.determinant, rtol=1e-11)
     np.testing.assert_allclose(
         first.condition * first.smallest_singular_value,
         np.linalg.norm(
-            scaled(length_jacobian(BASE, PLATFORM, poses.position, poses.rotation), 0.15), ord=2, axis=(1, 2)
+            dimensionless_jacobian(length_jacobian(BASE, PLATFORM, poses.position, poses.rotation), 0.15),
+            ord=2,
+            axis=(1, 2),
         ),
         rtol=1e-12,
     )
@@ -60,7 +64,7 @@ def test_characteristic_length_of_a_circle_is_its_radius():
 def test_path_through_yaw_of_90_degrees_changes_the_sign():
     yaw = np.deg2rad(np.linspace(60, 120, 60))  # misses 90 deg itself
     poses = Poses.at_rest(np.tile([0, 0, HOME], (60, 1)), rotation_matrix(np.stack([0 * yaw, 0 * yaw, yaw], axis=1)))
-    path = along_path(scaled_path(BASE, PLATFORM, poses))
+    path = singularity_measures(scaled_path(BASE, PLATFORM, poses))
     np.testing.assert_array_equal(path.sign_changes, [29])
     assert path.worst in (29, 30)
 

@@ -4,7 +4,15 @@ import numpy as np
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
-from flexapod.kinematics.rotations import difference, exponential, matrix, product, quaternion, rotation_vector, turned
+from flexapod.kinematics.rotations import (
+    difference,
+    displace_pose,
+    exponential,
+    matrix,
+    product,
+    quaternion,
+    rotation_vector,
+)
 
 RNG = np.random.default_rng(4)
 AXES = np.concatenate([np.eye(3), -np.eye(3), RNG.normal(size=(20, 3))])
@@ -46,6 +54,6 @@ def test_products_and_steps_are_those_of_matrices():
     e = product(a.as_quat(scalar_first=True), b.as_quat(scalar_first=True))
     assert_allclose(matrix(e), a.as_matrix() @ b.as_matrix(), atol=1e-14)
     step = RNG.normal(size=(30, 6))
-    moved = turned(np.concatenate([RNG.normal(size=(30, 3)), a.as_quat(scalar_first=True)], axis=1), step)
+    moved = displace_pose(np.concatenate([RNG.normal(size=(30, 3)), a.as_quat(scalar_first=True)], axis=1), step)
     assert_allclose(matrix(moved[:, 3:]), a.as_matrix() @ exponential(step[:, 3:]), atol=1e-14)
     assert_allclose(np.linalg.norm(moved[:, 3:], axis=1), 1.0, rtol=1e-15 * 4)

@@ -33,7 +33,7 @@ def actuator_run():
 
 def test_in_true_size_the_robot_stands_where_the_result_says():
     study, data = robot_run()
-    now = geometry.RobotMotion(study, data).at(0.2, 1.0)
+    now = geometry.RobotMotion(study, data).instant_at(0.2, 1.0)
     at = data.isel(time=now.index)
     R = at.platform_quaternion.values
     arms = study.robot.platform_joints - study.robot.payload.com
@@ -63,7 +63,7 @@ def test_the_drawn_centre_line_is_the_bent_piston(settings):
     """Against the leg's own coordinates: cylinder axis from the joint's angles, shapes on it."""
     study, data = robot_run(**settings)
     i = int(np.abs(data.tip_deflection.values).max(axis=(1, 2)).argmax())
-    drawn = geometry.RobotMotion(study, data).at(float(data.time[i]), 1.0).flexible.piston
+    drawn = geometry.RobotMotion(study, data).instant_at(float(data.time[i]), 1.0).flexible.piston
     at, robot, zeta = data.isel(time=i), study.robot, np.linspace(0, 1, STATIONS)
     simulation = study.simulation
     phi = shapes.lateral_basis(simulation.lateral_basis, simulation.lateral_shapes).values(zeta)
@@ -87,7 +87,7 @@ def test_magnified_pistons_still_join_cylinder_and_platform():
     motion = geometry.RobotMotion(study, data)
     factor = motion.automatic_scale()
     assert factor > 1
-    now = motion.at(0.3, factor)
+    now = motion.instant_at(0.3, factor)
     assert now.flexible.piston[:, -1] == pytest.approx(now.flexible.platform, abs=1e-12)
     mouths = np.linalg.norm(now.flexible.mouth - now.flexible.base, axis=1)
     # The cylinder is as long as it is, up to the square of its lean of at most 0.12 (the automatic factor's share).
@@ -100,7 +100,7 @@ def test_rigid_and_lumped_legs_are_drawn_straight():
         study, data = robot_run(fidelity=fidelity)
         motion = geometry.RobotMotion(study, data)
         assert (motion.automatic_scale() == 1) == (fidelity == "rigid")  # rounding is not magnified
-        drawn = motion.at(0.1, 1000.0).flexible
+        drawn = motion.instant_at(0.1, 1000.0).flexible
         chord = drawn.platform - drawn.base
         away = np.cross(drawn.piston - drawn.base[:, None], chord[:, None])
         assert np.abs(away).max() < 1e-12
@@ -110,20 +110,23 @@ def test_results_are_drawn_with_the_shapes_they_were_computed_with():
     """Results whose study could not be read whole come with default settings: once a mismatch of three and five."""
     study, data = robot_run(basis="clamped-free", modes=5)
     lost = study.replace(simulation=model.Simulation())
-    one, other = geometry.RobotMotion(study, data).at(0.3, 50.0), geometry.RobotMotion(lost, data).at(0.3, 50.0)
+    one, other = (
+        geometry.RobotMotion(study, data).instant_at(0.3, 50.0),
+        geometry.RobotMotion(lost, data).instant_at(0.3, 50.0),
+    )
     assert np.array_equal(one.flexible.piston, other.flexible.piston)
-    assert geometry.as_computed(study, data) is study
+    assert geometry.computed_study(study, data) is study
 
 
 def test_the_beam_of_the_actuator_ends_where_the_result_says():
     study, data = actuator_run()
-    motion = geometry.DrawnMotion(study, data)
-    i, bent, straight = motion.at(0.7, 1.0)
+    motion = geometry.BeamMotion(study, data)
+    i, bent, straight = motion.frame_at(0.7, 1.0)
     X, Y = data.tip_position.values[i]
     # The drawn beam is not foreshortened: (3/5) v^2 / L of a static shape, about 1e-5 m here.
     assert bent[-1] == pytest.approx([X, 0.0, Y], abs=2 * float(np.abs(data.tip_deflection).max()) ** 2 / 1.83)
     assert np.linalg.norm(straight[-1] - straight[0]) == pytest.approx(float(data.length[i]), rel=1e-14)
-    i, bent, straight = motion.at(0.7, 20.0)
+    i, bent, straight = motion.frame_at(0.7, 20.0)
     assert motion.tips(20.0)[i] == pytest.approx(bent[-1], abs=1e-12)
     assert np.linalg.norm(bent[-1] - straight[-1]) == pytest.approx(20 * abs(float(data.tip_deflection[i])), rel=1e-12)
 
@@ -135,7 +138,7 @@ def test_round_down(factor, shown):
 
 def test_nearest_instant():
     instants = np.array([0.0, 0.1, 0.2])
-    assert [geometry.nearest(instants, t) for t in (-1.0, 0.04, 0.06, 0.19, 9.0)] == [0, 0, 1, 2, 2]
+    assert [geometry.nearest_index(instants, t) for t in (-1.0, 0.04, 0.06, 0.19, 9.0)] == [0, 0, 1, 2, 2]
 
 
 def test_tubes_have_their_radius_and_close_around():
@@ -171,13 +174,13 @@ def test_orientation_turns_z_into_a_direction():
 
 def test_rotation_of_a_drawn_robot():
     study, data = robot_run()
-    now = geometry.RobotMotion(study, data).at(0.3, 1.0)
+    now = geometry.RobotMotion(study, data).instant_at(0.3, 1.0)
     assert now.flexible.rotation == pytest.approx(rotation(data.platform_quaternion.values[now.index]), abs=1e-12)
 
 
 def test_paths_are_thinned_and_keep_their_ends():
     path = np.linspace([0, 0, 0], [1, 2, 3], 5001)
-    segments = geometry.strip(path, 400)
+    segments = geometry.path_segments(path, 400)
     assert segments.shape == (400, 2, 3)
     assert np.array_equal(segments[0, 0], path[0]) and np.array_equal(segments[-1, 1], path[-1])
     assert np.array_equal(segments[1:, 0], segments[:-1, 1])
@@ -231,12 +234,12 @@ def test_charts_keep_extremes_and_values():
     deviation = drawn["deviation"]
     assert deviation.unit == "µm"
     assert deviation.values == pytest.approx(1e6 * data.com_deviation.values.T)
-    time, values = deviation.at(0.1004)  # of the nearest stored instant, as in the scene
+    time, values = deviation.values_at(0.1004)  # of the nearest stored instant, as in the scene
     assert time == pytest.approx(0.1)
     assert values == pytest.approx(1e6 * data.com_deviation.sel(time=0.1, method="nearest").values)
     signal = np.vstack([np.sin(np.arange(5000.0)), np.zeros(5000)])
     signal[0, 1234] = 7.0  # one instant among thousands
-    kept = view_charts.thinned(signal)
+    kept = view_charts.decimation_indices(signal)
     assert 1234 in kept and len(kept) <= view_charts.MOST + 2
     assert kept[0] == 0 and kept[-1] == 4999 and (np.diff(kept) > 0).all()
     assert list(view_charts.charts(actuator_run()[1])) == ["tip deflection", "length", "torque", "force", "energies"]
@@ -244,9 +247,9 @@ def test_charts_keep_extremes_and_values():
 
 def test_the_hull_of_a_platform_leaves_out_a_joint_in_its_middle():
     corners = np.array([[0.2, 0, 1.0], [-0.1, 0.17, 1], [-0.1, -0.17, 1], [0, 0, 1], [0.01, 0.02, 1]])
-    assert sorted(skeleton.around(corners)) == [0, 1, 2]
+    assert sorted(skeleton.convex_hull(corners)) == [0, 1, 2]
     hexagon = np.array([[np.cos(a), np.sin(a), 0.3 * np.sin(a)] for a in (0, 2, 1, 4, 3, 5)])
-    order = list(skeleton.around(hexagon))
+    order = list(skeleton.convex_hull(hexagon))
     start = order.index(0)
     ring = order[start:] + order[:start]
     assert ring in ([0, 2, 1, 4, 3, 5], [0, 5, 3, 4, 1, 2])
@@ -274,7 +277,7 @@ def test_struts_keep_their_length_where_the_platform_moves(name):
     path = kinematics.poses(
         robot, CombinedMotion(amplitudes={"yaw" if robot.plane else "heave": 0.03}, duration=1.0), [0.7]
     )
-    drawn = skeleton.Skeleton(robot).at(path.position[0], path.rotation[0])
+    drawn = skeleton.Skeleton(robot).scene_at(path.position[0], path.rotation[0])
     legs = kinematics.inverse_kinematics(robot, path)
     lengths = np.linalg.norm(drawn.platform - drawn.base, axis=1)
     np.testing.assert_allclose(lengths, legs.length[0], rtol=0, atol=1e-9)  # gap of a guided pose

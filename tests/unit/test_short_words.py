@@ -9,13 +9,15 @@ from typer.testing import CliRunner
 
 import flexapod as fx
 from flexapod.analysis.description.robot_description import describe
-from flexapod.analysis.error_budget.text import budget_counts, run_counts
-from flexapod.analysis.results.idealizations import MACHINES, ideal_words
+from flexapod.analysis.results.idealizations import MACHINES, idealization
 from flexapod.app.cli.cli import app
 from flexapod.common.quantities import along_axes, brief
 from flexapod.model import ActuatorStudy, override
 from flexapod.output.report.report import warnings_section
 from flexapod.output.text import html
+from flexapod.output.text.answers import run_counts
+from flexapod.output.text.budget import budget_counts
+from flexapod.output.text.description import ideal_words, rest_words
 from flexapod.solve.statics.parts import part_stiffness
 
 RUN = CliRunner()
@@ -53,15 +55,16 @@ def test_shares_of_machines_are_those_of_the_presets(name):
 
 
 def test_ideal_parts_are_named_and_compared_with_a_machine_of_that_size(machine):
-    told = {name: ideal_words(study.robot) for name in ("paper-robot", "tripod", "flight-simulator", "nano-hexapod")
+    names = ("paper-robot", "tripod", "flight-simulator", "nano-hexapod")
+    told = {name: ideal_words(idealization(study.robot)) for name in names
             if not isinstance(study := fx.preset(name), ActuatorStudy)}  # fmt: skip
     assert told["paper-robot"].startswith("Ideal, without give: joints, drives, plates; in machine-hexapod,")
     assert "90 % of a leg's compliance and most of its miss" in told["paper-robot"]
     assert "in motion-base" in told["flight-simulator"] and "96 %" in told["flight-simulator"]
-    assert told["nano-hexapod"] is None and ideal_words(machine.robot) is None
+    assert told["nano-hexapod"] is None and ideal_words(idealization(machine.robot)) is None
     stiff = machine.robot.legs[0].base_joint.replace(stiffness=None)
     legs = tuple(leg.replace(base_joint=stiff, platform_joint=stiff) for leg in machine.robot.legs)
-    words = ideal_words(machine.robot.replace(legs=legs))
+    words = ideal_words(idealization(machine.robot.replace(legs=legs)))
     assert words.startswith("Ideal, without give: joints; in machine-hexapod") and "54 %" in words
 
 
@@ -73,7 +76,7 @@ def test_machines_say_what_a_run_and_a_budget_count(machine):
 
 def test_heat_and_weight_are_told_apart_with_signs(machine, checked):
     """By hand: each made alone. Once "is off by 18.5 um" of 30.9 up and 12.4 down."""
-    words = describe(machine).poses[0].rest
+    words = rest_words(describe(machine).poses[0].rest)
     total, heat, weight = (float(x) for x in re.findall(r"z ([+-][\d.]+) µm", words))
     cold = machine.replace(robot=machine.robot.replace(heat=None))
     sag = fx.modes(cold).com_sag.values
@@ -123,7 +126,7 @@ def test_run_and_budget_say_what_is_ideal_and_what_they_count(tmp_path):
     path = tmp_path / "first.toml"
     wish = ["--from", "home=300 mm, payload=20 kg, duration=0.1 s", "--ideal"]
     assert RUN.invoke(app, ["new", str(path), *wish]).exit_code == 0
-    line = ideal_words(fx.load(path).robot)
+    line = ideal_words(idealization(fx.load(path).robot))
     for command in (["check"], ["budget"], ["run", "--no-figures"]):
         assert line in RUN.invoke(app, [command[0], str(path), *command[1:]]).stdout.replace("\n  ", " ")
         assert json.loads(RUN.invoke(app, [command[0], str(path), *command[1:], "--json"]).stdout)["ideal"] == line

@@ -14,7 +14,7 @@ from flexapod.solve.fem.frequencies import banded_solver, frequencies
 from flexapod.solve.fem.hexahedra import SolidMesh, beam_mesh, integrals, mass, stiffness
 from flexapod.solve.fem.reduction import reduced_beam
 from flexapod.solve.fem.section_mesh import section_averages, section_mesh
-from flexapod.solve.fem.sliding import HubMotion, SlidingBeam, slide
+from flexapod.solve.fem.sliding import HubMotion, SlidingBeam, march_solid_beam
 
 FLAT = Rectangle(width=0.1524, height=0.0095)
 SECTIONS = [FLAT, Tube(diameter=0.027), Tube(diameter=0.03, inner_diameter=0.02)]
@@ -107,7 +107,7 @@ def test_a_beam_that_leaves_the_hub_on_the_way():
         )
 
     with pytest.raises(ComputationError, match="wholly into the hub"):
-        slide(beam, inwards, 1e-3, np.linspace(0, 0.5, 6), 0.01)
+        march_solid_beam(beam, inwards, 1e-3, np.linspace(0, 0.5, 6), 0.01)
 
 
 @pytest.mark.parametrize("section", SECTIONS)

@@ -9,7 +9,7 @@ import flexapod as fx
 from flexapod import model
 from flexapod.analysis.results.causes import Errors, L, deviation_by_cause, errors_of
 from flexapod.analysis.results.rigid_path import RigidPath
-from flexapod.analysis.simulation import simulated
+from flexapod.analysis.simulation import run_simulation
 from flexapod.kinematics import COORDINATES
 from flexapod.model import AxisMotion, ForceDrive, Payload, ServoDrive
 
@@ -43,9 +43,9 @@ def test_shares_and_residual_add_up_to_the_deviation(fidelity, drive):
 
 
 def test_errors_split_the_length_without_remainder():
-    found = simulated(model.override(rolling(drive=SERVO), **SHORT))
+    found = run_simulation(model.override(rolling(drive=SERVO), **SHORT))
     path, values = found.path.at(found.record.time), found.values()
-    errors = errors_of(found.study.robot, found.march.system, path, found.record)
+    errors = errors_of(found.march.system, path, found.record)
     whole = values["leg_length"] - values["leg_length_command"]
     np.testing.assert_allclose(errors.total[..., L], whole, rtol=0, atol=4 * np.finfo(float).eps)
     assert not np.delete(errors.total, L, axis=-1).any()
@@ -79,7 +79,7 @@ def test_shares_against_a_pose_moved_by_hand():
     bent = np.zeros((1, 6, len(COORDINATES)))
     bent[..., L] = after - before
     errors = Errors(by_cause={"axial-strain": 0 * bent, "bending": bent, "drive": 0 * bent})
-    shares = deviation_by_cause(robot, RigidPath(study, np.array([0.7])), errors)
+    shares = deviation_by_cause(RigidPath(study, np.array([0.7])), errors)
     np.testing.assert_allclose(shares.sum(axis=(1, 2))[0], shift, atol=1e-13)  # lengths round at 1e-16, J^-1 at 100
     assert not shares[:, [0, 2]].any()
 

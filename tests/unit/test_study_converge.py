@@ -231,14 +231,14 @@ def test_the_ladder_of_a_beam(beam):
 
 
 def test_a_solid_study_is_compared_with_solids_only():
-    from flexapod.design.convergence.plan import base_setting, discretisations, largest
+    from flexapod.design.convergence.plan import base_setting, discretisations, finest_basis
     from flexapod.model import override, preset
 
     study = override(preset("paper-robot"), fidelity="solid-fem")
     base = base_setting(study)
     found = discretisations(study, base, 1e-3)
     assert {(family, setting.fidelity) for family, setting in found} == {("shapes", "solid-fem")}
-    assert largest(base).fidelity == "solid-fem"
+    assert finest_basis(base).fidelity == "solid-fem"
 
 
 @pytest.mark.parametrize("survey", [fx.converge, fx.ladder])

@@ -12,8 +12,8 @@ from flexapod.common.tables.reference import example_line, plain_path, reference
 from flexapod.common.tables.toml import toml_value
 from flexapod.mechanics.elements.element import registered
 from flexapod.model import AXES, FIDELITIES, PROFILES, loads, preset_text
-from flexapod.model.file.fields import listened
-from flexapod.model.file.page import listed, markdown, study_data, words_of
+from flexapod.model.file.fields import read_notes
+from flexapod.model.file.page import list_entries, study_data, study_file_page, words_of
 
 PAGE = Path(__file__).parents[2] / "docs" / "study-file.md"
 ENTRIES = reference().entries
@@ -45,11 +45,13 @@ def folder(tmp_path_factory):
 @pytest.fixture(scope="module")
 def heard(folder):
     """What the readers asked of every example."""
-    return [(entry, *listened(study_data(entry), folder)) for entry in ENTRIES]
+    return [(entry, *read_notes(study_data(entry), folder)) for entry in ENTRIES]
 
 
 def test_the_page_is_what_the_readers_and_the_model_say():
-    assert PAGE.read_text(encoding="utf-8") == markdown(), "write it: flexapod keys --markdown docs/study-file.md"
+    assert PAGE.read_text(encoding="utf-8") == study_file_page(), (
+        "write it: flexapod keys --markdown docs/study-file.md"
+    )
 
 
 @pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: f"{entry.study} {entry.table} {entry.title}")
@@ -87,7 +89,7 @@ def allowed_in(notes, table):
 
 
 def test_every_key_has_an_example_and_a_row(heard):
-    rows = {f"{item.entry.table}.{row.key}" for item in listed() for row in item.rows}
+    rows = {f"{item.entry.table}.{row.key}" for item in list_entries() for row in item.rows}
     for table in {entry.table for entry in ENTRIES}:
         keys = {key for entry, notes, _ in heard if entry.table == table for key in words_of(notes, table)}
         for key in keys & {key for _, notes, _ in heard for key in allowed_in(notes, table)}:

@@ -5,7 +5,7 @@ import pytest
 from tests.sweeps import KEY, diameters, quick
 
 from flexapod.common.errors import InputError
-from flexapod.design.sweeps.outputs import kept
+from flexapod.design.sweeps.outputs import select_outputs
 from flexapod.design.sweeps.plan import read_plan
 from flexapod.design.sweeps.samples import Points
 
@@ -13,7 +13,7 @@ from flexapod.design.sweeps.samples import Points
 def refused(sweep):
     with pytest.raises(InputError) as caught:
         points = Points(quick(), read_plan(sweep))
-        kept(points.plan.keep, quick(), points.resolve())
+        select_outputs(points.plan.keep, quick(), points.resolve())
     return str(caught.value)
 
 

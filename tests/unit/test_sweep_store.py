@@ -19,7 +19,7 @@ from flexapod.common.tables import csv_tables
 from flexapod.design.sweeps import SweepStopped, open_sweep, run, store, unstacked, worker
 from flexapod.design.sweeps.plan import read_plan
 from flexapod.design.sweeps.samples import Points
-from flexapod.design.sweeps.store import Known, StoredArray, SweepStore
+from flexapod.design.sweeps.store import StoredArray, StoreLayout, SweepStore
 from flexapod.design.sweeps.worker import compute_batch
 from flexapod.model import loads
 
@@ -183,8 +183,8 @@ def test_what_is_no_store_is_refused_and_left_alone(tmp_path):
 @pytest.mark.skipif(sys.platform == "win32", reason="SIGKILL")
 def test_two_sweeps_on_one_store(path):
     """The second is refused; the lock of a process that was killed is no hindrance."""
-    code = "import sys, pathlib; from flexapod.design.sweeps.store import locked\n"
-    code += "with locked(pathlib.Path(sys.argv[1])): print('held', flush=True); sys.stdin.read()"
+    code = "import sys, pathlib; from flexapod.design.sweeps.store import store_lock\n"
+    code += "with store_lock(pathlib.Path(sys.argv[1])): print('held', flush=True); sys.stdin.read()"
     holder = start("-c", code, path, stdin=-1)
     assert holder.stdout.readline() == "held\n"
     with pytest.raises(ComputationError, match="in use by another sweep"):
@@ -276,7 +276,7 @@ with SweepStore.open(Path(sys.argv[1])) as store:
 def test_killed_at_any_instant(path):
     """Rows are those of one turn, whole, and never of one before the last that was acknowledged."""
     made = {"axis": StoredArray(("point", "axis"), (200, 3), {}), "all": StoredArray(("point", "time"), (200, 600), {})}
-    SweepStore.at(path, Known(200, {"flexapod_sweep_format": store.FORMAT}, made)).__exit__()
+    SweepStore.open_or_create(path, StoreLayout(200, {"flexapod_sweep_format": store.FORMAT}, made)).__exit__()
     instants, turn = np.random.default_rng(1).uniform(0.0, 0.05, 8), 0
     for instant in instants.tolist():
         process = start("-c", WRITING, path, turn)

@@ -13,8 +13,8 @@ from flexapod.common.tables.base import Key, Quantity, Series, Vec3
 from flexapod.common.tables.columns import columns_of
 from flexapod.common.tables.field_help import Notes
 from flexapod.common.tables.section import Section
-from flexapod.common.tables.table import Table, plain
-from flexapod.common.tables.toml import parsed, toml_text
+from flexapod.common.tables.table import Table, to_plain_data
+from flexapod.common.tables.toml import parse_toml, toml_text
 
 
 class Pad(Table):
@@ -38,7 +38,7 @@ class Foot(Table):
     count: int = 1
 
     @classmethod
-    def resolved(cls, section):
+    def fields_from_section(cls, section):
         """The height."""
         words = {"low": 0.01, "high": 0.1}
         return {"height": words[section.text("word", tuple(words))]} if "word" in section else {}
@@ -55,7 +55,7 @@ count = 3
 
 
 def read(text=TEXT, notes=None):
-    return Section(parsed(text, "feet.toml")["foot"], "foot", "feet.toml", Path(), notes).read(Foot)
+    return Section(parse_toml(text, "feet.toml")["foot"], "foot", "feet.toml", Path(), notes).read(Foot)
 
 
 def test_it_is_read_by_its_fields():
@@ -97,27 +97,27 @@ def test_a_key_that_nobody_knows_is_told_before_a_value_and_a_value_before_a_lim
 
 
 def test_it_is_written_as_it_was_letter_for_letter():
-    assert toml_text({"foot": plain(read())}) == TEXT
+    assert toml_text({"foot": to_plain_data(read())}) == TEXT
 
 
 def test_a_changed_field_is_written_anew_in_its_place_and_the_others_stay():
     foot = read()
-    assert toml_text({"foot": plain(foot.replace(kind="round"))}) == TEXT.replace("square", "round")
+    assert toml_text({"foot": to_plain_data(foot.replace(kind="round"))}) == TEXT.replace("square", "round")
     inner = foot.replace(pad=foot.pad.replace(area=2.0))
-    assert toml_text({"foot": plain(inner)}) == TEXT.replace('"0.5"', "2.0")
-    assert toml_text({"foot": plain(foot.replace(height=0.0275))}) == TEXT
-    assert plain(inner.replace(pad=foot.pad)) == plain(foot)
+    assert toml_text({"foot": to_plain_data(inner)}) == TEXT.replace('"0.5"', "2.0")
+    assert toml_text({"foot": to_plain_data(foot.replace(height=0.0275))}) == TEXT
+    assert to_plain_data(inner.replace(pad=foot.pad)) == to_plain_data(foot)
 
 
 def test_a_word_stands_for_a_field_until_that_is_another():
     foot = read('[foot]\nword = "low"\n')
-    assert foot.height == 0.01 and plain(foot) == {"word": "low"}
-    assert plain(foot.replace(height=0.02)) == {"height": 0.02}
+    assert foot.height == 0.01 and to_plain_data(foot) == {"word": "low"}
+    assert to_plain_data(foot.replace(height=0.02)) == {"height": 0.02}
 
 
 def test_what_python_makes_is_written_in_si_without_what_is_none():
     made = Foot(height=0.0275, pad=Pad(area=0.5))
-    assert plain(made) == {
+    assert to_plain_data(made) == {
         "height": 0.0275, "kind": "round", "at": [0.0, 0.0, 0.0], "pad": {"area": 0.5}, "count": 1,
     }  # fmt: skip
     assert made == read('[foot]\nheight = "27.5 mm"\npad = { area = 0.5 }\n')
@@ -129,8 +129,8 @@ def test_what_was_written_changes_neither_equality_nor_what_is_shown():
     assert foot.model_dump_json() == made.model_dump_json()
     assert "written" not in dir(foot) and "height" in dir(foot)
     for again in (pickle.loads(pickle.dumps(foot)), copy.deepcopy(foot)):
-        assert again == foot and plain(again) == plain(foot)
-    assert copy.copy(foot).written is None  # pydantic's copies change fields behind its back
+        assert again == foot and to_plain_data(again) == to_plain_data(foot)
+    assert copy.copy(foot).source_table is None  # pydantic's copies change fields behind its back
 
 
 def test_numbers_from_python_are_refused_as_those_of_a_file():

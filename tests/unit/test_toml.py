@@ -7,7 +7,7 @@ import pytest
 
 from flexapod import model
 from flexapod.common.errors import InputError
-from flexapod.common.tables.toml import DEEPEST, parsed
+from flexapod.common.tables.toml import DEEPEST, parse_toml
 
 TEXT = model.preset_text("paper-robot")
 LONG = {
@@ -63,9 +63,9 @@ def test_the_same_words_from_a_file(tmp_path):
     ],
 )
 def test_dots_that_are_no_key_are_left_alone(line):
-    assert parsed(f"{line}\n[leg]\nb = 1.5\n", "study.toml")["leg"] == {"b": 1.5}
+    assert parse_toml(f"{line}\n[leg]\nb = 1.5\n", "study.toml")["leg"] == {"b": 1.5}
 
 
 @pytest.mark.parametrize("name", model.PRESETS)
 def test_presets_are_read_as_they_stand(name):
-    assert parsed(model.preset_text(name), name) == tomllib.loads(model.preset_text(name))
+    assert parse_toml(model.preset_text(name), name) == tomllib.loads(model.preset_text(name))

@@ -4,7 +4,7 @@ import tomllib
 
 import pytest
 
-from flexapod.app.browser.document import Document, TypedQuantity, chosen, edited, first_value, quantity, read
+from flexapod.app.browser.document import Document, TypedQuantity, edit_choice, edit_values, first_value, quantity, read
 from flexapod.app.browser.uploads import LARGEST, read_upload, store_table
 from flexapod.common.errors import InputError
 from flexapod.model import PRESETS, preset_text
@@ -35,12 +35,12 @@ def test_fields_of_unequal_legs_and_points():
     keys = {f.key for f in read_fields(many, None)}
     assert {"leg[1].piston.diameter", "leg[6].stroke.max"} <= keys
     assert (
-        read(Document(many, None).changed("leg[3].piston.diameter", "30 mm")).study.robot.legs[2].piston.diameter
+        read(Document(many, None).with_value("leg[3].piston.diameter", "30 mm")).study.robot.legs[2].piston.diameter
         == 0.03
     )
     points = TEXT.split("[motion]")[0] + '[motion]\ntype = "waypoints"\npoints = [{ time = "1 s", roll = "5 deg" }]\n'
     assert "motion.points[1].roll" in {f.key for f in read_fields(points, None)}
-    moved = read(Document(points, None).changed("motion.points[1].roll", "6 deg")).study.motion
+    moved = read(Document(points, None).with_value("motion.points[1].roll", "6 deg")).study.motion
     assert moved.points[0].roll == pytest.approx(0.1047197551)
 
 
@@ -52,22 +52,22 @@ def test_bounds_are_those_of_the_model():
 
 
 def test_a_change_touches_nothing_else():
-    found = edited(
+    found = edit_values(
         Document(TEXT, None), {"leg.piston.diameter": "30 mm", "payload.com[2]": "0.4 m", "load.wrench": [0] * 6}
     )
     assert found.error is None
     assert found.document.text.startswith(TEXT.replace('= "27 mm"', '= "30 mm"').replace('[0, "373 mm"', '[0, "0.4 m"'))
     assert tomllib.loads(found.document.text)["load"] == {"wrench": [0] * 6}
-    assert found.document.without("load").text.strip() == found.document.text.split("[load]")[0].strip()
+    assert found.document.without_key("load").text.strip() == found.document.text.split("[load]")[0].strip()
 
 
 def test_another_choice_takes_out_what_belonged_to_the_one_before():
-    servo = edited(Document(TEXT, None), {"leg.drive.type": "servo", "leg.drive.stiffness": "50 N/um"})
+    servo = edit_values(Document(TEXT, None), {"leg.drive.type": "servo", "leg.drive.stiffness": "50 N/um"})
     assert servo.study.robot.legs[0].drive.stiffness == 5e7
-    back = chosen(servo.document, field("leg.drive.type", servo.document.text), "prescribed")
+    back = edit_choice(servo.document, field("leg.drive.type", servo.document.text), "prescribed")
     assert back.removed == ("leg.drive.stiffness",)
     assert back.study.robot.legs[0].drive.type == "prescribed"
-    missing = chosen(Document(TEXT, None), field("leg.drive.type"), "servo")
+    missing = edit_choice(Document(TEXT, None), field("leg.drive.type"), "servo")
     assert missing.error.key == "leg.drive.stiffness" and missing.removed == ()
 
 
@@ -83,7 +83,7 @@ def test_another_choice_takes_out_what_belonged_to_the_one_before():
 def test_quantities_are_written_as_they_were_read(written, number, unit, again):
     found = quantity(written)
     assert found == TypedQuantity(number, unit)
-    assert found.written() == again and type(found.written()) is type(again)
+    assert found.toml_value() == again and type(found.toml_value()) is type(again)
 
 
 def test_quantities_in_another_unit():
@@ -98,7 +98,7 @@ def test_values_to_start_from_are_valid():
     excluded.add("leg.piston.keyed")  # false asks for a leg with C and a screw
     for found in read_fields(TEXT, None):
         if found.value is None and found.key not in excluded:
-            assert edited(Document(TEXT, None), {found.key: first_value(found)}).error is None, found.key
+            assert edit_values(Document(TEXT, None), {found.key: first_value(found)}).error is None, found.key
 
 
 def test_an_upload_reads_no_file_of_the_server(tmp_path):

@@ -16,7 +16,7 @@ from flexapod.app.browser.files_panel import FilesPanel
 from flexapod.app.browser.network import is_expected
 from flexapod.app.browser.study_panel import StudyPanel
 from flexapod.app.browser.text_fields import LEFT
-from flexapod.app.browser.uploads import LARGEST, MOST_TABLES, Sent, read_upload, store_table
+from flexapod.app.browser.uploads import LARGEST, MOST_TABLES, UploadFolder, read_upload, store_table
 from flexapod.common.errors import InputError
 
 TEXT = model.preset_text("paper-robot")
@@ -40,7 +40,7 @@ def client(capfd):
 @pytest.fixture
 def panel(client):
     """The tab Files of that client, with a result; `panel.text` is the study, `panel.taken` what was uploaded."""
-    sent, faults = Sent(), []
+    sent, faults = UploadFolder(), []
     found = FilesPanel(
         client, Threads(faults.append), sent, lambda: Document(found.text, "study.toml"), lambda: None,
         lambda: found.data, lambda document: found.taken.append(document),

@@ -5,7 +5,7 @@ import tomllib
 import pytest
 
 from flexapod.app.browser.document import Document, read
-from flexapod.app.browser.structure import offers
+from flexapod.app.browser.structure import structure_edits
 from flexapod.common.errors import InputError
 from flexapod.model import PRESETS, preset_text
 
@@ -38,7 +38,7 @@ roll = "0 deg"
 
 
 def offered(document):
-    return {offer.label: offer for offer in offers(document)}
+    return {offer.label: offer for offer in structure_edits(document)}
 
 
 def taken(text, label):
@@ -86,7 +86,7 @@ def test_legs_come_apart_and_together(name):
     assert tomllib.loads(apart)["leg"] == [tomllib.loads(text)["leg"]] * 6
     assert comments(apart) == comments(text)
     assert read(Document(apart, None)).study.robot == read(Document(text, None)).study.robot
-    changed = Document(apart, None).changed("leg[4].piston.diameter", "30 mm").text
+    changed = Document(apart, None).with_value("leg[4].piston.diameter", "30 mm").text
     together = taken(changed, "All legs as this one")
     assert together == text  # to the letter
 
@@ -118,9 +118,9 @@ def test_tables_that_a_file_leaves_out():
 
 
 def test_a_text_that_is_no_toml_offers_nothing():
-    assert offers(Document("[robot", None)) == []
+    assert structure_edits(Document("[robot", None)) == []
     for name in PRESETS:
-        for offer in offers(Document(preset_text(name), None)):
+        for offer in structure_edits(Document(preset_text(name), None)):
             assert read(offer.apply(Document(preset_text(name), None))).error is None
 
 
@@ -130,11 +130,11 @@ def test_a_text_that_is_no_toml_offers_nothing():
 )
 def test_as_many_legs_are_offered_as_the_type_says(kind, label):
     text = f'[robot]\ntype = "{kind}"\n[leg]\ndamping = 0.01\n'
-    offer = next(offer for offer in offers(Document(text, None)) if offer.place == "[leg]")
+    offer = next(offer for offer in structure_edits(Document(text, None)) if offer.place == "[leg]")
     assert offer.label == label
     assert len(tomllib.loads(offer.apply(Document(text, None)).text)["leg"]) == {"S": 6, "T": 3, "F": 4}[label[0]]
 
 
 def test_legs_of_unlike_chains_are_not_made_alike():
     text = '[robot]\ntype = "3-UPS+UP"\n' + 4 * "[[leg]]\ndamping = 0.01\n"
-    assert not [offer for offer in offers(Document(text, None)) if "All legs" in offer.label]
+    assert not [offer for offer in structure_edits(Document(text, None)) if "All legs" in offer.label]

@@ -10,7 +10,7 @@ from flexapod import model
 from flexapod.app.browser.background import Threads
 from flexapod.app.browser.document import Document
 from flexapod.app.browser.study_panel import StudyPanel
-from flexapod.app.browser.text_fields import LEFT, Dial, in_unit, plain, written
+from flexapod.app.browser.text_fields import LEFT, NumberField, entry_value, in_unit, plain
 from flexapod.common.errors import InputError
 from flexapod.model import loads
 
@@ -64,14 +64,14 @@ def type_into(client, handle, text):
     ],
 )
 def test_a_typed_text_becomes_what_a_file_would_have(text, unit, value):
-    found = written(text, unit)
+    found = entry_value(text, unit)
     assert found == value and type(found) is type(value)
 
 
 @pytest.mark.parametrize("number", [0.1, 1 / 3, 2.1e11, 1e-300, 123456789012345.6, 27.0, 0.30000000000000004])
 def test_numbers_are_shown_whole(number):
     assert float(plain(number)) == number
-    assert Document("[a]\n", None).changed("a.b", number).value("a.b") == number
+    assert Document("[a]\n", None).with_value("a.b", number).value("a.b") == number
 
 
 @pytest.mark.parametrize(
@@ -169,7 +169,7 @@ def test_the_number_that_is_turned_can_be_typed(client, panel):
 )
 def test_a_slider_takes_typed_numbers(client, text, value, words):
     moves = []
-    dial = Dial(
+    dial = NumberField(
         client.gui, THREADS, "time", "s", (0.0, 2.0), 0.001, 0.0, lambda: moves.append(dial.value), dimension="time"
     )
     box = field(client, "time [s]")
@@ -182,7 +182,7 @@ def test_a_slider_takes_typed_numbers(client, text, value, words):
 
 
 def test_whole_numbers_stay_whole(client):
-    dial = Dial(client.gui, THREADS, "shapes", "", (1, 12), 1, 3, lambda: None)
+    dial = NumberField(client.gui, THREADS, "shapes", "", (1, 12), 1, 3, lambda: None)
     shapes = field(client, "shapes")
     type_into(client, shapes, "2.5" + LEFT)
     assert dial.value == 3 and "is not a whole number" in dial._words.content

@@ -5,7 +5,7 @@ from tests.mechanisms import ROBOTS
 
 import flexapod as fx
 from flexapod.analysis.description.robot_description import Singularity, describe_legs
-from flexapod.analysis.results.cause_labels import cause_words
+from flexapod.analysis.results.cause_labels import cause_labels
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.design.sweeps.outputs import _records, _robot_scalars
 from flexapod.model import AxisMotion, Study
@@ -49,5 +49,5 @@ def test_sweeps_give_torques_of_cranks_their_unit():
 
 
 def test_what_bends_is_a_piston_or_a_strut():
-    assert cause_words(xr.Dataset({"leg_length": 0.0}))["bending"] == "bending of the pistons"
-    assert cause_words(xr.Dataset())["axial-strain"] == "stretch of the struts"
+    assert cause_labels(xr.Dataset({"leg_length": 0.0}))["bending"] == "bending of the pistons"
+    assert cause_labels(xr.Dataset())["axial-strain"] == "stretch of the struts"

@@ -7,9 +7,9 @@ from tests.runs import paper_robot, with_legs
 import flexapod as fx
 from flexapod import kinematics
 from flexapod.analysis.checks.reachability import REASONS, rigid_codes
-from flexapod.analysis.results.poses import coordinates_of, from_home
+from flexapod.analysis.results.poses import pose_coordinates, poses_about_home
 from flexapod.design.maps.findings import GRID_VARIABLES, SCALARS, axis_words, map_findings
-from flexapod.design.maps.grid import Range, grid
+from flexapod.design.maps.grid import Range, build_grid
 from flexapod.kinematics.inverse import BETA_LIMIT
 from flexapod.kinematics.workspace import LONGEST, NO_FREE_LENGTH, PULLED_OUT, SHORTEST
 from flexapod.model.motion import Waypoint, WaypointMotion
@@ -40,7 +40,7 @@ def test_values_are_those_of_single_poses(study, slice_):
     soft = here.softest_direction.values
     assert here.stiffness_least.item() == pytest.approx(1 / (soft @ C @ soft), rel=1e-9)
     assert here.stiffness_least <= here.stiffness
-    at = from_home(study.robot, np.array([[0, 0.02, 0.05, pose["roll"], 0.05, 0]]))
+    at = poses_about_home(study.robot, np.array([[0, 0.02, 0.05, pose["roll"], 0.05, 0]]))
     assert here.condition.item() == pytest.approx(kinematics.singularity(study.robot, at).condition[0], rel=1e-12)
     length = kinematics.inverse_kinematics(study.robot, at).length[0]
     stroke = study.robot.legs[0].stroke
@@ -85,7 +85,7 @@ def test_dynamic_deviation_is_that_of_rigid_leg_forces_on_springs(study):
     )
     light = light.replace(robot=light.robot.replace(gravity=[0, 0, 0]))
     robot, a = light.robot, np.array([1.0, -2.0, 3.0])
-    still = from_home(robot, np.array([[0.0, 0.0, 0.03, 0.2, 0.0, 0.1]]))
+    still = poses_about_home(robot, np.array([[0.0, 0.0, 0.03, 0.2, 0.0, 0.1]]))
     zero = np.zeros((1, 3))
     moving = kinematics.Poses(
         position=still.position, rotation=still.rotation, velocity=zero, omega=zero, acceleration=a[None], alpha=zero
@@ -109,8 +109,8 @@ def test_reasons_are_those_of_the_rigid_robot(study):
         stroke={"min": 0.62, "max": 1.06}, piston=leg.piston.replace(length=0.7))).robot  # fmt: skip
     rng = np.random.default_rng(3)
     values = rng.uniform(-1, 1, (300, 6)) * [0.3, 0.3, 0.6, 0.6, 0.6, 2.5]
-    path = from_home(robot, values)
-    code = rigid_codes(robot, path, from_home=False)
+    path = poses_about_home(robot, values)
+    code = rigid_codes(kinematics.RigidPoses(robot, path), from_home=False)
     folded = np.array([FLAG[c] == "joint_folds" for c in code])
     np.testing.assert_array_equal((code == 0) | folded, kinematics.reachable(robot, path))
     kinds = {"leg_too_short": SHORTEST, "leg_too_long": LONGEST, "no_free_length": NO_FREE_LENGTH,
@@ -133,18 +133,19 @@ def test_folded_joints_and_singularities(study):
     ).robot
     values = np.zeros((2, 6))
     values[:, 0] = 3.0, 30.0
-    path = from_home(robot, values)
+    path = poses_about_home(robot, values)
     tips = path.point(robot.platform_joints)[0] - robot.base_joints
     _, beta = kinematics.joint_angles(
         kinematics.home_frames(robot), tips / np.linalg.norm(tips, axis=-1, keepdims=True)
     )
     assert (np.abs(beta).max(axis=1) > BETA_LIMIT).tolist() == [False, True]
-    assert [FLAG[c] for c in rigid_codes(robot, path, from_home=False)] == ["reached", "joint_folds"]
+    codes = rigid_codes(kinematics.RigidPoses(robot, path), from_home=False)
+    assert [FLAG[c] for c in codes] == ["reached", "joint_folds"]
     turned = np.zeros((3, 6))
     turned[:, 5] = np.deg2rad([0, 80, 100])
-    codes = rigid_codes(robot, from_home(robot, turned), from_home=True)
+    codes = rigid_codes(kinematics.RigidPoses(robot, poses_about_home(robot, turned)), from_home=True)
     assert [FLAG[c] for c in codes] == ["reached", "reached", "singular"]
-    assert not rigid_codes(robot, from_home(robot, turned), from_home=False).any()
+    assert not rigid_codes(kinematics.RigidPoses(robot, poses_about_home(robot, turned)), from_home=False).any()
 
 
 def test_a_robot_that_sags_through_its_singularity_has_no_equilibrium(study):
@@ -157,21 +158,24 @@ def test_a_robot_that_sags_through_its_singularity_has_no_equilibrium(study):
 
 def test_coordinates_come_back(study):
     values = np.random.default_rng(1).uniform(-1, 1, (20, 6))
-    np.testing.assert_allclose(coordinates_of(study.robot, from_home(study.robot, values)), values, atol=1e-14)
+    np.testing.assert_allclose(pose_coordinates(study.robot, poses_about_home(study.robot, values)), values, atol=1e-14)
 
 
 def test_ranges_that_are_chosen(study):
-    found = grid(study.robot, {"surge": None, "heave": Range(count=11), "yaw": None}, None)
+    found = build_grid(study.robot, {"surge": None, "heave": Range(count=11), "yaw": None}, None)
     assert found.shape == (21, 11, 5)
     for name, values in found.values.items():
         assert 0.0 in values, name
         np.testing.assert_allclose(np.diff(values), values[1] - values[0])
     ends = np.zeros((2, 6))
     ends[:, 2] = found.values["heave"][[0, -1]]
-    assert rigid_codes(study.robot, from_home(study.robot, ends), from_home=True).all()  # a little beyond the reach
+    beyond = kinematics.RigidPoses(study.robot, poses_about_home(study.robot, ends))
+    assert rigid_codes(beyond, from_home=True).all()  # a little beyond the reach
     slices = np.zeros((5, 6))
     slices[:, 5] = found.values["yaw"]
-    assert not rigid_codes(study.robot, from_home(study.robot, slices), from_home=True).any()
+    assert not rigid_codes(
+        kinematics.RigidPoses(study.robot, poses_about_home(study.robot, slices)), from_home=True
+    ).any()
 
 
 @pytest.mark.parametrize(
@@ -232,7 +236,7 @@ def test_margins_are_those_of_the_legs_that_have_limits(study):
         return leg.replace(cylinder=leg.cylinder.replace(mouth=0.0))
 
     length = kinematics.inverse_kinematics(
-        study.robot, from_home(study.robot, np.array([[0, 0, 0, 0.1, 0, 0]]))
+        study.robot, poses_about_home(study.robot, np.array([[0, 0, 0, 0.1, 0, 0]]))
     ).length[0]
     stroke, mouth, piston = legs[0].stroke, legs[0].cylinder.mouth, legs[0].piston.length
     margin = np.minimum(length - stroke.min, stroke.max - length)

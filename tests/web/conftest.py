@@ -20,7 +20,7 @@ from flexapod.app.browser.server import GONE, View
 from flexapod.app.browser.session import Session
 from flexapod.app.cli.commands_proof import _write
 from flexapod.model import Study, loads, preset_text
-from flexapod.output.report.figures import draw
+from flexapod.output.report.figures import draw_figures
 from flexapod.output.report.report import robot_report
 from flexapod.verification.pack import verify
 from flexapod.verification.paper.claim import (
@@ -250,7 +250,9 @@ class Reports(dict):
             Claim(whose=whose, where="Fig. 9", says="5 mm", ours="3 µm", verdict=v, reason="Legs are stiff.")
             for v, whose in verdicts.items()
         ]
-        return paper_page(PaperStudy(parts=parts), claims, {"Robot": draw(robot, self.place / "figures", ("png",))})
+        return paper_page(
+            PaperStudy(parts=parts), claims, {"Robot": draw_figures(robot, self.place / "figures", ("png",))}
+        )
 
 
 @cache

@@ -13,36 +13,36 @@ import flexapod as fx
 from flexapod.app.browser import running
 from flexapod.app.browser.document import Document
 from flexapod.app.browser.header import StudySource
-from flexapod.app.browser.running import Cores, Turn
+from flexapod.app.browser.running import CorePool, CoreUsage
 
 
 def test_long_simulations_take_turns_and_short_ones_pass(monkeypatch):
     """Six long ones that never end of themselves, on one place; now and then somebody wants a moment of it."""
     monkeypatch.setattr(running, "SLICE", 0.02)
     monkeypatch.setattr(running, "LONG", 0.2)
-    places, stop, had, turns, waited = Cores(1), threading.Event(), Counter(), [], []
+    places, stop, had, turns, waited = CorePool(1), threading.Event(), Counter(), [], []
 
     def long(number):
-        turn = Turn()
-        assert places.take(turn, lambda: False, lambda: None)
+        turn = CoreUsage()
+        assert places.acquire(turn, lambda: False, lambda: None)
         while not stop.is_set():
             time.sleep(0.002)
             had[number] += 1
-            if places.is_wanted(turn):
-                places.give_back(turn)
-                assert places.take(turn, lambda: False, lambda: None)
+            if places.should_yield(turn):
+                places.release(turn)
+                assert places.acquire(turn, lambda: False, lambda: None)
                 turns.append(number)
-        places.give_back(turn)
+        places.release(turn)
 
     threads = [threading.Thread(target=long, args=(i,)) for i in range(6)]
     for thread in threads:
         thread.start()
     until(lambda: len(had) == 6)
     for _ in range(40):
-        turn, before = Turn(), len(turns)
-        assert places.take(turn, lambda: False, lambda: None)
+        turn, before = CoreUsage(), len(turns)
+        assert places.acquire(turn, lambda: False, lambda: None)
         waited.append(len(turns) - before)
-        places.give_back(turn)
+        places.release(turn)
         time.sleep(0.02)
     before = dict(had)
     until(lambda: all(had[i] > before[i] for i in range(6)))  # and nobody starves
@@ -56,21 +56,21 @@ def test_long_simulations_take_turns_and_short_ones_pass(monkeypatch):
 
 def test_short_simulations_without_end_do_not_starve_a_long_one(monkeypatch):
     monkeypatch.setattr(running, "LONG", 0.2)
-    places, stop, turn = Cores(1), threading.Event(), Turn(used=100.0)
+    places, stop, turn = CorePool(1), threading.Event(), CoreUsage(used=100.0)
 
     def short():
         while not stop.is_set():
-            mine = Turn()
-            if places.take(mine, stop.is_set, lambda: None):
+            mine = CoreUsage()
+            if places.acquire(mine, stop.is_set, lambda: None):
                 time.sleep(0.01)
-                places.give_back(mine)
+                places.release(mine)
 
     threads = [threading.Thread(target=short) for _ in range(3)]
     for thread in threads:
         thread.start()
     try:
-        assert places.take(turn, lambda: False, lambda: None)
-        places.give_back(turn)
+        assert places.acquire(turn, lambda: False, lambda: None)
+        places.release(turn)
     finally:
         stop.set()
         places.wake()

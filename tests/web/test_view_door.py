@@ -20,7 +20,7 @@ from websockets.sync.client import connect
 from flexapod.app.browser import access, background, client_limits
 from flexapod.app.browser.document import Document
 from flexapod.app.browser.header import StudySource
-from flexapod.app.browser.network import has_place, is_expected, is_same_site, whose
+from flexapod.app.browser.network import admits_client, client_key, is_expected, is_same_site
 from flexapod.app.browser.server import View
 from flexapod.model import loads
 
@@ -326,7 +326,7 @@ def test_who_comes_through_a_proxy_is_counted_by_the_address_that_it_tells(monke
     ],
 )
 def test_whose_a_connection_is(peer, forwarded, found):
-    assert whose(peer, forwarded) == found
+    assert client_key(peer, forwarded) == found
 
 
 @pytest.mark.parametrize("greedy", range(7))
@@ -335,10 +335,10 @@ def test_whoever_is_new_finds_a_place(greedy):
     there = 0
     for _ in range(greedy):
         own = 0
-        while has_place(own, there, 64):
+        while admits_client(own, there, 64):
             own, there = own + 1, there + 1
     assert 64 - there == 64 // 2**greedy
-    assert has_place(0, there, 64)
+    assert admits_client(0, there, 64)
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="127.0.0.2 is this machine on Linux")
@@ -368,7 +368,7 @@ def _answers(server) -> bool:
 
 
 def test_the_log_is_bounded(monkeypatch):
-    few, written = background.Few(), []
+    few, written = background.LogLimiter(), []
     monkeypatch.setattr(background, "MOST_LINES", 5)
     few._left = 5.0
     log = logging.getLogger("flexapod.test.few")

@@ -285,13 +285,13 @@ def test_of_hostile_visitors_nothing_stays(server):
 POOLS = """
 import ctypes, sys, threading
 from flexapod.app.browser import server
-from flexapod.common import memory
+from flexapod.common import resources
 from flexapod.app.browser.document import Document
 from flexapod.app.browser.header import StudySource
 from flexapod.model import loads, preset_text
 
 if sys.argv[1] == "as before":
-    server.few_arenas = lambda: None
+    server.limit_arenas = lambda: None
 text = preset_text("paper-robot")
 view = server.View(StudySource(document=Document(text, None), study=loads(text)), "127.0.0.1", 0)
 here = threading.Barrier(13)
@@ -310,7 +310,7 @@ file = library.fopen(sys.argv[2].encode(), b"w")
 library.malloc_info(0, file)
 library.fclose(file)
 here.wait(300)
-memory.collect()
+resources.collect()
 view.stop()
 """
 

@@ -16,7 +16,7 @@ from flexapod.app.browser import preview
 from flexapod.app.browser import session as sessions
 from flexapod.app.browser.document import Document
 from flexapod.app.browser.header import StudySource, open_source
-from flexapod.app.browser.running import Turn
+from flexapod.app.browser.running import CoreUsage
 from flexapod.common.errors import InputError
 from flexapod.model import preset
 
@@ -120,9 +120,9 @@ def test_an_edit_is_answered_by_a_preview_within_seconds(visit):
 @pytest.mark.parametrize("name", model.PRESETS)
 def test_which_studies_are_quick_depends_on_the_study_alone(name):
     study = fx.preset(name)
-    assert preview.is_quick(study)
+    assert preview.is_preview_fast(study)
     assert preview.coarse(study).simulation.tolerance == preview.TOLERANCE
-    assert not preview.is_quick(model.override(study, duration=1000.0))
+    assert not preview.is_preview_fast(model.override(study, duration=1000.0))
     rough = model.override(study, tolerance=0.05)
     assert preview.coarse(rough) is rough
     fixed = model.override(study, step=5e-4)
@@ -189,7 +189,7 @@ def test_scene_chart_and_slider_show_the_same_stored_instant(visit):
     assert "At 0.08 s" in panel._view._values.content
     panel._choice.value = "leg forces"
     panel._draw_chart()
-    _, values = panel._charts["leg forces"].at(0.0617)
+    _, values = panel._charts["leg forces"].values_at(0.0617)
     assert values == pytest.approx(data.actuator_force.sel(time=0.08, method="nearest").values * 1e-3, rel=1e-12)
     mark = panel._view._plot.data[-1]
     assert panel._view._plot.data[0][int(np.argmax(mark))] == pytest.approx(0.08)
@@ -244,7 +244,7 @@ def test_cancelling_keeps_the_answer_of_results_that_are_there(visit):
     sentence = summary(session.data).sentence
     places = session._cores
     while places._free:
-        places.take(Turn(), lambda: False, lambda: None)
+        places.acquire(CoreUsage(), lambda: False, lambda: None)
     session.simulate()
     session.cancel()
     assert "Cancelled. What was there stays." in said(session) and sentence in said(session)

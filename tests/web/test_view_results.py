@@ -12,7 +12,7 @@ from tests.web.guests import guest, said, until
 from xarray import Dataset
 
 from flexapod.app.browser import running
-from flexapod.app.browser.running import KeptResults
+from flexapod.app.browser.running import ResultMemory
 
 FINE = (
     *SHORT,
@@ -42,7 +42,7 @@ class Somebody:
 def test_the_oldest_go_first_until_all_have_room():
     """Bytes counted by hand: 8 for each number."""
     told = []
-    room = KeptResults(8000, lambda: told.append(1))
+    room = ResultMemory(8000, lambda: told.append(1))
     first, second, third, fourth = (Somebody(room) for _ in range(4))
     first.compute(400)
     second.compute(300)
@@ -65,7 +65,7 @@ def test_the_oldest_go_first_until_all_have_room():
 
 
 def test_what_nobody_holds_any_more_is_not_counted():
-    room = KeptResults(8000)
+    room = ResultMemory(8000)
     one, other = Somebody(room), Somebody(room)
     one.compute(900)
     one.data = None
@@ -123,4 +123,4 @@ def test_visitors_who_compute_and_stay_do_not_fill_the_memory(view, monkeypatch)
 @pytest.mark.parametrize("free", [1e12, 4e6])
 def test_a_small_machine_keeps_less(free, monkeypatch):
     monkeypatch.setattr(running, "available_memory", lambda: free)
-    assert KeptResults().most == min(500e6, free / 4)
+    assert ResultMemory().most == min(500e6, free / 4)

@@ -21,9 +21,9 @@ from flexapod.app.browser import files_panel, running, time_panel
 from flexapod.app.browser import server as pages
 from flexapod.app.browser.document import Document, read
 from flexapod.app.browser.header import StudySource
-from flexapod.app.browser.running import Cores, Turn
-from flexapod.app.browser.structure import offers
-from flexapod.common.tables.toml import Written
+from flexapod.app.browser.running import CorePool, CoreUsage
+from flexapod.app.browser.structure import structure_edits
+from flexapod.common.tables.toml import SourceTable
 from flexapod.mechanics.elements import springs
 from flexapod.output.scene import robot_scene as robots
 
@@ -143,16 +143,16 @@ def test_a_session_begins_when_what_it_needs_is_loaded(view, monkeypatch):
 
 
 def test_no_more_simulations_at_once_than_cores():
-    places, at_once, most, done = Cores(2), [], [], []
+    places, at_once, most, done = CorePool(2), [], [], []
 
     def simulate(number):
-        turn = Turn()
-        assert places.take(turn, lambda: False, lambda: None)
+        turn = CoreUsage()
+        assert places.acquire(turn, lambda: False, lambda: None)
         at_once.append(number)
         most.append(len(at_once))
         time.sleep(0.02)
         at_once.remove(number)
-        places.give_back(turn)
+        places.release(turn)
         done.append(number)
 
     threads = [threading.Thread(target=simulate, args=(i,)) for i in range(8)]
@@ -168,8 +168,8 @@ def test_who_waits_for_a_core_is_told_and_can_cancel(session, monkeypatch):
     places, before = session._cores, session.data
     taken = []
     while places._free:
-        taken.append(Turn())
-        assert places.take(taken[-1], lambda: False, lambda: None)
+        taken.append(CoreUsage())
+        assert places.acquire(taken[-1], lambda: False, lambda: None)
     assert len(taken) == len(os.sched_getaffinity(0))
     session.simulate()
     until(lambda: "Waiting for a free core" in said(session))
@@ -180,7 +180,7 @@ def test_who_waits_for_a_core_is_told_and_can_cancel(session, monkeypatch):
     session.simulate()
     session.simulate()  # takes the place of the one before, also in the queue
     until(lambda: len(places._queue) == 1 and "Waiting" in said(session))
-    places.give_back(taken.pop())
+    places.release(taken.pop())
     until(lambda: session.data is not before)
     until(lambda: "misses its rigid path" in said(session))
     session.simulate()
@@ -243,7 +243,7 @@ def kinds() -> Counter:
                 found.cache_clear()
     springs._known.clear()
     types = (type(found) for found in gc.get_objects())
-    counted = (kind for kind in types if kind is not Written)
+    counted = (kind for kind in types if kind is not SourceTable)
     return Counter(kind for kind in counted if str(kind.__module__).split(".")[0] in ("flexapod", "viser", "xarray"))
 
 
@@ -268,7 +268,7 @@ def test_long_use_leaves_nothing_behind(session, monkeypatch):
             session.modes_panel.pause()
             if i % 4 == 0:
                 edit(session)
-                offered = {offer.label: offer for offer in offers(session.study_panel.document)}
+                offered = {offer.label: offer for offer in structure_edits(session.study_panel.document)}
                 session.study_panel._apply_offer(offered["Add [load]"])
                 session.study_panel._undo()
                 session.study_panel._undo()
@@ -411,7 +411,7 @@ def test_an_edit_that_was_being_read_while_another_study_was_opened_is_dropped(s
     text = study_text(*SHORT, ('"100 kg"', '"80 kg"'))
     before = session.study_panel
     session.open(StudySource(document=Document(text, None), study=fx.loads(text)))
-    before._on_edit(read(before.document.changed("payload.mass", "90 kg")))
+    before._on_edit(read(before.document.with_value("payload.mass", "90 kg")))
     assert session.study.source_text == session.study_panel.document.text == text
 
 

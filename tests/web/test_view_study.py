@@ -12,11 +12,11 @@ from tests.web.guests import until
 import flexapod as fx
 from flexapod.analysis import open_results, summary
 from flexapod.app.browser import files_panel
-from flexapod.app.browser.running import Turn
+from flexapod.app.browser.running import CoreUsage
 from flexapod.app.browser.uploads import LARGEST
 from flexapod.common.errors import InputError
 from flexapod.output.report import figures
-from flexapod.output.text.answers import lines_of, parts_of
+from flexapod.output.text.parts import error_lines, error_parts
 
 ANSWER = "misses its rigid path by up to"
 POINTS = """[motion]
@@ -43,7 +43,7 @@ def words_of(text: str) -> list[str]:
     """The words of the command line for a study that is refused."""
     with pytest.raises(InputError) as refused:
         fx.loads(text, path="study.toml")
-    return [line.strip() for line in lines_of(parts_of(refused.value))]
+    return [line.strip() for line in error_lines(error_parts(refused.value))]
 
 
 def answered(page, session) -> None:
@@ -161,16 +161,16 @@ def test_simulate_shows_progress_and_can_be_cancelled(show):
     places = session._cores
     taken = []
     while places._free:
-        taken.append(Turn())
-        assert places.take(taken[-1], lambda: False, lambda: None)
+        taken.append(CoreUsage())
+        assert places.acquire(taken[-1], lambda: False, lambda: None)
     page.get_by_role("button", name="Simulate").click()
     page.get_by_text("Waiting for a free core").wait_for()
-    places.give_back(taken.pop())
+    places.release(taken.pop())
     page.get_by_text("Simulating.").wait_for()
     page.get_by_role("button", name="Cancel").click()
     until(lambda: places._free)
     while taken:
-        places.give_back(taken.pop())
+        places.release(taken.pop())
 
 
 def test_points_and_tables_are_added_and_taken_out(show):
@@ -205,13 +205,13 @@ def test_points_and_tables_are_added_and_taken_out(show):
 
 
 def test_downloads(show, tmp_path, monkeypatch):
-    drawn, draw = [], figures.draw
+    drawn, draw = [], figures.draw_figures
 
     def once(data, folder, formats):
         drawn.extend([] if drawn else draw(data, tmp_path / "figures", formats))
         return drawn
 
-    monkeypatch.setattr(figures, "draw", once)  # the same figures for the archive and the report
+    monkeypatch.setattr(figures, "draw_figures", once)  # the same figures for the archive and the report
     text = study_text(*SHORT)
     page, session = show(text)
     page.get_by_text(ANSWER).wait_for()

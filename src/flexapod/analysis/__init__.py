@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from flexapod.analysis.checks.checks import check_path
 from flexapod.analysis.elastic_parts import parts
 from flexapod.analysis.pose_errors import accuracy, play
-from flexapod.common.lazy_imports import later
+from flexapod.common.lazy_imports import lazy_attributes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -67,7 +67,7 @@ __all__ = [
 ]
 
 
-__getattr__: Callable[[str], object] = later("flexapod.analysis", _LATER)
+__getattr__: Callable[[str], object] = lazy_attributes("flexapod.analysis", _LATER)
 
 
 def __dir__() -> list[str]:

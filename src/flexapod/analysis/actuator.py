@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike
 from flexapod import model
 from flexapod.analysis.checks.checks import check_actuator_path
 from flexapod.analysis.checks.plausibility import actuator_warnings
-from flexapod.analysis.results.arguments import FileLike, read
+from flexapod.analysis.results.arguments import FileLike, read_subject
 from flexapod.analysis.results.attributes import attributes, march_attributes
 from flexapod.analysis.results.robot_results import energy_results
-from flexapod.analysis.results.time_history import Progress, Record, check_progress, collect, finished
+from flexapod.analysis.results.time_history import Progress, Record, check_progress, collect, result_or_interrupt
 from flexapod.analysis.results.variables import ACTUATOR_FORMS, DIRECTIONS, SPACE_FORMS, dataset
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
@@ -100,7 +100,7 @@ def _simulated(study: model.ActuatorStudy, progress: Progress | None) -> Dataset
     march = prepare_actuator(study)
     angles = range(march.system.kernel.shapes.l_index, -1, -1)  # l, and backwards the angles of the hub before it
     record = collect(march.chunks, angles, study.duration, progress)
-    return finished(lambda: _dataset(study, march, record, remarks), record)
+    return result_or_interrupt(lambda: _dataset(study, march, record, remarks), record)
 
 
 def _dataset(study: model.ActuatorStudy, march: ActuatorMarch, record: Record, remarks: list[str]) -> Dataset:
@@ -126,7 +126,7 @@ def _as_study(
     initial: model.ActuatorInitial | None,
     settings: dict[str, object],
 ) -> model.ActuatorStudy:
-    actuator = read(actuator)  # type: ignore[assignment]
+    actuator = read_subject(actuator)  # type: ignore[assignment]
     given = {"motion": motion, "load": load, "initial": initial}
     changes = {name: value for name, value in given.items() if value is not None}
     if isinstance(actuator, model.ActuatorStudy):

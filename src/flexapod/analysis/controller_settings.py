@@ -8,18 +8,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import model
-from flexapod.analysis.results.lazy_arrays import Made
+from flexapod.analysis.results.lazy_arrays import ArraySource
+from flexapod.analysis.results.remarks import remark
 from flexapod.analysis.results.time_history import Record
-from flexapod.common.arguments import whole
+from flexapod.common.arguments import integer
 from flexapod.common.arrays import Array
-from flexapod.common.errors import InputError, closest
+from flexapod.common.errors import InputError, suggest_word
 from flexapod.common.units import quantity
 
 if TYPE_CHECKING:
-    from flexapod.control import AdaptiveDamping, Controller, Function, StateSpace
-    from flexapod.solve.time.sampled_control import Sampled
+    from flexapod.control import AdaptiveDamping, Controller, FunctionController, StateSpace
+    from flexapod.solve.time.sampled_control import SampledController
 
-    AnyController = Controller | AdaptiveDamping | StateSpace | Function
+    AnyController = Controller | AdaptiveDamping | StateSpace | FunctionController
 
 SUMS = 1e-9  # of a pole from 1, of what it sums: less is none
 
@@ -43,7 +44,7 @@ def sampled_controller(
     saturate: PerChannel = None,
     noise: Noise = None,
     seed: int | None = None,
-) -> Sampled | None:
+) -> SampledController | None:
     """The controller of a simulation: that of the call, else that of the study; None without one.
 
     Parameters
@@ -86,12 +87,12 @@ def sampled_controller(
 
 def _of_table(table: model.Control, robot: model.Robot) -> tuple[AnyController, dict[str, object]]:
     """Controller and settings of a study file."""
-    from flexapod.solve.linear.channels import asked
+    from flexapod.solve.linear.channels import plant_channels
 
     names = ("sample", "delay_samples", "saturate", "seed", "quantise", "noise")
     found = {name: getattr(table, name, None) for name in names}
     if isinstance(table, model.ToolControl):
-        tool = [channel.name for channel in asked(table.reads, robot, "outputs")]
+        tool = [channel.name for channel in plant_channels(table.reads, robot, "outputs")]
         each = {name: found[name] for name in ("quantise", "noise")}
         found |= {name: None if x is None else dict(zip(tool, x.tolist(), strict=True)) for name, x in each.items()}  # type: ignore[attr-defined]
     if isinstance(table, model.ForceControl):
@@ -139,12 +140,12 @@ def _controller_of(table: model.Control, robot: model.Robot) -> Controller | Sta
 
 def _refuse_unknown(table: model.FileControl, robot: model.Robot) -> None:
     """Refuse channels of a law in a file that the robot has not, with the nearest."""
-    from flexapod.solve.linear.channels import asked
+    from flexapod.solve.linear.channels import plant_channels
 
     for name, known, channels in (("inputs", "outputs", table.inputs), ("outputs", "inputs", table.outputs)):
         for channel in channels:
             try:
-                asked(channel, robot, known)
+                plant_channels(channel, robot, known)
             except InputError as error:
                 error.key = name
                 raise error.located(file=table.file) from None
@@ -161,20 +162,20 @@ def _made(
     noise: Noise = None,
     seed: int = 0,
     key: str = "sample",
-) -> Sampled:
+) -> SampledController:
     """A controller with all settings; `key`: where its time between samples is given."""
     from flexapod.control import StateSpace
-    from flexapod.solve.time.sampled_control import Sampled
+    from flexapod.solve.time.sampled_control import SampledController
 
     period = _period(controller, sample)
-    delay_samples, seed = whole(delay_samples, "delay_samples", 0, 1000), whole(seed, "seed", 0, 2**31 - 1)
+    delay_samples, seed = integer(delay_samples, "delay_samples", 0, 1000), integer(seed, "seed", 0, 2**31 - 1)
     law = _law(controller, period, robot)
     inputs, outputs = tuple(law.inputs), tuple(law.outputs)
     for which, names in (("inputs", inputs), ("outputs", outputs)):
         if not names or len(set(names)) < len(names):
             raise InputError("are none, or one of them twice", key=f"controller.{which}", value=", ".join(names))
     matrices = {name: getattr(law, name) for name in "ABCD"} if isinstance(law, StateSpace) else {}
-    return Sampled(
+    return SampledController(
         readings=inputs,
         outputs=outputs,
         period=period,
@@ -205,25 +206,25 @@ def _period(controller: AnyController, sample: float | str | None) -> float:
     return float(period)
 
 
-def _law(controller: AnyController, period: float, robot: model.Robot) -> StateSpace | Function:
-    """What is computed at each sample."""
-    from flexapod.control import AdaptiveDamping, Controller, Function, Scheduled, StateSpace
-    from flexapod.solve.linear.channels import asked
+def _law(controller: AnyController, period: float, robot: model.Robot) -> StateSpace | FunctionController:
+    """Sampled law or function that is computed at each sample."""
+    from flexapod.control import AdaptiveDamping, Controller, FunctionController, Scheduled, StateSpace
+    from flexapod.solve.linear.channels import plant_channels
 
     if isinstance(controller, StateSpace):
         return controller if controller.sample is not None else controller.sampled(period)
     if isinstance(controller, Controller | AdaptiveDamping):
         read, moved = (
-            [channel.name for group in groups for channel in asked(group, robot, key)]
+            [channel.name for group in groups for channel in plant_channels(group, robot, key)]
             for groups, key in ((READ + READ_OF_PLATFORM * (not robot.platform_fixed), "outputs"), (MOVED, "inputs"))
         )
         return controller.sampled(period, read, moved)
-    if not isinstance(controller, Function):
+    if not isinstance(controller, FunctionController):
         raise InputError(
             "is no controller",
             key="controller",
             value=type(controller).__name__,
-            allowed="one of flexapod.control, a StateSpace, or a flexapod.control.Function",
+            allowed="one of flexapod.control, a StateSpace, or a flexapod.control.FunctionController",
             next_step="Of a Scheduled: its .following(...) a path" if isinstance(controller, Scheduled) else None,
         )
     return controller
@@ -253,7 +254,7 @@ def _by_channel(given: PerChannel, names: Sequence[str], key: str, without: floa
                 key=key,
                 value=name,
                 allowed=", ".join(names),
-                next_step=closest(name, names),
+                next_step=suggest_word(name, names),
             )
         if value is not None:
             unlimited = isinstance(value, float) and value == without
@@ -263,7 +264,7 @@ def _by_channel(given: PerChannel, names: Sequence[str], key: str, without: floa
     return found
 
 
-def control_remarks(sampled: Sampled | None) -> tuple[str, ...]:
+def control_remarks(sampled: SampledController | None) -> tuple[str, ...]:
     """Doubt about a controller: one that sums forces alone leaves no stiffness at rest."""
     if sampled is None or sampled.function is not None or not len(sampled.A):
         return ()
@@ -272,14 +273,11 @@ def control_remarks(sampled: Sampled | None) -> tuple[str, ...]:
     forces = [name.startswith(("force-sensor:", "drive-force:", "joint-force:")) for name in sampled.readings]
     if not (summed.any(axis=1) & ~summed[:, ~np.array(forces)].any(axis=1)).any():
         return ()
-    return (
-        "the controller sums forces without a high-pass, so that static stiffness is lost: nothing holds at rest what "
-        "the drives carry; give high_pass, for example a tenth of the first frequency, or springs beside them",
-    )
+    return (remark("summed forces"),)
 
 
-def control_results(sampled: Sampled | None, record: Record) -> dict[str, Made]:
-    """What a controller read and held at the stored instants, and its work; nothing without one."""
+def control_results(sampled: SampledController | None, record: Record) -> dict[str, ArraySource]:
+    """Readings and outputs of a controller at the stored instants, and its work; empty without one."""
     if sampled is None:
         return {}
     read = len(sampled.readings)
@@ -290,7 +288,7 @@ def control_results(sampled: Sampled | None, record: Record) -> dict[str, Made]:
     }
 
 
-def control_attributes(sampled: Sampled | None) -> dict[str, object]:
+def control_attributes(sampled: SampledController | None) -> dict[str, object]:
     """Time between its samples [s], their delay, and the seed of its noise."""
     if sampled is None:
         return {}
@@ -301,6 +299,6 @@ def control_attributes(sampled: Sampled | None) -> dict[str, object]:
     }
 
 
-def control_coords(sampled: Sampled | None) -> dict[str, list[str]]:
+def control_coords(sampled: SampledController | None) -> dict[str, list[str]]:
     """Names of its channels."""
     return {} if sampled is None else {"sensor": list(sampled.readings), "actuator": list(sampled.outputs)}

@@ -1,4 +1,4 @@
-"""What every part of every leg contributes at a pose, as a Dataset."""
+"""Stiffness of every part of every leg at a pose, as a Dataset."""
 
 from __future__ import annotations
 
@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod import kinematics
-from flexapod.analysis.checks.checks import path_remarks
-from flexapod.analysis.results.arguments import PoseLike, RobotLike, as_pose, at_pose
+from flexapod.analysis.checks.checks import pose_remarks
+from flexapod.analysis.results.arguments import PoseLike, RigidPose, RobotLike, study_at_pose
 from flexapod.analysis.results.attributes import attributes
 from flexapod.analysis.results.elongations import is_guided
 from flexapod.analysis.results.variables import dataset
@@ -54,14 +53,13 @@ def parts(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     >>> str(data.part[int(data.part_stiffness.sel(leg=1).argmin("part"))].values)  # what is softest
     'base_joint'
     """
-    study = at_pose(robot)
-    path = as_pose(study.robot, pose)
-    remarks = path_remarks(study.robot, np.zeros(1), path)
-    length = kinematics.inverse_kinematics(study.robot, path).length[0]
+    study = study_at_pose(robot)
+    at = RigidPose(study.robot, pose)
+    remarks, length = pose_remarks(at), at.legs.length[0]
     found = part_stiffness(study.robot, length)
     softness = np.sum([1.0 / x for x in found.values()], axis=0)
     whole = np.divide(1.0, softness, out=np.full_like(softness, np.inf), where=softness > 0)
-    found |= {name: x[0] for name, x in mount_stiffness(study.robot, path).items()}
+    found |= {name: x[0] for name, x in mount_stiffness(at).items()}
     values = {"part_stiffness": np.stack(list(found.values()), axis=1), "leg_stiffness": whole}
     if is_guided(study.robot):
         bushings = np.array(

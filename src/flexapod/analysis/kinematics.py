@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike
 
 from flexapod import kinematics, model
 from flexapod.analysis.checks.checks import check_geometry
-from flexapod.analysis.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, as_study, at_pose
+from flexapod.analysis.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, as_study, study_at_pose
 from flexapod.analysis.results.attributes import attributes
-from flexapod.analysis.results.lazy_arrays import Asked
+from flexapod.analysis.results.lazy_arrays import LazyArrays
 from flexapod.analysis.results.leg_results import drive_forms, leg_labels, rigid_leg_results, rigid_reactions
 from flexapod.analysis.results.rigid_path import RigidPath, open_force_words
 from flexapod.analysis.results.robot_results import rigid_force_results
@@ -56,7 +56,7 @@ def mobility(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     >>> int(data.mobility), [str(name) for name in data.motions.values]
     (3, ['heave', 'roll', 'pitch'])
     """
-    study = at_pose(robot)
+    study = study_at_pose(robot)
     legs = kinematics.rigid_limbs(study.robot)
     at = None if pose is None else kinematics.posture(study.robot, as_pose(study.robot, pose, check=False))
     found, near = (
@@ -116,7 +116,7 @@ def inverse_kinematics(
     915.2 mm
     """
     path, remarks = _path(_study(robot, motion, None, duration, output_step))
-    return _named(path, _legs_and_payload(path), remarks)
+    return _path_dataset(path, _legs_and_payload(path), remarks)
 
 
 @one_thread()
@@ -160,9 +160,9 @@ def inverse_dynamics(
     """
     path, remarks = _path(_study(robot, motion, load, duration, output_step))
     refuse_tables(path.robot.legs, "the rigid robot")
-    forces = {**Asked(rigid_force_results(path)), **rigid_reactions(path.robot, path.forces)}
+    forces = {**LazyArrays(rigid_force_results(path)), **rigid_reactions(path.robot, path.forces)}
     values = _legs_and_payload(path) | forces
-    return _named(path, values, [*remarks, *open_force_words(path.forces)])
+    return _path_dataset(path, values, [*remarks, *open_force_words(path.forces)])
 
 
 @one_thread()
@@ -205,7 +205,7 @@ def forward_kinematics(
     >>> print(f"{1e3 * float(data.platform_position.sel(axis='z')):.1f} mm")
     986.1 mm
     """
-    study = at_pose(robot)
+    study = study_at_pose(robot)
     kind = "angle" if kinematics.rigid_limbs(study.robot).carriage == "crank" else "length"
     lengths = quantities(lengths, kind, key="lengths")
     given = _numbers(lengths, "lengths", "lengths [m] or places of carriages [m, rad], one for each drive")
@@ -252,7 +252,7 @@ def _legs_and_payload(path: RigidPath) -> dict[str, Array]:
     }
 
 
-def _named(path: RigidPath, values: dict[str, Array], remarks: list[str]) -> Dataset:
+def _path_dataset(path: RigidPath, values: dict[str, Array], remarks: list[str]) -> Dataset:
     labels = {"time": path.time, **leg_labels(path.robot, rigid=True)}
     return dataset(values, labels, attributes(path.study, remarks), drive_forms(path.robot))
 

@@ -11,22 +11,22 @@ import numpy as np
 
 from flexapod import model
 from flexapod.analysis.checks.reachability import CUT_OFF, FALLS_THROUGH, REACHED, equilibrium_codes, flags, rigid_codes
-from flexapod.analysis.modes_at_poses import poses_of
-from flexapod.analysis.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose, read
-from flexapod.analysis.results.poses import as_many, batches, coordinates_of, is_many
+from flexapod.analysis.results.arguments import LoadLike, PoseLike, RigidPose, RobotLike, read_subject, study_at_pose
+from flexapod.analysis.results.poses import as_poses, batches, has_many_poses, pose_coordinates
 from flexapod.common.arguments import number
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.common.resources import one_thread
 from flexapod.common.units import DIMENSIONS, quantity
 from flexapod.control.state_space import StateSpace
-from flexapod.kinematics import Poses
-from flexapod.solve.linear.actuator import actuator_states
-from flexapod.solve.linear.channels import asked
+from flexapod.kinematics import RigidPoses
+from flexapod.solve.linear.actuator import ActuatorPlant, actuator_states
+from flexapod.solve.linear.channels import plant_channels
 from flexapod.solve.linear.plant import Drives, Plant, plant_at
 from flexapod.solve.linear.states import Descriptor, States, descriptor_of, grid_of, states_of, units_of
-from flexapod.solve.statics.assembly_mode import fallen
-from flexapod.solve.statics.locked_robot import the_equilibrium
+from flexapod.solve.modal.elastic_robot import ElasticRobot
+from flexapod.solve.statics.assembly_mode import assembly_changes
+from flexapod.solve.statics.locked_robot import single_equilibrium
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -65,13 +65,13 @@ class LinearModel(StateSpace):
     plant: Plant
 
     def __repr__(self) -> str:
-        """How large it is, and of what."""
-        return f"LinearModel({self.study}: {self._told()}; drives {self.drives}, friction {self.friction})"
+        """Study, size, drives and friction of the model."""
+        return f"LinearModel({self.study}: {self._summary()}; drives {self.drives}, friction {self.friction})"
 
     def descriptor(self) -> Descriptor:
         """M, D, K, G, B, C in the flat coordinates of the equations, with names, Eq. (T20.1)."""
         robot = self.plant.robot
-        inputs, outputs = asked(self.inputs, robot, "inputs"), asked(self.outputs, robot, "outputs")
+        inputs, outputs = plant_channels(self.inputs, robot, "inputs"), plant_channels(self.outputs, robot, "outputs")
         return descriptor_of(self.plant, inputs, outputs, self.about)
 
 
@@ -136,44 +136,33 @@ def linearize(
     >>> print(plant.damp().frequency.values[:3].round(1))  # Hz
     [232.1 232.1 268.7]
     """
-    if isinstance(study := read(study), model.ActuatorStudy):
+    if isinstance(study := read_subject(study), model.ActuatorStudy):
         return cast("LinearModel", _of_actuator(study, pose, inputs, outputs, drives, friction=friction, load=load))
-    if is_many(pose):
+    if has_many_poses(pose):
         return cast("LinearModel", _grid(study, pose, inputs, outputs, drives, friction, load))
     found = study_about_rest(study, load, drives, friction)
-    given, seen = asked(inputs, found.robot, "inputs"), asked(outputs, found.robot, "outputs")
+    given, seen = plant_channels(inputs, found.robot, "inputs"), plant_channels(outputs, found.robot, "outputs")
     plant = plant_of(found, pose, drives)
     return model_of(found, plant, states_of(plant, given, seen, about=_about(found)))
 
 
 def study_about_rest(study: RobotLike, load: LoadLike, drives: Drives, friction: Friction | None) -> model.Study:
-    """The study with what a call gives in place of its own."""
+    """The study with the arguments of a call in place of its own values."""
     _check_drives(drives)
-    return model.override(at_pose(study, load), friction=friction)
+    return model.override(study_at_pose(study, load), friction=friction)
 
 
 def plant_of(study: model.Study, pose: PoseLike, drives: Drives) -> Plant:
     """The plant at one pose; raises as `linearize`."""
-    plant = _at(study, as_pose(study.robot, pose), drives)
-    the_equilibrium(plant.locked)
+    elastic, at = ElasticRobot(study.robot, study.simulation, study.load), RigidPose(study.robot, pose)
+    plant = plant_at(elastic, at, drives)
+    single_equilibrium(plant.locked)
     return plant
 
 
 def _check_drives(drives: object) -> None:
     if not isinstance(drives, str) or drives not in ("given", "force"):
         raise InputError("is not a way to take drives", key="drives", value=drives, allowed='"given", "force"')
-
-
-def _at(study: model.Study, path: Poses, drives: Drives) -> Plant:
-    try:
-        return plant_at(study.robot, study.simulation, path, study.load, drives)
-    except InputError as error:
-        if error.key != "leg.drive" or "pure force" not in error.what:
-            raise
-        raise InputError(
-            error.what, key=error.key, value=error.value, allowed=error.allowed,
-            next_step='linearize(..., drives="force") releases the drives where they are',
-        ) from None  # fmt: skip
 
 
 def _of_actuator(
@@ -202,8 +191,8 @@ def _of_actuator(
     free = [name for name in names if drives == "force" or getattr(study.motion, name) is None]
     most = DIMENSIONS["angular rate"].most
     rate = number(given.get("rate", 0.0), "pose.rate", "angular rate", least=-most, most=most)
-    states = actuator_states(actuator, study.simulation, inputs, outputs, rate=rate, free=free)
-    return StateSpace(**vars(states))
+    plant = ActuatorPlant(actuator, study.simulation, rate)
+    return StateSpace(**vars(actuator_states(plant, inputs, outputs, free=free)))
 
 
 def _grid(
@@ -216,21 +205,27 @@ def _grid(
     load: LoadLike,
 ) -> Dataset:
     """Matrices on motions at many poses."""
-    from flexapod.common.datasets import composed
+    from flexapod.common.datasets import build_dataset
 
     found = study_about_rest(study, load, drives, friction)
-    path = as_many(found.robot, pose)
-    given, seen = asked(inputs, found.robot, "inputs"), asked(outputs, found.robot, "outputs")
+    path = as_poses(found.robot, pose)
+    given, seen = plant_channels(inputs, found.robot, "inputs"), plant_channels(outputs, found.robot, "outputs")
     parts: dict[str, Array] = {}
-    motions, free, reason = (), 0, rigid_codes(found.robot, path, from_home=True)
+    rigid = RigidPoses(found.robot, path)
+    motions, free, reason = (), 0, rigid_codes(rigid, from_home=True)
     reason[reason == CUT_OFF] = REACHED
     within = np.flatnonzero(reason == REACHED)
+    elastic = ElasticRobot(found.robot, found.simulation, found.load)
     for part in batches(len(within)) if within.size else [slice(0, 0)]:
         chosen = within[part]
-        plant = _at(found, poses_of(path, chosen), drives)
-        locked, grid = plant.locked, grid_of(plant, given, seen, about=_about(found))
+        some = rigid.resting(chosen)
+        plant = plant_at(elastic, some, drives)
+        locked = plant.locked
+        grid = grid_of(plant, given, seen, about=_about(found))
         motions, free, at = grid.motions, grid.free, chosen[locked.at]
-        fell = fallen(locked.system, locked.robot, locked.start[locked.at], locked.equilibria.states[locked.at])
+        fell = assembly_changes(
+            locked.system, locked.robot, locked.start[locked.at], locked.equilibria.states[locked.at]
+        )
         reason[chosen] = equilibrium_codes(locked.equilibria.code)
         reason[at[fell]] = FALLS_THROUGH
         for name, (of, _, _) in MATRICES.items():
@@ -242,9 +237,9 @@ def _grid(
     labels |= {"motion_by": list(motions), "input": [c.name for c in given], "output": [c.name for c in seen]}
     for name, channels in (("input", given), ("output", seen)):
         labels[f"{name}_units"] = (name, [units[c.name] for c in channels])
-    return composed(
+    return build_dataset(
         {name: (MATRICES[name][1], value, {"long_name": MATRICES[name][2]}) for name, value in parts.items()}
-        | {"pose_from_home": (("pose", "coordinate"), coordinates_of(found.robot, path), {"long_name": FROM_HOME})}
+        | {"pose_from_home": (("pose", "coordinate"), pose_coordinates(found.robot, path), {"long_name": FROM_HOME})}
         | {"reason": ("pose", reason, {"long_name": "why a pose has none", **flags()})},
         labels,
         {"study": _name(found), "drives": drives, "friction": found.simulation.friction, "free_motions": free},
@@ -273,7 +268,7 @@ def _name(study: model.Study) -> str:
 
 def model_of(study: model.Study, plant: Plant, states: States) -> LinearModel:
     """The linear model of a plant with its states."""
-    pose = coordinates_of(study.robot, plant.locked.path)[0]
+    pose = pose_coordinates(study.robot, plant.locked.path)[0]
     return LinearModel(
         **vars(states), study=_name(study), pose=dict(zip(model.AXES, pose.tolist(), strict=True)), drives=plant.drives,
         friction=plant.locked.simulation.friction, position=plant.x.pose[0, :3], quaternion=plant.x.pose[0, 3:],

@@ -1,4 +1,4 @@
-"""Modes at many poses: frequencies, and shapes where they are asked for; a pose that has none keeps the reason."""
+"""Modes at many poses: frequencies, and shapes on request; a pose without modes has the reason."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from flexapod.analysis.checks.reachability import (
     flags,
     rigid_codes,
 )
-from flexapod.analysis.checks.stability import unstable_at
+from flexapod.analysis.checks.stability import instability_remarks
 from flexapod.analysis.results.mode_shapes import STATIONS, mode_values
-from flexapod.analysis.results.poses import batches, coordinates_of
+from flexapod.analysis.results.poses import batches, pose_coordinates
 from flexapod.analysis.results.variables import COORDINATES, VARIABLES, Variable, dataset
 from flexapod.common.arrays import Array, Mask
 from flexapod.kinematics.rotations import quaternion
-from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.modal.eigenproblem import count_real
+from flexapod.solve.modal.elastic_robot import ElasticRobot
 from flexapod.solve.modal.modes import ManyModes, modes_of
-from flexapod.solve.statics.assembly_mode import fallen, platform_poses
+from flexapod.solve.statics.assembly_mode import assembly_changes, platform_poses
 from flexapod.solve.statics.locked_robot import LockedPoses
 
 if TYPE_CHECKING:
@@ -57,8 +57,9 @@ def modes_at_poses(study: model.Study, path: kinematics.Poses, *, shapes: bool, 
     InputError
         Rigid legs on prescribed strokes (nothing can move), or a pure force drive.
     """
-    robot, P = study.robot, len(path)
-    reason = rigid_codes(robot, path, from_home=True)
+    robot, P, rigid = study.robot, len(path), kinematics.RigidPoses(study.robot, path)
+    elastic = ElasticRobot(robot, study.simulation, study.load)
+    reason = rigid_codes(rigid, from_home=True)
     cut_off = reason == CUT_OFF
     reason[cut_off] = REACHED
     within = np.flatnonzero(reason == REACHED)
@@ -66,44 +67,39 @@ def modes_at_poses(study: model.Study, path: kinematics.Poses, *, shapes: bool, 
     growth = np.zeros(P)
     for part in batches(len(within)) if within.size else [slice(0, 0)]:
         chosen = within[part]
-        some = poses_of(path, chosen)
-        locked = locked_poses(robot, study.simulation, some, study.load)
+        some = rigid.resting(chosen)
+        locked = elastic.lock(some)
         modes = modes_of(locked, shapes=shapes)
         growth[chosen[locked.at]] = 0.0 if modes.growth is None else modes.growth
-        reason[chosen] = codes = codes_at_rest(locked, modes)
+        reason[chosen] = codes = rest_codes(locked, modes)
         kept = codes[locked.at] == REACHED
-        rows = (_shape_rows if shapes else _rows)(robot, locked, modes, some, kept)
+        rows = (_shape_rows if shapes else _rows)(robot, locked, modes, some.poses, kept)
         for name, row in rows.items():
             target = values.setdefault(name, _empty(row, P))
             target[chosen[locked.at[kept]]] = row
     count = count_real(np.asarray(values["frequency"], dtype=np.float64))
     values = {name: row[:, :count] if "mode" in FORMS[name].dims else row for name, row in values.items()}
-    values |= {"pose_from_home": coordinates_of(robot, path), "reason": reason, "cut_off": cut_off}
+    values |= {"pose_from_home": pose_coordinates(robot, path), "reason": reason, "cut_off": cut_off}
     coords = {"pose": np.arange(P), "coordinate": list(model.AXES)}
     coords |= {"mode": np.arange(1, count + 1)}
     data = dataset(values, coords | ({"station": STATIONS} if shapes else {}), attrs, FORMS)
     data.reason.attrs |= flags()
-    said = [data.attrs["warnings"], *unstable_at(robot, path, np.where(reason == REACHED, growth, 0.0))]
+    said = [data.attrs["warnings"], *instability_remarks(robot, path, np.where(reason == REACHED, growth, 0.0))]
     data.attrs["warnings"] = "\n".join(filter(None, said))
     return data
 
 
-def poses_of(path: kinematics.Poses, chosen: np.ndarray) -> kinematics.Poses:
-    """Some poses of a path, at rest."""
-    return kinematics.Poses.at_rest(path.position[chosen], path.rotation[chosen])
-
-
-def codes_at_rest(locked: LockedPoses, modes: ManyModes) -> Codes:
+def rest_codes(locked: LockedPoses, modes: ManyModes) -> Codes:
     """Codes (P,) of what the search for equilibria and modes says of P rigid poses within the legs' reach."""
     codes = equilibrium_codes(locked.equilibria.code)
     codes[locked.at[~modes.positive]] = NO_MASS
     start, at_rest = locked.start[locked.at], locked.equilibria.states[locked.at]
-    codes[locked.at[fallen(locked.system, locked.robot, start, at_rest)]] = FALLS_THROUGH
+    codes[locked.at[assembly_changes(locked.system, locked.robot, start, at_rest)]] = FALLS_THROUGH
     return codes
 
 
 def _empty(row: Array, count: int) -> Array:
-    """Of the kind of a row, for all poses: NaN, or empty words."""
+    """Array for all poses of the kind of a row, filled with NaN or empty texts."""
     if row.dtype.kind == "U":
         return np.full((count, *row.shape[1:]), "", dtype="U32")
     return np.full((count, *row.shape[1:]), np.nan)
@@ -127,17 +123,17 @@ def _rows(
 def _shape_rows(
     robot: model.Robot, locked: LockedPoses, modes: ManyModes, path: kinematics.Poses, kept: Mask
 ) -> dict[str, Array]:
-    """Everything, pose by pose."""
+    """Variables of the modes with their shapes, pose by pose."""
     found = []
     for k in np.flatnonzero(kept).tolist():
-        found.append(dict(mode_values(robot, modes.one(locked, k), poses_of(path, locked.at[k : k + 1]))))
+        found.append(dict(mode_values(robot, modes.one(locked, k), locked.rigid.resting(locked.at[k : k + 1]).poses)))
     if not found:
         return _no_rows(modes.frequency.shape[1], len(robot.legs))
     return {name: np.stack([values[name] for values in found]) for name in found[0]}
 
 
 def _no_rows(count: int, legs: int) -> dict[str, Array]:
-    """Everything, of no pose; ``count`` modes."""
+    """Variables of the modes without any pose; ``count`` modes."""
     sizes = {
         "mode": count,
         "leg": legs,

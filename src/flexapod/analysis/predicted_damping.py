@@ -1,4 +1,4 @@
-"""What a study's controller does to damping and to static stiffness, by the linear model: before a simulation."""
+"""Damping and static stiffness with a study's controller, by the linear model, before a simulation."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from flexapod.analysis.controller_settings import control_remarks, sampled_contr
 from flexapod.analysis.linear import linearize
 from flexapod.common.arrays import Array
 from flexapod.common.errors import FlexapodError
-from flexapod.common.quantities import text
 from flexapod.control.frequency_response import SWINGS
 from flexapod.control.state_space import StateSpace
 
@@ -26,7 +25,7 @@ MOST = 12  # modes
 
 
 @dataclass(frozen=True, kw_only=True)
-class Predicted:
+class PredictedDamping:
     """Frequencies [Hz] and damping ratios of k modes without the controller and with it; how many poles grow."""
 
     frequency: Array
@@ -36,7 +35,7 @@ class Predicted:
     growing: int
 
 
-def predicted_damping(study: model.Study) -> Predicted | None:
+def predicted_damping(study: model.Study) -> PredictedDamping | None:
     """Damping of the slowest modes at home, without and with the controller of the study; None without one.
 
     Modes faster than half the samples are left out: between samples they look slower.
@@ -58,7 +57,7 @@ def predicted_damping(study: model.Study) -> Predicted | None:
     rows, columns = linear_sum_assignment(away)
     first, later = first[rows], later[columns]
     grows = np.abs(loop.poles()) > 1 + SWINGS * sampled.period
-    return Predicted(
+    return PredictedDamping(
         frequency=before.frequency.values[first],
         ratio=before.damping_ratio.values[first],
         frequency_with=after.frequency.values[later],
@@ -98,43 +97,37 @@ def static_stiffness(study: model.Study) -> tuple[float, float] | None:
     return float(off), float(off / share) if share < 1 / NONE else 0.0
 
 
-def control_words(study: model.Study) -> tuple[str, ...]:
-    """Whether the loop of a study is stable, and what it does to static stiffness, in words; nothing without one."""
+@dataclass(frozen=True, kw_only=True)
+class ControlEffect:
+    """Effect of a controller: number of `growing` poles, `stiffness` as `static_stiffness`; `remarks` of doubt.
+
+    Without stiffness where poles grow or nothing is predicted.
+    """
+
+    growing: int = 0
+    stiffness: tuple[float, float] | None = None
+    remarks: tuple[str, ...] = ()
+
+
+def control_effect(study: model.Study) -> ControlEffect | str | None:
+    """Effect of a study's controller on its loop and on static stiffness, or why it is unknown.
+
+    None without one.
+    """
     sampled = sampled_controller(study)
     if sampled is None:
-        return ()
+        return None
+    remarks = control_remarks(sampled)
     try:
         predicted = predicted_damping(study)
         if predicted is not None and predicted.growing:
-            return (_unstable(predicted.growing), *control_remarks(sampled))
-        found = static_stiffness(study)
+            return ControlEffect(growing=predicted.growing, remarks=remarks)
+        return ControlEffect(stiffness=static_stiffness(study), remarks=remarks)
     except FlexapodError as error:
-        return (f"what the controller does cannot be said: {error}",)
-    if found is None:
-        return control_remarks(sampled)
-    off, on = found
-    kept = (
-        f"{text(on, 'N/m', 3)} with it"
-        if 0 < on < np.inf
-        else "none with it"
-        if on == 0
-        else "held by integrals with it"
-    )
-    words = (
-        f"static stiffness of the tool at home, where it is least: {text(off, 'N/m', 3)} without the controller, {kept}"
-    )
-    return (words, *control_remarks(sampled))
-
-
-def _unstable(growing: int) -> str:
-    poles = "one of its poles grows" if growing == 1 else f"{growing} of its poles grow"
-    return (
-        f"the loop is not stable: {poles}, by the linear model from sample to sample; "
-        "reduce gains or delay, or sample more often"
-    )
+        return str(error)
 
 
 def _pole(data: Dataset) -> NDArray[np.complex128]:
-    from flexapod.control.datasets import complex_of
+    from flexapod.control.datasets import join_complex
 
-    return complex_of(data.pole).values
+    return join_complex(data.pole).values

@@ -1,4 +1,4 @@
-"""What a sweep keeps of a robot's simulation: scalars from the record, without building a Dataset."""
+"""Scalars of a robot's simulation for a sweep: from the record, without building a Dataset."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from flexapod import kinematics
 from flexapod.analysis.checks.plausibility import leg_stress
 from flexapod.analysis.results.bodies import flexible_axes
 from flexapod.analysis.results.causes import cause_names
-from flexapod.analysis.results.lazy_arrays import Asked
+from flexapod.analysis.results.lazy_arrays import LazyArrays
 from flexapod.analysis.results.leg_results import drive_forces
-from flexapod.analysis.results.legs import bending, bending_basis, lateral
+from flexapod.analysis.results.legs import bending_amplitudes_of_leg, bending_basis, lateral_amplitudes
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.analysis.results.robot_results import cause_results
 from flexapod.analysis.results.time_history import Record
@@ -44,7 +44,7 @@ class Scalar(NamedTuple):
 
 @dataclass(frozen=True)
 class RobotRun:
-    """A finished simulation of a robot; every quantity is computed when it is asked for, once."""
+    """A finished simulation of a robot; every quantity is computed on request, once."""
 
     study: Study
     system: System
@@ -87,7 +87,7 @@ class RobotRun:
     @cached_property
     def lateral(self) -> Array:
         """Lateral amplitudes, (T, legs, 2, k) [m]."""
-        return lateral(self.system.kernel.shapes, self.record.q)
+        return lateral_amplitudes(self.system.kernel.shapes, self.record.q)
 
     @cached_property
     def tip_deflection(self) -> Array:
@@ -102,7 +102,7 @@ class RobotRun:
         found, shapes = np.full(axes.shape[1], np.nan), self.system.kernel.shapes
         for i, leg in enumerate(self.study.robot.legs):
             free = self.record.q[:, i, shapes.l_index] - leg.cylinder.mouth
-            bent = bending(leg, shapes, self.record.q[:, i])
+            bent = bending_amplitudes_of_leg(leg, shapes, self.record.q[:, i])
             stress = leg_stress(leg, bending_basis(shapes), bent, free, compression[:, i])
             found[i] = np.nan if stress is None else stress.max()
         return found
@@ -122,7 +122,7 @@ class RobotRun:
             return np.zeros(len(cause_names(self.study.robot)))
         one = _instant(self.record, at)
         path = RigidPath(self.study, one.time)
-        shares = Asked(cause_results(self.study.robot, self.system, path, one))["deviation_by_cause"]
+        shares = LazyArrays(cause_results(self.system, path, one))["deviation_by_cause"]
         return shares[0].sum(axis=1) @ deviation[at] / size
 
     @property

@@ -21,42 +21,49 @@ from flexapod.analysis.controller_settings import (
     sampled_controller,
 )
 from flexapod.analysis.description.drive_limits import drive_warnings
-from flexapod.analysis.results.arguments import LoadLike, RobotLike, StartLike, as_study, read
+from flexapod.analysis.results.arguments import LoadLike, RobotLike, StartLike, as_study, read_subject
 from flexapod.analysis.results.attributes import attributes, march_attributes
 from flexapod.analysis.results.element_outputs import element_forms
-from flexapod.analysis.results.lazy_arrays import Asked
+from flexapod.analysis.results.lazy_arrays import LazyArrays
 from flexapod.analysis.results.leg_results import damped_angles, drive_forms, force_error, force_warnings
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.analysis.results.robot_results import payload_results, rigid_force_results, robot_coords, robot_results
-from flexapod.analysis.results.time_history import Progress, Record, check_progress, collect, finished
+from flexapod.analysis.results.time_history import Progress, Record, check_progress, collect, result_or_interrupt
 from flexapod.analysis.results.variables import dataset
 from flexapod.common.arrays import Array
 from flexapod.common.resources import one_thread
+from flexapod.solve.modal.elastic_robot import ElasticRobot
 from flexapod.solve.time.robot_march import RobotMarch, prepare
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
     from flexapod.analysis.controller_settings import AnyController
-    from flexapod.solve.time.sampled_control import Sampled
+    from flexapod.solve.time.sampled_control import SampledController
 
 
 @dataclass(frozen=True, kw_only=True)
-class Simulated:
-    """A simulation of a robot before its results have names: study, path, prepared march, record, remarks."""
+class RobotSimulation:
+    """A simulation of a robot before its results have names: study, path, robot, march, record, remarks."""
 
     study: model.Study
     path: RigidPath
+    elastic: ElasticRobot
     march: RobotMarch
     record: Record
     remarks: list[str]
-    sampled: Sampled | None = None
+    sampled: SampledController | None = None
 
-    def values(self) -> Asked:
-        """The variables of the Dataset as plain arrays, each made when it is asked for."""
-        path = self.path.at(self.record.time)
-        found = robot_results(self.study, self.march.system, self.record, path) | rigid_force_results(path)
-        return Asked(found | control_results(self.sampled, self.record))
+    @cached_property
+    def recorded_path(self) -> RigidPath:
+        """The path at the recorded instants."""
+        return self.path.at(self.record.time)
+
+    def values(self) -> LazyArrays:
+        """The variables of the Dataset as plain arrays, each computed on request."""
+        path = self.recorded_path
+        found = robot_results(self.march.system, path, self.record) | rigid_force_results(path)
+        return LazyArrays(found | control_results(self.sampled, self.record))
 
     @cached_property
     def force_error(self) -> float | None:
@@ -64,19 +71,19 @@ class Simulated:
         return force_error(self.study.robot, self.march.system, self.record)
 
     def _tool_deviation(self) -> Array:
-        """Of the tool, (T, 3) [m]."""
-        return Asked(payload_results(self.study.robot, self.path.at(self.record.time), self.record))["tool_deviation"]
+        """Deviation of the tool, (T, 3) [m]."""
+        return LazyArrays(payload_results(self.recorded_path, self.record))["tool_deviation"]
 
     def warnings(self) -> list[str]:
         """Remarks on the study, its path and its results."""
         found = force_warnings(self.study, self.force_error)
-        found += step_warnings(self.study, self.record.smallest_step, self._tool_deviation)
+        found += step_warnings(self.study, self.elastic, self.record.smallest_step, self._tool_deviation)
         found += robot_warnings(self.study.robot, self.march.system, self.record)
         found += drive_warnings(self.study.robot, self.march.system, self.record)
         return [*self.study.warnings, *self.remarks, *found]
 
     def dataset(self) -> Dataset:
-        """Everything as a Dataset."""
+        """Results of the simulation as a Dataset."""
         march, system = self.march, self.march.system
         attrs = {
             **attributes(self.study, self.warnings()),
@@ -92,7 +99,9 @@ class Simulated:
 
 
 @one_thread()
-def simulated(study: model.Study, progress: Progress | None = None, sampled: Sampled | None = None) -> Simulated:
+def run_simulation(
+    study: model.Study, progress: Progress | None = None, sampled: SampledController | None = None
+) -> RobotSimulation:
     """Check and integrate a robot study, with its controller or another one; what `simulate` does, without a Dataset.
 
     A record that stopped early says so: ``record.failure``, ``record.interrupted``.
@@ -102,12 +111,22 @@ def simulated(study: model.Study, progress: Progress | None = None, sampled: Sam
     InputError, ComputationError
         As `simulate`.
     """
+    path, elastic = RigidPath(study), ElasticRobot(study.robot, study.simulation, study.load)
+    return simulate_path(path, elastic, progress, sampled)
+
+
+def simulate_path(
+    path: RigidPath, elastic: ElasticRobot, progress: Progress | None = None, sampled: SampledController | None = None
+) -> RobotSimulation:
+    """Check and integrate a study on its rigid path; as `run_simulation`."""
     check_progress(progress)
-    path, sampled = RigidPath(study), sampled or sampled_controller(study)
-    remarks = [*check_path(study, path), *loop_remarks(study), *control_remarks(sampled)]
-    march = prepare(study, sampled=sampled)
+    study, sampled = path.study, sampled or sampled_controller(path.study)
+    remarks = [*check_path(study, path), *loop_remarks(path, elastic), *control_remarks(sampled)]
+    march = prepare(study, sampled=sampled, elastic=elastic)
     record = collect(march.chunks, damped_angles(march.system), study.duration, progress)
-    return Simulated(study=study, path=path, march=march, record=record, remarks=remarks, sampled=sampled)
+    return RobotSimulation(
+        study=study, path=path, elastic=elastic, march=march, record=record, remarks=remarks, sampled=sampled
+    )
 
 
 @one_thread()
@@ -177,8 +196,8 @@ def simulate(
         tolerance=tolerance, step=step, duration=duration, output_step=output_step, rho_inf=rho_inf,
     )  # fmt: skip
     sampled = sampled_controller(study, controller, sample, delay_samples, quantise, saturate, noise, seed)
-    found = simulated(study, progress, sampled)
-    return finished(found.dataset, found.record)
+    found = run_simulation(study, progress, sampled)
+    return result_or_interrupt(found.dataset, found.record)
 
 
 @one_thread()
@@ -214,8 +233,8 @@ def run(
     >>> print(f"{1e3 * float(abs(data.tip_deflection).max()):.1f} mm")
     13.7 mm
     """
-    study = read(study)
+    study = read_subject(study)
     if isinstance(study, model.ActuatorStudy | model.Actuator):
         return simulate_actuator(study, motion, progress=progress)  # type: ignore[arg-type]
-    found = simulated(as_study(study, motion), progress)  # type: ignore[arg-type]
-    return finished(found.dataset, found.record)
+    found = run_simulation(as_study(study, motion), progress)  # type: ignore[arg-type]
+    return result_or_interrupt(found.dataset, found.record)

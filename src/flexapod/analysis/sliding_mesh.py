@@ -1,4 +1,4 @@
-"""How well a mesh fixed to the sliding beam does, against the mesh of the free length: a study in, a Dataset out."""
+"""Error of a mesh fixed to the sliding beam, against the mesh of the free length: a study in, a Dataset out."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from flexapod import kinematics, model
 from flexapod.analysis.checks.checks import check_actuator_path
-from flexapod.analysis.results.arguments import FileLike, read
+from flexapod.analysis.results.arguments import FileLike, read_subject
 from flexapod.analysis.results.attributes import attributes
 from flexapod.analysis.results.rigid_path import path_instants
 from flexapod.analysis.results.time_history import Interrupted, Progress
@@ -19,7 +19,7 @@ from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.common.units import quantities
 from flexapod.solve.fem.reduction import StationModel, reduced_beam
-from flexapod.solve.fem.sliding import HubMotion, SlidingBeam, slide
+from flexapod.solve.fem.sliding import HubMotion, SlidingBeam, march_solid_beam
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -93,7 +93,7 @@ def simulate_solid(
     >>> data.tip_deflection.dims, data.frequency.units
     (('time',), 'Hz')
     """
-    study = _only_prescribed(read(study))
+    study = _only_prescribed(read_subject(study))
     size, spacing, step = _in_si(size, spacing, step, poisson)
     _check_section(section)
     study = model.override(study, duration=duration, output_step=output_step)
@@ -125,7 +125,7 @@ def _check_section(section: object) -> None:
 
 
 class _Mesh(NamedTuple):
-    """What is meshed, how finely, of which elements, with which Poisson's ratio and distance of stations."""
+    """Parameters of a mesh: section, element size, kind of element, Poisson's ratio, distance of stations."""
 
     section: model.Rectangle | model.Tube
     size: float
@@ -141,7 +141,7 @@ def _simulated(study: model.ActuatorStudy, mesh: _Mesh, step: float, progress: P
     _stays_held(study, reduced)
     middle = time.perf_counter()
     beam, motion, t = _in_hub(study.actuator, reduced), _motion(study), _outputs(study)
-    tip = slide(beam, motion, study.initial.tip_displacement, t, step, progress)
+    tip = march_solid_beam(beam, motion, study.initial.tip_displacement, t, step, progress)
     attrs = attributes(study, [*study.warnings, *remarks]) | {
         "fidelity": "solid-fem",
         "element": mesh.kind,

@@ -8,20 +8,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import kinematics, model
-from flexapod.analysis.checks.checks import path_remarks
+from flexapod.analysis.checks.checks import pose_remarks
 from flexapod.analysis.checks.plausibility import rest_warnings
+from flexapod.analysis.checks.stability import unstable
 from flexapod.analysis.modes_at_poses import modes_at_poses
-from flexapod.analysis.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose, read
+from flexapod.analysis.results.arguments import LoadLike, PoseLike, RigidPose, RobotLike, read_subject, study_at_pose
 from flexapod.analysis.results.attributes import attributes
 from flexapod.analysis.results.mode_shapes import STATIONS, mode_values
-from flexapod.analysis.results.poses import as_many, is_many
+from flexapod.analysis.results.poses import as_poses, has_many_poses
 from flexapod.analysis.results.variables import ONE_POSE_FORMS, dataset
 from flexapod.common.errors import InputError
 from flexapod.common.resources import one_thread
 from flexapod.solve.batch import RestStates
 from flexapod.solve.modal.actuator_modes import actuator_modes
-from flexapod.solve.modal.at_poses import robot_modes, robot_stiffness
-from flexapod.solve.modal.modal_loops import unstable_words
+from flexapod.solve.modal.at_poses import stiffness_at
+from flexapod.solve.modal.elastic_robot import ElasticRobot
+from flexapod.solve.modal.modes import single_pose_modes
 from flexapod.solve.system import State, System
 
 if TYPE_CHECKING:
@@ -84,17 +86,17 @@ def modes(
     [56.2 56.2 83.2] ['payload' 'payload' 'payload']
     """
     settings = {"fidelity": fidelity, "modes": modes, "axial_modes": axial_modes, "basis": basis, "friction": friction}
-    if isinstance(robot := read(robot), model.ActuatorStudy):
+    if isinstance(robot := read_subject(robot), model.ActuatorStudy):
         return _beam(robot, {"pose": pose, "load": load}, settings)
-    if is_many(pose):
-        study = model.override(at_pose(robot, load), **settings)  # type: ignore[arg-type]
-        return modes_at_poses(study, as_many(study.robot, pose), shapes=shapes, attrs=_settings(study))
-    study, path = _problem(robot, pose, load, settings)
-    found = robot_modes(study.robot, study.simulation, path, study.load)
-    values = mode_values(study.robot, found, path)
+    if has_many_poses(pose):
+        study = model.override(study_at_pose(robot, load), **settings)  # type: ignore[arg-type]
+        return modes_at_poses(study, as_poses(study.robot, pose), shapes=shapes, attrs=_settings(study))
+    study, at = _problem(robot, pose, load, settings)
+    found = single_pose_modes(ElasticRobot(study.robot, study.simulation, study.load).lock(at))
+    values = mode_values(study.robot, found, at.poses)
     coords = {"mode": list(range(1, len(values["frequency"]) + 1)), "station": STATIONS}
-    state, loops = found.equilibrium.state, unstable_words(found.growth)
-    return dataset(values, coords, _attributes(study, path, found.system, state, loops), ONE_POSE_FORMS)
+    state, loops = found.equilibrium.state, unstable(found.growth)
+    return dataset(values, coords, _attributes(study, at, found.system, state, loops), ONE_POSE_FORMS)
 
 
 def _beam(study: model.ActuatorStudy, given: dict[str, object], settings: dict[str, object]) -> Dataset:
@@ -152,26 +154,26 @@ def stiffness(
     ['35.6 N/um', '35.6 N/um', '252.7 N/um']
     """
     settings = {"fidelity": fidelity, "modes": modes, "axial_modes": axial_modes, "basis": basis, "friction": friction}
-    study, path = _problem(robot, pose, load, settings)
-    found = robot_stiffness(study.robot, study.simulation, path, study.load)
+    study, at = _problem(robot, pose, load, settings)
+    found = stiffness_at(ElasticRobot(study.robot, study.simulation, study.load).lock(at))
     values = {"stiffness": found.total, "stiffness_share": found.legs, "stiffness_turning": found.load}
-    return dataset(values, attrs=_attributes(study, path, found.system, found.equilibrium.state))
+    return dataset(values, attrs=_attributes(study, at, found.system, found.equilibrium.state))
 
 
 def _problem(
     robot: RobotLike, pose: PoseLike, load: LoadLike, settings: dict[str, object]
-) -> tuple[model.Study, kinematics.Poses]:
-    study = model.override(at_pose(robot, load), **settings)  # type: ignore[arg-type]
-    return study, as_pose(study.robot, pose)
+) -> tuple[model.Study, kinematics.RigidPoses]:
+    study = model.override(study_at_pose(robot, load), **settings)  # type: ignore[arg-type]
+    return study, RigidPose(study.robot, pose)
 
 
 def _attributes(
-    study: model.Study, path: kinematics.Poses, system: System, state: State, loops: Iterable[str] = ()
+    study: model.Study, at: kinematics.RigidPoses, system: System, state: State, loops: Iterable[str] = ()
 ) -> dict[str, object]:
     remarks = [
         *loops,
-        *path_remarks(study.robot, np.zeros(1), path),
-        *rest_warnings(study.robot, system, RestStates.of(state)),
+        *pose_remarks(at),
+        *rest_warnings(study.robot, system, RestStates.from_state(state)),
     ]
     return _settings(study, remarks)
 

@@ -1,6 +1,6 @@
-"""Results on disk: NetCDF and CSV, written whole or not at all.
+"""Results as NetCDF and CSV files, written whole or not at all.
 
-A Dataset as a NetCDF 4 file, as xarray writes and reads it, but without dask: its import takes a second.
+NetCDF 4 is written and read as xarray does, but without dask, whose import takes a second.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 from flexapod.analysis.checks.resource_limits import available_memory
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
-from flexapod.common.files import check_regular, path_of, replacing
+from flexapod.common.files import check_regular, path_of, replace_file
 
 if TYPE_CHECKING:
     import netCDF4
@@ -43,12 +43,10 @@ def save(data: Dataset, path: str | Path) -> Path:
     InputError
         The folder cannot be written to, or the disk is full.
     """
-    pass  # FOLD
-
     path = path_of(path, "path")
     if not hasattr(data, "data_vars"):
         raise InputError(f"is no Dataset but a {type(data).__name__}", key="data", allowed="a result")
-    with replacing(path) as temporary:
+    with replace_file(path) as temporary:
         try:
             write(data, temporary, **{SUM: _sum(data)})
         except RuntimeError as error:
@@ -73,12 +71,12 @@ def open_results(path: str | Path) -> Dataset:
         No such file, none of ours, spoilt, or one that unpacks to more than this machine can hold.
     """
 
-    def loaded(data: Dataset) -> Dataset:
+    def load_variables(data: Dataset) -> Dataset:
         for name, array in data.variables.items():
             _load(array, str(name), path)
         return data
 
-    return _read(path, loaded)
+    return _read(path, load_variables)
 
 
 def stored_attributes(path: str | Path) -> dict[Any, Any]:
@@ -87,7 +85,7 @@ def stored_attributes(path: str | Path) -> dict[Any, Any]:
 
 
 def _read(path: str | Path, read: Callable[[Dataset], T]) -> T:
-    """What is read of a file of ours while it is open."""
+    """Open and check a file of results, and return the values that `read` takes from it."""
     import xarray as xr
 
     path = path_of(path, "path")
@@ -165,7 +163,7 @@ def _refuse_size(path: Path) -> None:
 
 
 def _chunk(lengths: object) -> int:
-    """How many numbers of a variable are unpacked at once."""
+    """Number of values of a variable that are unpacked at once."""
     return math.prod(lengths) if isinstance(lengths, list) else 0
 
 
@@ -191,7 +189,7 @@ def save_csv(data: Dataset, path: str | Path) -> Path:
         if "time" in values.dims:
             columns |= _columns(str(name), values)
     table = np.column_stack(list(columns.values()))
-    with replacing(path) as temporary:
+    with replace_file(path) as temporary:
         np.savetxt(
             temporary, table, fmt="%.10g", delimiter=",", header=",".join(columns), comments="", encoding="utf-8"
         )
@@ -263,5 +261,5 @@ def _letters(texts: Array) -> Array:
 
 
 def _plain(value: object) -> object:
-    """What an attribute can hold: texts, numbers and rows of them."""
+    """Value in a form that attributes can hold: flags become integers."""
     return int(value) if isinstance(value, bool | np.bool_) else value

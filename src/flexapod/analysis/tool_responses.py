@@ -15,7 +15,7 @@ from flexapod.common.errors import InputError, check_kind
 from flexapod.common.resources import one_thread
 from flexapod.control.state_space import StateSpace
 from flexapod.kinematics.rotations import matrix
-from flexapod.solve.linear.channels import asked
+from flexapod.solve.linear.channels import plant_channels
 from flexapod.solve.linear.plant import Drives
 from flexapod.solve.linear.states import states_of
 
@@ -118,8 +118,8 @@ def transmissibility(
             allowed="robots in space",
             next_step='fx.linearize(..., inputs="floor", outputs="tool") has the floor\'s translations',
         )  # fmt: skip
-    inputs, outputs = asked("floor", found.robot, "inputs"), asked("tool", found.robot, "outputs")
-    (point, *_) = asked(f"accelerometer:{at}", found.robot, "at")
+    inputs, outputs = plant_channels("floor", found.robot, "inputs"), plant_channels("tool", found.robot, "outputs")
+    (point, *_) = plant_channels(f"accelerometer:{at}", found.robot, "at")
     plant = plant_of(found, pose, drives)
     R = matrix(plant.x.pose[:, 3:])[0]
     arm = R @ (point.at if point.at is not None else np.zeros(3))

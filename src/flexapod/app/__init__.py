@@ -1,1 +1,1 @@
-"""What people start: command line and page."""
+"""Programs that users start: the command line and the page in the browser."""

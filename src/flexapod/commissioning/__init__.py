@@ -1,1 +1,1 @@
-"""The machine on the floor: commands ahead."""
+"""Commissioning of the machine: feedforward commands."""

@@ -1,1 +1,1 @@
-"""What the package needs of the machine: files, processes, threads, late imports."""
+"""Needs of the package from the machine: files, processes, threads, late imports."""

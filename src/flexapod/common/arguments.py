@@ -51,7 +51,7 @@ def matrix(given: ArrayLike, key: str, shape: str) -> Array:
     return found
 
 
-def whole(given: object, key: str, least: int, most: int) -> int:
+def integer(given: object, key: str, least: int, most: int) -> int:
     """A whole number between two others, these included."""
     if isinstance(given, bool) or not isinstance(given, int | np.integer) or not least <= given <= most:
         raise InputError("is not in range", key=key, value=given, allowed=f"a whole number from {least} to {most}")

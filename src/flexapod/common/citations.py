@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from flexapod.common.errors import InputError, closest
+from flexapod.common.errors import InputError, suggest_word
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,6 +115,6 @@ def cite(*names: str) -> tuple[str, ...]:
     for name in names:
         if name not in CITATIONS:
             raise InputError(
-                "is not a known work", key=name, allowed=", ".join(CITATIONS), next_step=closest(name, CITATIONS)
+                "is not a known work", key=name, allowed=", ".join(CITATIONS), next_step=suggest_word(name, CITATIONS)
             )
     return tuple(str(CITATIONS[name]) for name in names or CITATIONS)

@@ -143,16 +143,16 @@ class InputError(FlexapodError):
 
 
 class Malformed(InputError):
-    """What no study file may hold, whatever its other values: unknown key, wrong unit, no number, no such choice."""
+    """Error that no other values can mend: an unknown key, a wrong unit, no number, no such choice."""
 
 
-def closest(word: str, allowed: Iterable[str]) -> str | None:
+def suggest_word(word: str, allowed: Iterable[str]) -> str | None:
     """The allowed word that a mistyped one most resembles, as a question, or None."""
-    found = nearest(word, allowed)
+    found = closest_word(word, allowed)
     return None if found is None else f"Did you mean {found!r}?"
 
 
-def nearest(word: str, allowed: Iterable[str]) -> str | None:
+def closest_word(word: str, allowed: Iterable[str]) -> str | None:
     """The allowed word that a mistyped one most resembles, or None."""
     found = difflib.get_close_matches(word, list(allowed), n=1, cutoff=0.6)
     return found[0] if found else None
@@ -168,7 +168,7 @@ def check_known(value: object, among: Iterable[str], key: str, what: str = "is n
     """Raise InputError of a value that is none of some words, with the nearest of them."""
     words = list(among)
     if not isinstance(value, str) or value not in words:
-        hint = closest(value, words) if isinstance(value, str) else None
+        hint = suggest_word(value, words) if isinstance(value, str) else None
         raise InputError(what, key=key, value=value, allowed=", ".join(words), next_step=hint)
 
 
@@ -192,7 +192,7 @@ def _rebuild_input(
     return kind(what, file=file, key=key, value=value, allowed=allowed, next_step=next_step)
 
 
-def quoted(text: str) -> str:
+def quote_text(text: str) -> str:
     """A text in quotes, as a message shows it: of a long one the beginning."""
     return _short(text[:LONGEST_QUOTE])
 

@@ -120,8 +120,8 @@ def check_name(path: str | Path, key: str | None = None) -> None:
 
 
 @contextmanager
-def replacing(path: str | Path) -> Iterator[Path]:
-    """As `whole`, with errors in words.
+def replace_file(path: str | Path) -> Iterator[Path]:
+    """Replace a file as `atomic_file`, with errors in words.
 
     Raises
     ------
@@ -130,7 +130,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
     """
     check_name(Path(path).absolute())
     try:
-        with whole(path) as temporary:
+        with atomic_file(path) as temporary:
             yield temporary
     except OSError as error:
         raise InputError(
@@ -141,14 +141,14 @@ def replacing(path: str | Path) -> Iterator[Path]:
 
 
 def write_text(path: str | Path, text: str, *, encoding: str = "utf-8", errors: str = "strict") -> Path:
-    """Write a text as `replacing` does; the path."""
-    with replacing(path) as temporary:
+    """Write a text as `replace_file` does; the path."""
+    with replace_file(path) as temporary:
         temporary.write_text(text, encoding=encoding, errors=errors)
     return Path(path)
 
 
 @contextmanager
-def whole(path: str | Path, *, mode: int = 0o666) -> Iterator[Path]:
+def atomic_file(path: str | Path, *, mode: int = 0o666) -> Iterator[Path]:
     """A temporary file beside `path` that takes its place, on the disk, when the block ends without an error.
 
     Whatever ends the block, Ctrl-C and SIGTERM too, the temporary file is gone; after SIGKILL the next one who writes
@@ -180,11 +180,11 @@ def whole(path: str | Path, *, mode: int = 0o666) -> Iterator[Path]:
     finally:
         temporary.unlink(missing_ok=True)
     for folder in (path, *made):
-        settle(folder.parent)
+        sync_folder(folder.parent)
 
 
 @contextmanager
-def scratch(beside: Path | None = None) -> Iterator[Path]:
+def temporary_folder(beside: Path | None = None) -> Iterator[Path]:
     """An empty folder for this user alone, in the system's temporary one or in `beside`, gone when the block ends.
 
     Those that killed processes left there are removed.
@@ -250,7 +250,7 @@ def _runs(process: int) -> bool:
     return True
 
 
-def settle(folder: Path) -> None:
+def sync_folder(folder: Path) -> None:
     """Wait until the names in a folder are on the disk; where folders cannot be waited for, do not."""
     try:
         _settle(folder, os.O_RDONLY)

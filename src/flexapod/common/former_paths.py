@@ -1,4 +1,4 @@
-"""What modules were called before: their paths answer for one release more, with a remark that says the new one."""
+"""Former names of modules: their paths answer for one release more, with a remark that says the new one."""
 
 #: Packages, and where they are now.
 PACKAGES = {
@@ -48,7 +48,7 @@ MODULES = (
     (
         "cli",
         "app.cli",
-        "commands_budget>commands_poses examples>commands_study key_names>commands_study map_options>commands_map",
+        "commands_budget>commands_poses examples>commands_study key_names>commands_study map_options>pose_options",
     ),
     (
         "control",
@@ -71,7 +71,7 @@ MODULES = (
         "design.first_robot",
         "catalogue choice>electric_choice design electric hydraulic sizes>sizing warm written>study_text",
     ),
-    ("document", "output.text", "first>answers maps>answers modes>answers refusal>answers run>answers"),
+    ("document", "output.text", "first>answers maps>answers modes>answers refusal>parts run>answers"),
     ("elements", "mechanics.leg", "carriage>joints cylinder>joints platform_joint>joints universal>joints"),
     (
         "elements",
@@ -82,7 +82,7 @@ MODULES = (
     (
         "exchange",
         "output.exchange",
-        "content>formats decks_beam>decks export>pose_deck glb>gltf state_space>formats uff>formats",
+        "content>formats decks_beam>decks drawn>animation export>pose_deck glb>gltf state_space>formats uff>formats",
     ),
     (
         "feedforward",
@@ -133,7 +133,7 @@ MODULES = (
     (
         "pose_errors",
         "analysis.pose_errors",
-        "at_home>accuracy_text at_pose>error_sources imperfect>bent_legs motion>backlash play>backlash "
+        "at_home>home_accuracy at_pose>error_sources imperfect>bent_legs motion>backlash play>backlash "
         "pose>pose_accuracy rows>error_sources spread>tolerances weight>tolerances",
     ),
     ("report", "output.report", "curves>replay interactive>plotly_export linear>report page>report"),
@@ -174,11 +174,7 @@ MODULES = (
         "analysis",
         "controlled>controller_settings many_modes>modes_at_poses parts>elastic_parts predicted>predicted_damping",
     ),
-    (
-        "surveys.sweeps",
-        "design.sweeps",
-        "batch>worker kept>outputs points>samples records>store schedule>executors writer>worker",
-    ),
+    ("surveys.sweeps", "design.sweeps", "batch>worker kept>outputs points>samples schedule>executors writer>worker"),
     ("surveys.sweeps", "analysis", "scalars"),
     ("surveys.workspace", "analysis", "quantities>pose_values"),
     ("symbolic", "mechanics.symbolic", "lagrange>functions"),

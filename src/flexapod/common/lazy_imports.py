@@ -22,7 +22,7 @@ SHOWN = {"flexapod.plot": "flexapod.output.figures", "flexapod.study": "flexapod
 atexit.register(gc.freeze)  # the search as the interpreter ends would look at every module again
 
 
-def loaded(name: str) -> ModuleType:
+def load_module(name: str) -> ModuleType:
     """Import a module; what it makes goes to the oldest generation at once, as it stays for the life of the process."""
     if name in sys.modules:  # garbage that is there by now is to be found, and not to grow old with the modules
         return import_module(name)
@@ -38,25 +38,35 @@ def loaded(name: str) -> ModuleType:
             gc.enable()
 
 
-def later(package: str, homes: Mapping[str, Sequence[str]]) -> Callable[[str], object]:
-    """What a package has for `__getattr__`: its names, by the modules that they live in, load on first use."""
+def lazy_attributes(
+    package: str, homes: Mapping[str, Sequence[str]], former: Mapping[str, str] | None = None
+) -> Callable[[str], object]:
+    """Make the `__getattr__` of a package: its names, by the modules that they live in, load on first use.
+
+    `former`: names of the release before and the new ones; they answer with a remark.
+    """
     module_of = {name: module for module, names in homes.items() for name in names}
 
     def found(name: str) -> object:
+        if former and name in former:
+            import warnings
+
+            warnings.warn(f"{package}.{name} is {package}.{former[name]} now", FutureWarning, stacklevel=2)
+            return getattr(sys.modules[package], former[name])
         if name not in module_of:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        value = getattr(loaded(module_of[name]), name)
+        value = getattr(load_module(module_of[name]), name)
         setattr(sys.modules[package], name, value)
         return value
 
     return found
 
 
-class lazy(ModuleType):
+class LazyModule(ModuleType):
     """A module that is imported with the first name that is asked of it."""
 
     def __getattr__(self, name: str) -> Any:
-        value = getattr(loaded(self.__name__), name)
+        value = getattr(load_module(self.__name__), name)
         setattr(self, name, value)
         return value
 
@@ -83,7 +93,7 @@ class FormerPaths:
             import warnings
 
             warnings.warn(f"{name} is {now} now", FutureWarning, stacklevel=2)
-        return ModuleSpec(name, _Former(loaded(now)))  # type: ignore[arg-type]  # all that a loader needs
+        return ModuleSpec(name, _Former(load_module(now)))  # type: ignore[arg-type]  # all that a loader needs
 
 
 class _Former:
@@ -102,7 +112,7 @@ class _Former:
 
 
 @contextmanager
-def without(name: str) -> Iterator[None]:
+def hide_package(name: str) -> Iterator[None]:
     """Let a package that is not needed seem absent, so that xarray does not import it to look for its types.
 
     Where xarray is there already it may have found the package, and would not look again.

@@ -25,7 +25,7 @@ ENDINGS = [signal.Signals[name] for name in ("SIGINT", "SIGTERM", "SIGHUP") if h
 GENTLE = 10.0  # seconds that a copy has to put its files away before it is killed
 
 
-def call(
+def run_program(
     command: Sequence[str], folder: Path, time_limit: float, environment: Mapping[str, str] | None = None
 ) -> tuple[str, int | None]:
     """Run a program in a folder of its own; what it said, and its exit code, or None if it was stopped.
@@ -47,13 +47,13 @@ def call(
     OSError
         It cannot be started.
     """
-    return calls([command], folder, time_limit, environment)[0]
+    return run_programs([command], folder, time_limit, environment)[0]
 
 
-def calls(
+def run_programs(
     commands: Sequence[Sequence[str]], folder: Path, time_limit: float, environment: Mapping[str, str] | None = None
 ) -> list[tuple[str, int | None]]:
-    """Run programs side by side; of each what `call` returns of one."""
+    """Run programs side by side; of each what `run_program` returns of one."""
     spoken = [folder / f"spoken{k}.txt" for k in range(len(commands))]
     end, codes, processes = time.monotonic() + time_limit, [], []
     with _guard() as group:
@@ -120,7 +120,7 @@ def _lifeline() -> tuple[int, int]:
 
 
 def _follow() -> None:
-    """In a copy: end with the process that it was copied from, whatever this one is doing then."""
+    """End a copy with the process that it was copied from, whatever this one is doing then."""
     read, write = _lifeline()
     os.close(write)
     _lifeline.cache_clear()
@@ -143,7 +143,7 @@ def _later(signals: Iterable[int]) -> Iterator[None]:
 
 
 @contextmanager
-def started(make: Callable[[T], R], given: Sequence[T], processes: int) -> Iterator[Callable[[], list[R]]]:
+def forked_map(make: Callable[[T], R], given: Sequence[T], processes: int) -> Iterator[Callable[[], list[R]]]:
     """Begin with `make` of each of `given`, in copies of this process, each taking what comes next.
 
     What the block is given, once called, takes part, and returns all of it in its order. Copies end with the block, or
@@ -177,27 +177,27 @@ def started(make: Callable[[T], R], given: Sequence[T], processes: int) -> Itera
                 return done
             done[i] = make(given[i])
 
-    def told(pipe: Connection) -> None:
+    def send_results(pipe: Connection) -> None:
         with suppress(BaseException):  # the pipe ends without a word
             signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDINGS)  # only what happens here ends it
             _follow()
             pipe.send(work())
         os._exit(0)  # nothing that this process has open is closed twice
 
-    def joined() -> list[R]:
+    def gather_results() -> list[R]:
         done = work()
         for receive, _ in pipes:
             with suppress(EOFError):
                 done |= receive.recv()
         return [done[i] if i in done else make(what) for i, what in enumerate(given)]
 
-    copies = [context.Process(target=told, args=(send,), daemon=True) for _, send in pipes]
+    copies = [context.Process(target=send_results, args=(send,), daemon=True) for _, send in pipes]
     try:
         for copy, (_, send) in zip(copies, pipes, strict=True):
             with _later(ENDINGS):
                 copy.start()
             send.close()
-        yield joined
+        yield gather_results
     finally:
         _end(copies)
         for end in (end for pipe in pipes for end in pipe):

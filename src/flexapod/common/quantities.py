@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from string import Formatter
 from typing import Any
 
 import numpy as np
@@ -74,6 +75,28 @@ def text(value: float, unit: str, digits: int = 3) -> str:
     return scale(value, unit).text(value, digits)
 
 
+class _Numbers(Formatter):
+    """Fields with a tilde are numbers of so many digits, in the unit that follows; others as Python formats them."""
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        if not format_spec.startswith("~"):
+            return super().format_field(value, format_spec)
+        digits, _, unit = format_spec[1:].partition(" ")
+        return text(value, unit, int(digits)) if unit else number(value, int(digits))
+
+
+def fill_template(template: str, **numbers: object) -> str:
+    """A sentence with its numbers put in, as `number` has them, and as `text`, or as the fields say themselves.
+
+    Examples
+    --------
+    >>> fill_template("{what} swings by {way:~3 m} at {frequency:~4} Hz, {share:.1%} of it", what="a leg", way=2e-5,
+    ...        frequency=31.4, share=0.1)
+    'a leg swings by 20 µm at 31.4 Hz, 10.0% of it'
+    """
+    return _Numbers().vformat(template, (), numbers)
+
+
 def rounded_up(value: float) -> float:
     """The next of 1, 2, 5 and 10 times a power of ten: what a number is at most whose digits are rounding."""
     power = 10.0 ** np.floor(np.log10(value)) if value > 0 else 0.0
@@ -142,16 +165,16 @@ def sentence(words: str) -> str:
     return f"{capital(words)}."
 
 
-def cleared(values: ArrayLike, largest: float) -> Array:
+def zero_rounding(values: ArrayLike, largest: float) -> Array:
     """Values of one axis to show beside the others: 0 throughout where all are rounding beside the largest axis."""
     given = np.asarray(values, dtype=float)
     return given * (np.abs(given).max(initial=0.0) > ROUNDING * abs(largest))
 
 
-def cleared_lines(lines: Array) -> Array:
+def zero_rounding_lines(lines: Array) -> Array:
     """Lines (lines, T) to show together: each that is rounding beside the largest of all is 0 throughout."""
     largest = float(np.abs(lines).max(initial=0.0))
-    return np.stack([cleared(line, largest) for line in lines])
+    return np.stack([zero_rounding(line, largest) for line in lines])
 
 
 def brief(remark: str) -> tuple[str, str]:
@@ -165,7 +188,7 @@ def length(value: float) -> str:
     return text(value if abs(value) >= NOTHING else 0.0, "m")
 
 
-def signed(moved: Array, beside: Array | None = None) -> str:
+def signed_components(moved: Array, beside: Array | None = None) -> str:
     """Components (3,) [m] with signs: "x -1.2 µm, z +18.5 µm"; without those that are nothing beside a displacement."""
     size = float(np.linalg.norm(moved if beside is None else beside))
     return along_axes(np.where(np.abs(moved) > max(UNSAID * size, NOTHING), moved, 0.0), signed=True)

@@ -18,8 +18,8 @@ EQUALS = 1e-9
 """The same for legs, parts and directions, which are few: results of simulations are symmetric to 1e-10."""
 
 
-def alike(values: Array, axis: int | None = None, same: float = ROUNDING) -> Mask:
-    """Which values are the largest along an axis, or of all; what is not a number is none of them."""
+def is_largest(values: Array, axis: int | None = None, same: float = ROUNDING) -> Mask:
+    """Mark the values that are the largest along an axis, or of all; what is not a number is none of them."""
     largest, least = (extreme(axis=axis, keepdims=True) for extreme in (values.max, values.min))
     if np.isfinite(largest).all() and np.isfinite(least).all():
         return values >= largest - same * np.maximum(largest, -least)
@@ -33,7 +33,7 @@ def _size(values: Array, axis: int | None = None) -> Array:
 
 def first_largest(values: Array, same: float = ROUNDING) -> int:
     """Place of the first of the largest of all values, in their order; `argmax`, but for rounding."""
-    return int(alike(np.asarray(values, float), same=same).argmax())
+    return int(is_largest(np.asarray(values, float), same=same).argmax())
 
 
 def first_least(values: Array, same: float = ROUNDING) -> int:
@@ -41,7 +41,7 @@ def first_least(values: Array, same: float = ROUNDING) -> int:
     return first_largest(-np.asarray(values, float), same)
 
 
-def ranked(values: Array) -> NDArray[np.intp]:
+def descending_order(values: Array) -> NDArray[np.intp]:
     """Places of values (n,) from the largest to the least; those of equals in their order."""
     order = np.argsort(-values, kind="stable")
     falling = values[order]
@@ -49,7 +49,7 @@ def ranked(values: Array) -> NDArray[np.intp]:
     return order[np.lexsort((order, np.append(0 * order[:1], lower).cumsum()))]
 
 
-def most(items: Iterable[T], key: Callable[[T], float]) -> T:
+def largest_item(items: Iterable[T], key: Callable[[T], float]) -> T:
     """The first of those items whose `key` is largest; `max`, but for rounding."""
     found = list(items)
     return found[first_largest(np.array([key(item) for item in found]), EQUALS)]

@@ -54,7 +54,7 @@ LARGEST, MOST_KEPT = 32 << 20, 64 << 20
 with the largest that was freed; Dask has its workers keep 64 kB."""
 
 
-def keep_freed() -> None:
+def retain_freed_memory() -> None:
     """Let what a run frees be taken by the next.
 
     The system gives memory page by page and fills each with zeros when it is touched, which takes a tenth of a call of
@@ -66,14 +66,14 @@ def keep_freed() -> None:
         library.mallopt(_TRIM_THRESHOLD, MOST_KEPT)
 
 
-def few_arenas() -> None:
+def limit_arenas() -> None:
     """Let the threads that begin from now on share their memory."""
     library = _glibc()
     if library is not None:
         library.mallopt(_ARENA_MAX, MOST_ARENAS)
 
 
-def collect() -> None:
+def release_memory() -> None:
     """Free what somebody who has left leaves in cycles, before it adds up, and give it back to the system."""
     gc.collect()
     library = _glibc()

@@ -1,4 +1,4 @@
-"""Which flexapod this is: its version, and a hash of the sources that numbers come from."""
+"""Version of flexapod, and a hash of the sources that numbers come from."""
 
 from __future__ import annotations
 

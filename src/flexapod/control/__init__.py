@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flexapod.common.lazy_imports import later
+from flexapod.common.lazy_imports import lazy_attributes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
         Controller,
         Decentralised,
         Decoupled,
-        Function,
-        Fused,
-        Together,
+        FunctionController,
+        Parallel,
+        SensorFusion,
     )
     from flexapod.control.decoupling import (
         Decoupling,
@@ -53,7 +53,8 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "flexapod.control.controllers": (
-        "DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "Function", "Fused", "Together",
+        "DVF", "IFF", "PID", "Controller", "Decentralised", "Decoupled", "FunctionController", "Parallel",
+        "SensorFusion",
     ),
     "flexapod.control.decoupling": (
         "Decoupling", "by_jacobian", "by_modes", "by_singular_vectors", "centre_of_stiffness", "robot_jacobian",
@@ -81,11 +82,11 @@ __all__ = [
     "Decoupled",
     "Decoupling",
     "DelayedLoop",
-    "Function",
-    "Fused",
+    "FunctionController",
+    "Parallel",
     "Scheduled",
+    "SensorFusion",
     "StateSpace",
-    "Together",
     "Tracker",
     "best_gain",
     "by_jacobian",
@@ -110,7 +111,10 @@ __all__ = [
 ]
 
 
-__getattr__: Callable[[str], object] = later("flexapod.control", _HOMES)
+#: Names of the release before.
+_FORMER = {"Function": "FunctionController", "Fused": "SensorFusion", "Together": "Parallel"}
+
+__getattr__: Callable[[str], object] = lazy_attributes("flexapod.control", _HOMES, _FORMER)
 
 
 def __dir__() -> list[str]:

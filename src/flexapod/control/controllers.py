@@ -1,7 +1,4 @@
-"""Controllers: laws between named sensors and actuators, alone or decoupled by matrices, (T21.12)-(T21.16).
-
-A controller that is a function of an instant and readings, in place of a linear law.
-"""
+"""Controllers between named sensors and actuators: laws, alone or decoupled, and functions, (T21.12)-(T21.16)."""
 
 from __future__ import annotations
 
@@ -17,15 +14,15 @@ from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError, names_of
 from flexapod.common.units import quantity
 from flexapod.control import filters
-from flexapod.control.feedback import law_of
+from flexapod.control.feedback import channel_law
 from flexapod.control.filters import ControlLaw, Number
-from flexapod.control.state_space import RATE, Names, StateSpace, chosen
+from flexapod.control.state_space import RATE, Names, StateSpace, channel_indices
 
 NO_UNITS: Mapping[str, str] = {}
 
 
 class Controller(ABC):
-    """What turns sensors into forces or commands of actuators, signs included: what damps is negative."""
+    """Law from sensors to forces or commands of actuators, signs included: damping is negative."""
 
     @abstractmethod
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
@@ -47,14 +44,14 @@ class Controller(ABC):
     def sampled(
         self, period: Number, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS
     ) -> StateSpace:
-        """The same from sample to sample, readings held for a `period` [s]: x_next = A x + B y, u = C x + D y.
+        """Law from sample to sample, readings held for a `period` [s]: x_next = A x + B y, u = C x + D y.
 
         Eq. (T21.17). Other arguments as of `on`: names of all channels there are, of which it takes its own.
         """
         return self.on(outputs, inputs, units).sampled(period)
 
 
-def assembled(
+def assemble_controller(
     columns: Sequence[ControlLaw], into: Array, out: Array, sensors: Sequence[str], actuators: Sequence[str],
     units: Mapping[str, str],
 ) -> StateSpace:  # fmt: skip
@@ -91,10 +88,10 @@ class Decentralised(Controller):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
-        filters.a_law(self.law)
-        sensors, actuators = pairs(self.sensor, self.actuator, outputs, inputs)
+        filters.check_law(self.law)
+        sensors, actuators = collocated_channels(self.sensor, self.actuator, outputs, inputs)
         each = np.eye(len(sensors))
-        return assembled([self.law * -1.0] * len(sensors), each, each, sensors, actuators, units)
+        return assemble_controller([self.law * -1.0] * len(sensors), each, each, sensors, actuators, units)
 
 
 @dataclass(frozen=True)
@@ -126,14 +123,14 @@ class IFF(Controller):
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
         law = filters.integrator(-quantity(self.gain, "number", key="gain"), self.high_pass)
-        sensors, actuators = pairs(self.sensor, self.actuator, outputs, inputs)
+        sensors, actuators = collocated_channels(self.sensor, self.actuator, outputs, inputs)
         each = np.eye(len(sensors))
         stiffness = quantity(self.parallel_stiffness, "stiffness", key="parallel_stiffness")
         if not stiffness:
-            return assembled([law] * len(sensors), each, each, sensors, actuators, units)
-        strokes, _ = pairs(self.stroke, self.actuator, outputs, inputs)
+            return assemble_controller([law] * len(sensors), each, each, sensors, actuators, units)
+        strokes, _ = collocated_channels(self.stroke, self.actuator, outputs, inputs)
         into = np.hstack([each, stiffness * each])
-        return assembled([law] * len(sensors), into, each, [*sensors, *strokes], actuators, units)
+        return assemble_controller([law] * len(sensors), into, each, [*sensors, *strokes], actuators, units)
 
 
 @dataclass(frozen=True)
@@ -171,7 +168,7 @@ class PID(Controller):
 
 
 @dataclass(frozen=True)
-class Fused(Controller):
+class SensorFusion(Controller):
     """Two sensors of one motion, the first below, the second above a `corner` [Hz], u_i = -law(L y_i + H z_i)."""
 
     law: ControlLaw
@@ -184,13 +181,13 @@ class Fused(Controller):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
-        filters.a_law(self.law)
+        filters.check_law(self.law)
         below, above = filters.complementary(self.corner, self.order)
-        low, actuators = pairs(self.low, self.actuator, outputs, inputs)
-        high, _ = pairs(self.high, self.actuator, outputs, inputs)
+        low, actuators = collocated_channels(self.low, self.actuator, outputs, inputs)
+        high, _ = collocated_channels(self.high, self.actuator, outputs, inputs)
         each = np.eye(len(low))
         both = [self.law * below * -1.0] * len(low) + [self.law * above * -1.0] * len(low)
-        return assembled(both, np.eye(2 * len(low)), np.hstack([each, each]), [*low, *high], actuators, units)
+        return assemble_controller(both, np.eye(2 * len(low)), np.hstack([each, each]), [*low, *high], actuators, units)
 
 
 @dataclass(frozen=True)
@@ -216,8 +213,8 @@ class Decoupled(Controller):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
-        sensors = [outputs[i] for i in chosen(self.sensor, outputs, "sensor")]
-        actuators = [inputs[i] for i in chosen(self.actuator, inputs, "actuator")]
+        sensors = [outputs[i] for i in channel_indices(self.sensor, outputs, "sensor")]
+        actuators = [inputs[i] for i in channel_indices(self.actuator, inputs, "actuator")]
         into, out = matrix(self.into, "into", "(k, sensors)"), matrix(self.out, "out", "(actuators, k)")
         out = out.T if np.ndim(self.out) == 1 else out
         each = (
@@ -225,25 +222,25 @@ class Decoupled(Controller):
             if isinstance(self.law, ControlLaw) or not isinstance(self.law, Sequence)
             else self.law
         )
-        given = [filters.a_law(law) for law in each]
+        given = [filters.check_law(law) for law in each]
         shapes = {"into": (into, (len(given), len(sensors))), "out": (out, (len(actuators), len(given)))}
         for key, (found, shape) in shapes.items():
             if found.shape != shape:
                 words = f"{shape}: {len(given)} laws, {len(sensors)} sensors, {len(actuators)} actuators"
                 raise InputError(f"has the shape {found.shape}", key=key, allowed=words)
-        return assembled([law * -1.0 for law in given], into, out, sensors, actuators, units)
+        return assemble_controller([law * -1.0 for law in given], into, out, sensors, actuators, units)
 
 
 @dataclass(frozen=True)
-class Together(Controller):
-    """Several controllers at once: what they ask of an actuator adds up, as an inner and an outer loop do."""
+class Parallel(Controller):
+    """Several controllers at once: their outputs to one actuator add up, as of an inner and an outer loop."""
 
     parts: tuple[Controller | StateSpace, ...]
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str] = NO_UNITS) -> StateSpace:
         """See `Controller.on`."""
         parts = self.parts if isinstance(self.parts, Sequence) else ()
-        each = [law_of(part, outputs, inputs, units) for part in parts]
+        each = [channel_law(part, outputs, inputs, units) for part in parts]
         if not each:
             raise InputError("are none", key="parts", allowed="a controller at least")
         readings = tuple(dict.fromkeys(name for part in each for name in part.inputs))
@@ -268,10 +265,12 @@ def _diagonal(blocks: Sequence[Array]) -> Array:
     return np.asarray(block_diag(*blocks), dtype=float)
 
 
-def pairs(sensor: Names, actuator: Names, outputs: Sequence[str], inputs: Sequence[str]) -> tuple[list[str], list[str]]:
+def collocated_channels(
+    sensor: Names, actuator: Names, outputs: Sequence[str], inputs: Sequence[str]
+) -> tuple[list[str], list[str]]:
     """Names of sensors and actuators, as many of each."""
-    sensors = [outputs[i] for i in chosen(sensor, outputs, "sensor")]
-    actuators = [inputs[i] for i in chosen(actuator, inputs, "actuator")]
+    sensors = [outputs[i] for i in channel_indices(sensor, outputs, "sensor")]
+    actuators = [inputs[i] for i in channel_indices(actuator, inputs, "actuator")]
     if len(sensors) != len(actuators):
         raise InputError(
             f"are {len(sensors)} for {len(actuators)} actuators",
@@ -284,8 +283,8 @@ def pairs(sensor: Names, actuator: Names, outputs: Sequence[str], inputs: Sequen
 
 
 @dataclass(frozen=True, kw_only=True)
-class Function:
-    """What a simulation asks once a sample: ``function(t, readings) -> values``, t [s].
+class FunctionController:
+    """Function that a simulation calls once a sample: ``function(t, readings) -> values``, t [s].
 
     Parameters
     ----------
@@ -301,7 +300,7 @@ class Function:
     outputs: tuple[str, ...]
 
     def __post_init__(self) -> None:
-        """A function, and names of channels."""
+        """Check the function and the names of its channels."""
         if not callable(self.function):
             raise InputError("is no function", key="function", value=self.function, allowed="function(t, readings)")
         for key in ("inputs", "outputs"):

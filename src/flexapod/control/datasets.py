@@ -1,6 +1,7 @@
-"""Answers of a linear system as Datasets: named channels, complex numbers along `part`.
+"""Results of linear systems as Datasets, and linear systems for other programs and files.
 
-Linear systems for other programs: MATLAB, NumPy, JSON, NetCDF files with all names and units, python-control.
+Datasets have named channels, and complex numbers along `part`. Files of MATLAB, NumPy, JSON and NetCDF have all
+names and units.
 """
 
 from __future__ import annotations
@@ -16,11 +17,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod.common.arguments import frequencies
 from flexapod.common.arrays import Array
-from flexapod.common.datasets import composed
+from flexapod.common.datasets import build_dataset
 from flexapod.common.errors import ComputationError, InputError
-from flexapod.common.files import path_of, replacing
-from flexapod.common.lazy_imports import loaded
-from flexapod.control.frequency_response import swings_of
+from flexapod.common.files import path_of, replace_file
+from flexapod.common.lazy_imports import load_module
+from flexapod.control.frequency_response import pole_properties
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,7 +36,7 @@ RESPONSE = ("frequency_response", "response of outputs to inputs", "output_units
 
 
 class Channels(Protocol):
-    """What has named inputs and outputs with units."""
+    """Protocol of objects with named inputs and outputs and their units."""
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -53,30 +54,30 @@ class Channels(Protocol):
         ...
 
 
-def in_parts(values: Complex) -> Array:
+def split_complex(values: Complex) -> Array:
     """Complex numbers with a last axis of real and imaginary part: files of NetCDF have no complex ones."""
     return np.ascontiguousarray(values).view(float).reshape(*values.shape, 2)
 
 
-def complex_of(values: xr.DataArray) -> xr.DataArray:
+def join_complex(values: xr.DataArray) -> xr.DataArray:
     """Complex numbers of an array with the dimension `part`."""
     return values.sel(part="real", drop=True) + 1j * values.sel(part="imaginary", drop=True)
 
 
-def per(output: str, input: str) -> str:
+def response_unit(output: str, input: str) -> str:
     """Unit of a response by those of its channels."""
     if output == input:
         return "1"
     return f"{output}/({input})" if " " in input or "/" in input else output if input == "1" else f"{output}/{input}"
 
 
-def units_in(data: xr.Dataset, dim: str) -> dict[str, str]:
+def channel_units(data: xr.Dataset, dim: str) -> dict[str, str]:
     """Units of channels along a dimension, `input` or `output`, by name."""
     return dict(zip(data[dim].values.tolist(), data[f"{dim}_units"].values.tolist(), strict=True))
 
 
-def beyond_rounding(sizes: Mapping[tuple[str, str], float], units: Mapping[str, str]) -> list[tuple[str, str]]:
-    """Pairs of output and input whose size is more than rounding beside outputs alike by the same input.
+def significant_pairs(sizes: Mapping[tuple[str, str], float], units: Mapping[str, str]) -> list[tuple[str, str]]:
+    """Pairs of output and input whose size is above rounding, relative to outputs of like unit by the same input.
 
     `units` of the outputs: alike are those of one, where a radian counts as a metre, and 1 N m as 1 N. What symmetry
     makes zero comes out at 3e-9 and less, of a pose of equilibrium that is symmetric to that.
@@ -102,15 +103,15 @@ def response_dataset(
     frequency = frequencies(hz)
     name, long_name, unit = words
     attrs = {"long_name": long_name, "units": unit}
-    return composed(
-        {name: (("output", "input", "frequency", "part"), in_parts(values), attrs)},
+    return build_dataset(
+        {name: (("output", "input", "frequency", "part"), split_complex(values), attrs)},
         channel_labels(system, "output", "input")
         | {"frequency": ("frequency", frequency, {"units": "Hz"}), "part": ("part", PARTS)},
     )
 
 
 @dataclass(frozen=True, kw_only=True)
-class Measured:
+class MeasuredChannels:
     """Channels of a measurement."""
 
     inputs: tuple[str, ...]
@@ -123,7 +124,7 @@ def frf_dataset(frequency: Array, values: Complex, outputs: Mapping[str, str], i
 
     `outputs` and `inputs` are units by name: at the point where a structure is hit both have one name and two units.
     """
-    data = response_dataset(Measured(inputs=(*inputs,), outputs=(*outputs,), units={}), frequency, values)
+    data = response_dataset(MeasuredChannels(inputs=(*inputs,), outputs=(*outputs,), units={}), frequency, values)
     return data.assign_coords(output_units=("output", [*outputs.values()]), input_units=("input", [*inputs.values()]))
 
 
@@ -139,7 +140,7 @@ def h2_dataset(system: StateSpace, values: Array, why: dict[tuple[int, int], str
     attrs = {"long_name": "H2 norm", "units": "output_units / input_units * Hz**0.5"}
     if system.sample is not None:
         attrs = {"long_name": "H2 norm: rms by the rms of white samples", "units": "output_units / input_units"}
-    return composed(
+    return build_dataset(
         {
             "h2_norm": (("output", "input"), values, attrs),
             "reason": (("output", "input"), reason.astype(str), {"long_name": "why the norm is infinite"}),
@@ -151,7 +152,7 @@ def h2_dataset(system: StateSpace, values: Array, why: dict[tuple[int, int], str
 
 def hinf_dataset(value: float, hertz: float) -> xr.Dataset:
     """`hinf_norm` and the `frequency` of it."""
-    return composed(
+    return build_dataset(
         {
             "hinf_norm": ((), value, {"long_name": "largest singular value over frequency"}),
             "frequency": ((), hertz, {"units": "Hz", "long_name": "frequency of the largest singular value"}),
@@ -165,7 +166,7 @@ def vibration_dataset(system: StateSpace, found: RandomVibration, error: float) 
     labels["output_b"] = ("output_b", list(system.outputs))
     f = ("spectrum_frequency", found.frequency, {"units": "Hz"})
     along = ("spectrum_frequency", "output")
-    return composed(
+    return build_dataset(
         {
             "psd": (along, found.psd, {"units": "output_units**2 / Hz", "long_name": "one-sided spectral density"}),
             "cumulative_rms": (along, found.cumulative, {"units": "output_units", "long_name": "rms from here up"}),
@@ -180,7 +181,7 @@ def vibration_dataset(system: StateSpace, found: RandomVibration, error: float) 
 def source_dataset(system: StateSpace, found: RandomVibration, error: float) -> xr.Dataset:
     """`rms_by_source` (source, output), whose squares add up to those of `rms`."""
     words = {"units": "output_units", "long_name": "standard deviation by source"}
-    return composed(
+    return build_dataset(
         {
             "rms_by_source": (("source", "output"), found.by_source, words),
             "rms": ("output", found.rms, {"units": "output_units", "long_name": "standard deviation"}),
@@ -195,7 +196,7 @@ def history_dataset(system: StateSpace, time: Array, values: Array, name: str) -
     words = {"long_name": name.replace("_", " "), "units": "output_units / input_units"}
     if name.startswith("impulse"):
         words |= {"units": "output_units / (input_units s)", "feed_through": "its impulse at 0 is left out"}
-    return composed(
+    return build_dataset(
         {name: (("output", "input", "time"), values, words)},
         channel_labels(system, "output", "input") | {"time": ("time", time, {"units": "s"})},
     )
@@ -206,13 +207,17 @@ def impedance_dataset(
 ) -> xr.Dataset:
     """`impedance` over `frequency`, and springs and dampers with the same."""
     found: dict[str, tuple[object, ...]] = {
-        "impedance": (("frequency", "part"), in_parts(values), {"units": "N s/m", "long_name": "force over velocity"})
+        "impedance": (
+            ("frequency", "part"),
+            split_complex(values),
+            {"units": "N s/m", "long_name": "force over velocity"},
+        )
     }
     for name, (stiffness, damping) in {"parallel": parallel, "series": series}.items():
         pair = f"spring and damper in {name}"
         found[f"{name}_stiffness"] = ("frequency", stiffness, {"units": "N/m", "long_name": f"spring of a {pair}"})
         found[f"{name}_damping"] = ("frequency", damping, {"units": "N s/m", "long_name": f"damper of a {pair}"})
-    return composed(found, {"frequency": ("frequency", frequency, {"units": "Hz"}), "part": PARTS})
+    return build_dataset(found, {"frequency": ("frequency", frequency, {"units": "Hz"}), "part": PARTS})
 
 
 def system_dataset(system: StateSpace) -> xr.Dataset:
@@ -222,19 +227,19 @@ def system_dataset(system: StateSpace) -> xr.Dataset:
     dims = {"A": ("state", "state_b"), "B": ("state", "input"), "C": ("output", "state"), "D": ("output", "input")}
     dims |= {} if system.D_rate is None else {"D_rate": dims["D"]}
     found = {name: (dim, getattr(system, name)) for name, dim in dims.items()}
-    return composed(found, labels, {"sample": system.sample or 0.0, "sample_units": "s"})
+    return build_dataset(found, labels, {"sample": system.sample or 0.0, "sample_units": "s"})
 
 
 def locus_dataset(factors: Array, poles: Complex, zeros: Complex, sample: float | None) -> xr.Dataset:
     """`pole`, `frequency`, `damping_ratio` over `gain` and `branch`, `open_zero`, where branches end."""
-    _, frequency, ratio = swings_of(poles, sample)
+    _, frequency, ratio = pole_properties(poles, sample)
     names = {"units": "s-1" if sample is None else "1"}
-    return composed(
+    return build_dataset(
         {
-            "pole": (("gain", "branch", "part"), in_parts(poles), names | {"long_name": "pole of the loop"}),
+            "pole": (("gain", "branch", "part"), split_complex(poles), names | {"long_name": "pole of the loop"}),
             "frequency": (("gain", "branch"), frequency, {"units": "Hz", "long_name": "size over 2 pi"}),
             "damping_ratio": (("gain", "branch"), ratio, {"units": "1", "long_name": "damping ratio"}),
-            "open_zero": (("zero", "part"), in_parts(zeros), names | {"long_name": "zero of the loop gain"}),
+            "open_zero": (("zero", "part"), split_complex(zeros), names | {"long_name": "zero of the loop gain"}),
         },
         {"gain": ("gain", factors, {"long_name": "factor on the controller"}), "part": PARTS},
         {} if sample is None else {"sample": sample},
@@ -244,7 +249,7 @@ def locus_dataset(factors: Array, poles: Complex, zeros: Complex, sample: float 
 def best_dataset(gain: float, ratio: float, frequency: float, factors: Array, ratios: Array) -> xr.Dataset:
     """`gain`, `damping_ratio`, `frequency` of the best, `least_damping_ratio` over `factor`."""
     ratio_words = {"units": "1", "long_name": "least damping ratio of the poles"}
-    return composed(
+    return build_dataset(
         {
             "gain": ((), gain, {"long_name": "factor on the controller"}),
             "damping_ratio": ((), ratio, ratio_words),
@@ -275,16 +280,16 @@ def margins_dataset(
         found[name] = ("actuator", values[:, 0], {"units": unit, "long_name": words})
         found[f"{name}_frequency"] = ("actuator", values[:, 1], at)
     labels = {"actuator": list(actuators), "side": ["below", "above"]}
-    return composed(found, labels, {"unstable_poles": unstable})
+    return build_dataset(found, labels, {"unstable_poles": unstable})
 
 
 def damping_dataset(poles: Complex, frequency: Array, ratio: Array) -> xr.Dataset:
     """`frequency`, `damping_ratio`, `pole` (mode, part) of poles that are sorted by frequency."""
-    return composed(
+    return build_dataset(
         {
             "frequency": ("mode", frequency, {"units": "Hz", "long_name": "size of the pole over 2 pi"}),
             "damping_ratio": ("mode", ratio, {"units": "1", "long_name": "damping ratio"}),
-            "pole": (("mode", "part"), in_parts(poles), {"units": "s-1", "long_name": "pole"}),
+            "pole": (("mode", "part"), split_complex(poles), {"units": "s-1", "long_name": "pole"}),
         },
         {"mode": np.arange(1, len(poles) + 1), "part": PARTS},
     )
@@ -293,7 +298,7 @@ def damping_dataset(poles: Complex, frequency: Array, ratio: Array) -> xr.Datase
 def to_control(system: StateSpace) -> Any:
     """See `StateSpace.to_control`."""
     try:
-        control: Any = loaded("control")  # it has no types
+        control: Any = load_module("control")  # it has no types
     except ImportError:
         raise ComputationError(
             "python-control is not installed", next_step='pip install "flexapod[control]", or pip install control'
@@ -316,13 +321,13 @@ def save(system: StateSpace, path: str | Path) -> Path:
     write = WRITERS.get(path.suffix.lower())
     if write is None:
         raise InputError("is not a format of linear systems", key="path", value=path.name, allowed=", ".join(WRITERS))
-    with replacing(path) as temporary:
+    with replace_file(path) as temporary:
         write(system, temporary)
     return path
 
 
 def _named(system: StateSpace) -> dict[str, np.ndarray]:
-    """Matrices and names; units beside inputs and outputs; a sample time of 0 is that of a continuous system.
+    """Matrices and names; units of inputs and outputs; a sample time of 0 is that of a continuous system.
 
     `D_rate` only where outputs follow rates of inputs.
     """
@@ -352,8 +357,6 @@ def _json(system: StateSpace, path: Path) -> None:
 
 
 def _nc(system: StateSpace, path: Path) -> None:
-    pass  # FOLD
-
     system_dataset(system).to_netcdf(path, engine="netcdf4")
 
 

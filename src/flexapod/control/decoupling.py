@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.common.arguments import matrix, number, numbers, whole
+from flexapod.common.arguments import integer, matrix, number, numbers
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.control.controllers import Decoupled
 from flexapod.control.filters import ControlLaw
-from flexapod.control.state_space import Names, a_system
+from flexapod.control.state_space import Names, check_system
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
@@ -81,7 +81,7 @@ def robot_jacobian(
 
 
 def centre_of_stiffness(jacobian: ArrayLike, stiffness: ArrayLike = 1.0) -> Array:
-    """From the point of a Jacobian (m, 6) to that about which forces turn least and moments move least, (3,) [m].
+    """Vector from the point of a Jacobian (m, 6) to where forces turn and moments move least, (3,) [m].
 
     The stiffness of translation with rotation, K_tr, at a point beside it by a is K_tr + K_tt [a]x, Eq. (T21.37), with
     the least sum of squares there.
@@ -118,10 +118,10 @@ def by_modes(
     ComputationError
         Modes that sensors or actuators do not tell apart.
     """
-    part = a_system(system).select(actuator, sensor)
+    part = check_system(system).select(actuator, sensor)
     if not part.D.size:
         raise InputError("has no such channels", key="sensor, actuator", allowed="at least one of each")
-    k = min(part.D.shape) if count is None else whole(count, "count", 1, min(part.D.shape))
+    k = min(part.D.shape) if count is None else integer(count, "count", 1, min(part.D.shape))
     values, right = np.linalg.eig(part.A)
     try:
         left = np.linalg.solve(right, part.B.astype(complex))
@@ -143,7 +143,7 @@ def by_singular_vectors(
 ) -> Decoupling:
     """Singular vectors of a real matrix near the response at a frequency, Eq. (T21.39): G ~ U S V'."""
     at = number(hz, "hz", "frequency", least=0.0)
-    G = a_system(system).select(actuator, sensor).at(at)[:, :, 0]
+    G = check_system(system).select(actuator, sensor).at(at)[:, :, 0]
     if G.shape[0] != G.shape[1]:
         raise InputError("is not square", key="sensor", allowed="as many sensors as actuators")
     D = np.linalg.pinv((G.conj().T @ G).real)
@@ -161,7 +161,7 @@ def _real(shape: np.ndarray) -> Array:
 
 
 def _inverse(matrix: Array, key: str) -> Array:
-    """Its (pseudo-)inverse; refuses what has none."""
+    """Pseudo-inverse of a matrix; refuse one whose directions are dependent."""
     values = np.linalg.svd(matrix / (np.linalg.norm(matrix, axis=0) + 1e-300), compute_uv=False)
     if values.min(initial=np.inf) <= INDEPENDENT * values.max(initial=0.0):
         raise ComputationError(f"directions are not told apart by {key}", next_step="Ask for fewer directions")

@@ -1,6 +1,6 @@
-"""From continuous systems to samples: inputs held in between, delays of any length, (T21.17)-(T21.19).
+"""Sampling of continuous systems, and step and impulse responses, exact at the instants, (T21.17)-(T21.19).
 
-Answers of a linear system over time to steps and impulses, exact at the instants, (T21.17).
+Inputs are held between samples; delays have any length.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from scipy.linalg import expm
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.common.units import DIMENSIONS, quantity, to_si
-from flexapod.control.frequency_response import damping_of
+from flexapod.control.frequency_response import oscillating_poles
 from flexapod.control.state_space import RATE
 
 if TYPE_CHECKING:
@@ -41,7 +41,9 @@ def period_of(sample: float | str) -> float:
     return period
 
 
-def held(system: StateSpace, period: float, delay: float = 0.0, delayed: Sequence[int] | None = None) -> StateSpace:
+def zero_order_hold(
+    system: StateSpace, period: float, delay: float = 0.0, delayed: Sequence[int] | None = None
+) -> StateSpace:
     """The system between samples, its inputs held, exactly: Eq. (T21.17); rates are last differences, Eq. (T21.19).
 
     `delay` [s] of the inputs `delayed` (all), Eq. (T21.18).
@@ -142,7 +144,7 @@ def instants(system: StateSpace, duration: float | None, step: float | None) -> 
     """Instants [s] from 0 on: as long as the slowest motion needs, as fine as the fastest oscillation, or as given."""
     if system.sample is not None:
         step = system.sample
-    s, frequency, _ = damping_of(system.poles(), system.sample)
+    s, frequency, _ = oscillating_poles(system.poles(), system.sample)
     moving = (frequency > 1e-9 * frequency.max(initial=0.0)) & np.isfinite(frequency)
     if duration is None:
         decay = np.maximum(np.abs(s.real[moving]), 1e-300)
@@ -167,7 +169,11 @@ def histories(system: StateSpace, time: Array, *, impulse: bool) -> Array:
     n, m = system.B.shape
     found = np.empty((len(system.outputs), m, len(time)))
     rings = impulse and system.sample is None  # from where the impulse has thrown it
-    moves = system if system.sample is not None else held(replace(system.select(), D_rate=None), time[1] - time[0])
+    moves = (
+        system
+        if system.sample is not None
+        else zero_order_hold(replace(system.select(), D_rate=None), time[1] - time[0])
+    )
     x = np.array(system.B) if rings else np.zeros((n, m))
     for i in range(len(time)):
         u = float(not impulse or (i == 0 and not rings)) * np.eye(m)

@@ -1,8 +1,7 @@
-"""Systems closed by controllers, with what enters at the sensors, (T21.20)-(T21.21), (T21.46)-(T21.47).
+"""Systems closed by controllers: continuous, between samples, or with a delay that stays exact, (T21.20)-(T21.22).
 
-Ways to close a loop: continuous, between samples, or with a delay that stays exact, (T21.21)-(T21.22).
-
-Mechanical impedance at a joint, and springs and dampers that would feel the same, (T21.40)-(T21.42).
+Errors of sensors are inputs, and rates of readings are exact, (T21.46)-(T21.47). Mechanical impedance at a
+joint is matched by springs and dampers, (T21.40)-(T21.42).
 """
 
 from __future__ import annotations
@@ -18,8 +17,8 @@ from flexapod.common.arguments import frequencies
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.common.units import quantity
-from flexapod.control.discretization import held, period_of
-from flexapod.control.state_space import NOISE, RATE, a_system, chosen
+from flexapod.control.discretization import period_of, zero_order_hold
+from flexapod.control.state_space import NOISE, RATE, channel_indices, check_system
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -34,7 +33,7 @@ SINGULAR = 1e-12  # distance of a direct gain around a loop from 1 at which noth
 
 @dataclass(frozen=True, kw_only=True)
 class Readings:
-    """What a controller reads: C x + D u + D_rate u', errors of sensors among the inputs, new ones by `names`.
+    """Readings of a controller, C x + D u + D_rate u'; errors of sensors are inputs, new ones by `names`.
 
     ``C`` (readings, n); ``D``, ``D_rate`` (readings, m + new).
     """
@@ -62,7 +61,7 @@ def _readings(system: StateSpace, readings: tuple[str, ...]) -> Readings:
     new = noise_names(readings, system.inputs)
     every = [*system.inputs, *new]
     plain = [name.removeprefix(RATE) for name in readings]
-    rows = [chosen(name, system.outputs, "sensor")[0] for name in plain]
+    rows = [channel_indices(name, system.outputs, "sensor")[0] for name in plain]
     C, D, D_rate = np.array(system.C[rows]), *np.zeros((2, len(rows), len(every)))
     D[:, : len(system.inputs)] = system.D[rows]
     if system.D_rate is not None:
@@ -90,49 +89,49 @@ def _extended(matrix: Array, new: int) -> Array:
 
 
 @runtime_checkable
-class OnChannels(Protocol):
-    """What finds its channels among those of a system, as `controllers.Controller`."""
+class ControllerLike(Protocol):
+    """Protocol of controllers that find their channels among those of a system, as `controllers.Controller`."""
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str]) -> StateSpace:
         """The law between channels."""
         ...
 
 
-def law_of(
-    controller: OnChannels | StateSpace, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str]
+def channel_law(
+    controller: ControllerLike | StateSpace, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str]
 ) -> StateSpace:
     """A controller between channels of a system; a state space is one itself, with channels that the system has."""
-    if isinstance(controller, type) or not (isinstance(controller, OnChannels) or hasattr(controller, "A")):
+    if isinstance(controller, type) or not (isinstance(controller, ControllerLike) or hasattr(controller, "A")):
         raise InputError(
             "is no controller", key="controller", value=controller,
             allowed="one of flexapod.control, as IFF(100.0), or a StateSpace",
         )  # fmt: skip
-    if isinstance(controller, OnChannels):
+    if isinstance(controller, ControllerLike):
         return controller.on(outputs, inputs, units)
     for name in controller.inputs:
-        chosen(name.removeprefix(RATE), outputs, "sensor")
+        channel_indices(name.removeprefix(RATE), outputs, "sensor")
     for name in controller.outputs:
-        chosen(name, inputs, "actuator")
+        channel_indices(name, inputs, "actuator")
     return controller
 
 
-def law_beside(system: StateSpace, controller: OnChannels | StateSpace) -> StateSpace:
+def law_beside(system: StateSpace, controller: ControllerLike | StateSpace) -> StateSpace:
     """A controller as a law between channels of a system, from sample to sample where that is sampled."""
-    law = law_of(controller, system.outputs, system.inputs, system.units)
-    return held(law, system.sample) if system.sample is not None and law.sample is None else law
+    law = channel_law(controller, system.outputs, system.inputs, system.units)
+    return zero_order_hold(law, system.sample) if system.sample is not None and law.sample is None else law
 
 
-def opened(system: StateSpace, controller: StateSpace) -> tuple[Array, Array, Array, Array]:
+def open_loop(system: StateSpace, controller: StateSpace) -> tuple[Array, Array, Array, Array]:
     """A, B, C, D from the actuators through system and controller back to them, the loop cut there."""
-    at = [chosen(name, system.inputs, "actuator")[0] for name in controller.outputs]
+    at = [channel_indices(name, system.inputs, "actuator")[0] for name in controller.outputs]
     read = _readings(system, controller.inputs)
     A = np.block([[system.A, np.zeros((len(system.A), len(controller.A)))], [controller.B @ read.C, controller.A]])
     B = np.vstack([system.B[:, at], controller.B @ read.D[:, at]])
     return A, B, np.hstack([controller.D @ read.C, controller.C]), controller.D @ read.D[:, at]
 
 
-def closed(system: StateSpace, controller: StateSpace) -> StateSpace:
-    """The system with u = r + K (y + w), Eq. (T21.21): inputs r and w, outputs y and what the controller asks for.
+def closed_loop(system: StateSpace, controller: StateSpace) -> StateSpace:
+    """The system with u = r + K (y + w), Eq. (T21.21): inputs r and w, outputs y and those of the controller.
 
     Raises
     ------
@@ -147,7 +146,7 @@ def closed(system: StateSpace, controller: StateSpace) -> StateSpace:
             "answers the rate of one of its inputs", key="controller", value=controller,
             next_step="Give the loop inside it a low_pass, or .select other channels of it",
         )  # fmt: skip
-    at = [chosen(name, system.inputs, "actuator")[0] for name in controller.outputs]
+    at = [channel_indices(name, system.inputs, "actuator")[0] for name in controller.outputs]
     read = _readings(system, controller.inputs)
     new = len(read.names)
     names = (*system.inputs, *read.names)
@@ -188,12 +187,12 @@ def closed(system: StateSpace, controller: StateSpace) -> StateSpace:
         inputs=names,
         outputs=outputs,
         states=(*system.states, *_fresh(controller.states, system.states)),
-        units=units_with(system.units, (*names, *outputs)),
+        units=loop_units(system.units, (*names, *outputs)),
     )
 
 
 def _asked_for(system: StateSpace, controller: StateSpace, rows: Array, asked: Array) -> tuple[tuple[str, ...], Array]:
-    """Outputs with what the controllers ask of actuators; of an inner and an outer loop the sum."""
+    """Outputs of the system and of the controllers; of an inner and an outer loop on one actuator the sum."""
     outputs = list(system.outputs)
     for name, row in zip(controller.outputs, asked, strict=True):
         own = CONTROL + name
@@ -211,8 +210,8 @@ def _fresh(names: tuple[str, ...], taken: tuple[str, ...]) -> list[str]:
     return [f"loop {loop} {name}" for name in names]
 
 
-def units_with(units: Mapping[str, str], names: Sequence[str]) -> dict[str, str]:
-    """Units with those of noises and of what controllers ask for: of the channels that they belong to."""
+def loop_units(units: Mapping[str, str], names: Sequence[str]) -> dict[str, str]:
+    """Units, with those of noises and controller outputs: each has the unit of its channel."""
     found = dict(units)
     for name in names:
         plain = name.removeprefix(NOISE).removeprefix(CONTROL)
@@ -234,19 +233,19 @@ class DelayedLoop:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Those of the system, then what is added to readings."""
+        """Names of the inputs: those of the system, then errors added to readings."""
         return (*self.system.inputs, *noise_names(self.controller.inputs, self.system.inputs))
 
     @property
     def outputs(self) -> tuple[str, ...]:
-        """Those of the system, then what the controller asks of actuators, before the delay; of inner loops the sum."""
+        """Names of the outputs: of the system, then of the controller before the delay; of inner loops the sum."""
         asked = (CONTROL + name for name in self.controller.outputs)
         return tuple(dict.fromkeys((*self.system.outputs, *asked)))
 
     @property
     def units(self) -> dict[str, str]:
         """Units of channels."""
-        return units_with(self.system.units, (*self.inputs, *self.outputs))
+        return loop_units(self.system.units, (*self.inputs, *self.outputs))
 
     def at(self, hz: ArrayLike) -> Complex:
         """Complex response (outputs, inputs, frequencies) at frequencies [Hz], Eq. (T21.22)."""
@@ -272,12 +271,12 @@ class DelayedLoop:
         s = 2j * np.pi * frequencies(hz)
         G, K = (np.moveaxis(part.at(hz), 2, 0) for part in (self.system, self.controller))
         names = self.controller.inputs
-        rows = [chosen(name.removeprefix(RATE), self.system.outputs, "sensor")[0] for name in names]
+        rows = [channel_indices(name.removeprefix(RATE), self.system.outputs, "sensor")[0] for name in names]
         rates = np.array([name.startswith(RATE) for name in names])
         return G, G[:, rows] * np.where(rates, s[:, None], 1.0)[:, :, None], K
 
     def _actuators(self) -> list[int]:
-        return [chosen(name, self.system.inputs, "actuator")[0] for name in self.controller.outputs]
+        return [channel_indices(name, self.system.inputs, "actuator")[0] for name in self.controller.outputs]
 
     def frequency_response(self, hz: ArrayLike) -> Dataset:
         """Response at frequencies [Hz] as a Dataset: `frequency_response` (output, input, frequency, part)."""
@@ -290,22 +289,22 @@ def close(
     system: StateSpace, controller: Controller | StateSpace, delay: float | str, sample: float | str | None
 ) -> StateSpace | DelayedLoop:
     """See `StateSpace.close`."""
-    law = law_of(controller, system.outputs, system.inputs, system.units)
+    law = channel_law(controller, system.outputs, system.inputs, system.units)
     late = quantity(delay, "time", key="delay")
     if late < 0:
         raise InputError("is below 0", key="delay", value=delay, allowed="0 s or more")
-    at = [chosen(name, system.inputs, "actuator")[0] for name in law.outputs]
+    at = [channel_indices(name, system.inputs, "actuator")[0] for name in law.outputs]
     if sample is not None:
         if system.sample is not None:
             raise InputError("is that of a system that is sampled already", key="sample", value=sample)
-        system = held(system, period_of(sample), late, at)
+        system = zero_order_hold(system, period_of(sample), late, at)
     elif late and system.sample is not None:
         raise InputError("is for continuous systems", key="delay", value=delay, next_step=".sampled(period, delay)")
     if system.sample is not None and law.sample is None:
-        law = held(law, system.sample)
+        law = zero_order_hold(law, system.sample)
     if late and system.sample is None:
         return DelayedLoop(system=system, controller=law, delay=late)
-    return closed(system, law)
+    return closed_loop(system, law)
 
 
 def impedance(system: StateSpace, hz: ArrayLike, *, force: str, place: str) -> Dataset:
@@ -331,7 +330,7 @@ def impedance(system: StateSpace, hz: ArrayLike, *, force: str, place: str) -> D
     """
     from flexapod.control.datasets import impedance_dataset
 
-    part = a_system(system).select(force, place)
+    part = check_system(system).select(force, place)
     if len(part.inputs) != 1 or len(part.outputs) != 1:
         raise InputError("are more than one channel", key="force, place", value=f"{force}, {place}")
     frequency = frequencies(hz)

@@ -13,7 +13,7 @@ from flexapod.common.arguments import frequencies, number, numbers
 from flexapod.common.arrays import Array, floats
 from flexapod.common.errors import InputError
 from flexapod.common.units import DIMENSIONS
-from flexapod.control.frequency_response import divided
+from flexapod.control.frequency_response import solve_stacked
 
 Number = float | str
 
@@ -77,7 +77,7 @@ class ControlLaw:
 
     @property
     def uses_rate(self) -> bool:
-        """Whether the rate of the reading matters."""
+        """Test whether the law depends on the rate of its reading."""
         return bool(self.B[:, 1].any() or self.D[1])
 
     def __mul__(self, other: ControlLaw | float) -> ControlLaw:
@@ -100,7 +100,7 @@ class ControlLaw:
 
     def __add__(self, other: ControlLaw) -> ControlLaw:
         """Two laws side by side: their outputs add."""
-        a_law(other)
+        check_law(other)
         n, m = len(self.A), len(other.A)
         return ControlLaw(
             A=np.block([[self.A, np.zeros((n, m))], [np.zeros((m, n)), other.A]]),
@@ -113,11 +113,11 @@ class ControlLaw:
         """Complex response (f,) at frequencies [Hz], the rate that of the reading."""
         s = 2j * np.pi * frequencies(hz)
         given = np.stack([np.ones_like(s), s])
-        moved = divided(s[:, None, None] * np.eye(len(self.A)) - self.A, (self.B @ given).T[..., None])
+        moved = solve_stacked(s[:, None, None] * np.eye(len(self.A)) - self.A, (self.B @ given).T[..., None])
         return (moved[..., 0] @ self.C) + self.D @ given
 
 
-def a_law(law: ControlLaw) -> ControlLaw:
+def check_law(law: ControlLaw) -> ControlLaw:
     """The law, where it is one."""
     if not isinstance(law, ControlLaw):
         raise InputError("is no law", key="law", value=law, allowed="of flexapod.control, as gain(2.0)")
@@ -180,7 +180,7 @@ def pid(
 
 
 def positive_feedback(frequency: Number, damping: float, value: float) -> ControlLaw:
-    """What positive position feedback passes on of a reading: value w^2 / (s^2 + 2 zeta w s + w^2)."""
+    """Law of positive position feedback: value w^2 / (s^2 + 2 zeta w s + w^2)."""
     w, damping, value = _omega(frequency, "frequency"), number(damping, "damping", above=0.0), number(value, "value")
     return ControlLaw.of([value * w**2], [1.0, 2 * damping * w, w**2])
 

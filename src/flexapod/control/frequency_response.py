@@ -1,8 +1,7 @@
-"""Frequency response of a state space from its poles and residues, checked against solving, (T21.2)-(T21.3).
+"""Frequency response of a state space, its poles and its integrators, (T21.2)-(T21.4), (T21.33)-(T21.34).
 
-Integrators of a system, found by what is 0 in its matrices, taken apart from all else exactly, (T21.33)-(T21.34).
-
-Poles of a state space, their frequencies and damping ratios, (T21.4).
+The response is a sum over poles and residues, checked against direct solutions. Integrators are found by the
+zeros in the matrices, and separated exactly.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Integrated:
+class IntegratorSplit:
     """A system as A (n, n), B (n, m), C (p, n) beside powers (k, p, m) of 1/s, 1/s^2, ..., Eq. (T21.34).
 
     ``most`` (k, p, m): what the powers could add up to without cancelling.
@@ -34,22 +33,22 @@ class Integrated:
     powers: Array
     most: Array
 
-    def drifting(self, s: Complex) -> Complex:
-        """What the integrators answer at points s (f,), (p, m, f)."""
+    def integrator_response(self, s: Complex) -> Complex:
+        """Response of the integrators at points s (f,), (p, m, f)."""
         found = np.zeros((*self.powers.shape[1:], len(s)), dtype=complex)
         for k, power in enumerate(self.powers, start=1):
             found += power[:, :, None] * s**-k
         return found
 
 
-def moved_and_shown(A: Array, B: Array, C: Array) -> tuple[Array, Array, Array]:
+def reachable_observable(A: Array, B: Array, C: Array) -> tuple[Array, Array, Array]:
     """The states that some input moves and some output shows, by what is 0 in the matrices."""
     links = A != 0
-    kept = np.flatnonzero(reached(links, (B != 0).any(axis=1)) & reached(links.T, (C != 0).any(axis=0)))
+    kept = np.flatnonzero(reachable(links, (B != 0).any(axis=1)) & reachable(links.T, (C != 0).any(axis=0)))
     return A[kept][:, kept], B[kept], C[:, kept]
 
 
-def reached(links: Mask, start: Mask) -> Mask:
+def reachable(links: Mask, start: Mask) -> Mask:
     """States that lie behind those of the start, which are among them."""
     while True:
         further = start | (links @ start)
@@ -64,11 +63,11 @@ def integrators(A: Array) -> Mask:
     return (np.bincount(circle, minlength=1)[circle] == 1) & (np.diag(A) == 0)
 
 
-def without_integrators(A: Array, B: Array, C: Array) -> Integrated:
+def without_integrators(A: Array, B: Array, C: Array) -> IntegratorSplit:
     """Integrators that only drive all else, and those that all else only drives, apart from it, Eq. (T21.33)."""
     links, drift = A != 0, integrators(A)
     others = ~drift
-    drives, driven = reached(links.T, others) & drift, reached(links, others) & drift
+    drives, driven = reachable(links.T, others) & drift, reachable(links, others) & drift
     between = drives & driven
     main = np.flatnonzero(others | between)
     up, down = np.flatnonzero(drives & ~between), np.flatnonzero(drift & ~drives)
@@ -88,14 +87,14 @@ def without_integrators(A: Array, B: Array, C: Array) -> Integrated:
         change, back = change @ second, undone @ back
     if not (np.isfinite(change).all() and np.isfinite(back).all()):
         none = np.zeros((0, len(C), B.shape[1]))
-        return Integrated(A=A, B=B, C=C, powers=none, most=none)
+        return IntegratorSplit(A=A, B=B, C=C, powers=none, most=none)
     most = np.abs(back) @ np.abs(B), np.abs(C) @ np.abs(change)
     return _as_powers(back @ A @ change, back @ B, C @ change, N, main, most)
 
 
 def _as_powers(
     A: Array, B: Array, C: Array, N: NDArray[np.int_], main: NDArray[np.int_], sizes: tuple[Array, Array]
-) -> Integrated:
+) -> IntegratorSplit:
     """Integrators as powers of 1/s: their matrix to some power is 0; ``sizes``: of B and C without cancelling."""
     inner, shape = A[N][:, N], (len(C), B.shape[1])
     powers, most = [], []
@@ -104,7 +103,7 @@ def _as_powers(
         powers.append(C[:, N] @ power)
         most.append(sizes[1][:, N] @ size)
         power, size = inner @ power, np.abs(inner) @ size
-    return Integrated(
+    return IntegratorSplit(
         A=A[main][:, main], B=B[main], C=C[:, main], powers=np.array(powers).reshape(len(powers), *shape),
         most=np.array(most).reshape(len(powers), *shape),
     )  # fmt: skip
@@ -134,10 +133,10 @@ def response(A: Array, B: Array, C: Array, D: Array, s: Complex) -> Complex:
     ComputationError
         A point upon a pole.
     """
-    apart = without_integrators(*moved_and_shown(A, B, C))
+    apart = without_integrators(*reachable_observable(A, B, C))
     if len(apart.powers):
         _refuse_poles(np.zeros(1), s)
-    return _regular(apart.A, apart.B, apart.C, s) + apart.drifting(s) + D[:, :, None]
+    return _regular(apart.A, apart.B, apart.C, s) + apart.integrator_response(s) + D[:, :, None]
 
 
 def _regular(A: Array, B: Array, C: Array, s: Complex) -> Complex:
@@ -164,7 +163,7 @@ def _regular(A: Array, B: Array, C: Array, s: Complex) -> Complex:
 
 
 def _repeated(values: Complex, shapes: Complex) -> bool:
-    """Whether a pole has fewer shapes than it is often there, as that of two equal filters in a row.
+    """Test whether a multiple pole has fewer shapes than its multiplicity, as that of two equal filters in a row.
 
     Sizes of states hide it, for which the second shape is the first and next to nothing of another state.
     """
@@ -188,7 +187,7 @@ def _in_halves(A: Array, B: Array, C: Array, s: Complex) -> Complex:
 
 
 def _most(values: Complex, left: Complex, right: Complex, s: Complex) -> Array:
-    """What all poles could add up to in each channel, by the inequality of Cauchy and Schwarz, (p, m, f)."""
+    """Upper bound of the sum over all poles in each channel, by the inequality of Cauchy and Schwarz, (p, m, f)."""
     shown, moved = np.abs(right), np.abs(left)[None] / np.abs(s[:, None] - values)[..., None]
     w = np.linalg.norm(moved, axis=2) / np.maximum(np.linalg.norm(shown, axis=0), 1e-300)  # poles of one size
     w = np.maximum(w, 1e-300)
@@ -230,13 +229,13 @@ def _by_residues(values: Complex, left: Complex, right: Complex, s: Complex) -> 
 
 
 def _solved(A: Array, B: Array, C: Array, s: Complex) -> Complex:
-    """The same by solving at each point."""
+    """Response at points s by solving at each of them, (p, m, f)."""
     each = np.eye(len(A))
     parts = (s[i : i + BLOCK, None, None] * each - A for i in range(0, s.size, BLOCK))
-    return np.concatenate([C @ divided(part, B.astype(complex)) for part in parts]).transpose(1, 2, 0)
+    return np.concatenate([C @ solve_stacked(part, B.astype(complex)) for part in parts]).transpose(1, 2, 0)
 
 
-def divided(matrices: NDArray[Any], B: NDArray[Any]) -> Complex:
+def solve_stacked(matrices: NDArray[Any], B: NDArray[Any]) -> Complex:
     """Matrices' inverses times B; a ComputationError where one has none."""
     try:
         return np.asarray(np.linalg.solve(matrices, B), dtype=np.complex128)
@@ -256,15 +255,15 @@ def poles_of(A: Array) -> Complex:
     return values[np.lexsort((np.imag(values), np.real(values), np.abs(values)))]
 
 
-def damping_of(poles: Complex, sample: float | None) -> tuple[Complex, Array, Array]:
-    """Those of `swings_of` of positive or no imaginary part, by frequency."""
-    s, frequency, ratio = swings_of(poles, sample)
+def oscillating_poles(poles: Complex, sample: float | None) -> tuple[Complex, Array, Array]:
+    """Poles [1/s] with no negative imaginary part, frequencies [Hz] and damping ratios, sorted by frequency."""
+    s, frequency, ratio = pole_properties(poles, sample)
     upper = np.flatnonzero(s.imag >= 0)
     order = upper[np.lexsort((s.real[upper], frequency[upper]))]
     return s[order], frequency[order], ratio[order]
 
 
-def swings_of(poles: Complex, sample: float | None) -> tuple[Complex, Array, Array]:
+def pole_properties(poles: Complex, sample: float | None) -> tuple[Complex, Array, Array]:
     """Poles [1/s], their frequencies [Hz] and damping ratios, arrays of one shape, Eq. (T21.4).
 
     Of a sampled system the poles log(z) / T of the continuous one behind it.
@@ -278,7 +277,7 @@ def swings_of(poles: Complex, sample: float | None) -> tuple[Complex, Array, Arr
     return poles, size / (2 * np.pi), np.where(np.isinf(size), 1.0, ratio)
 
 
-def middle_rate(poles: Complex) -> float:
+def mean_rate(poles: Complex) -> float:
     """A rate amid those of the poles [1/s], so that numbers of the equations are of one size."""
     size = np.abs(poles)
     size = size[size > INTEGRATES * size.max(initial=0.0)]

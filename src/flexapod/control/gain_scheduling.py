@@ -1,6 +1,6 @@
-"""Controllers whose gains change with the pose: interpolated between those of a grid, (T21.43).
+"""Controllers that change: gains interpolated over poses, (T21.43), and adaptive damping, (T21.44)-(T21.45).
 
-Adaptive damping: the frequency of a vibration is tracked and only that is damped, (T21.44)-(T21.45).
+Adaptive damping tracks the frequency of a vibration, and damps only that.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.common.tables.csv_tables import POSE
 from flexapod.common.units import quantities
-from flexapod.control.controllers import Controller, Function, pairs
+from flexapod.control.controllers import Controller, FunctionController, collocated_channels
 from flexapod.control.discretization import LATEST, period_of
-from flexapod.control.feedback import law_of
+from flexapod.control.feedback import channel_law
 from flexapod.control.state_space import Names
 from flexapod.model import AXES
 
@@ -82,8 +82,8 @@ class Scheduled:
     def following(
         self, pose: Callable[[float], Mapping[str, float]], period: float | str, outputs: Sequence[str],
         inputs: Sequence[str],
-    ) -> Function:  # fmt: skip
-        """For simulations: the controller along a path, `pose` of an instant [s], sampled with a `period` [s].
+    ) -> FunctionController:  # fmt: skip
+        """Controller for a simulation along a path: `pose` of an instant [s], sampled with a `period` [s].
 
         States are remembered by their sample, so that samples that come again after a step that failed find their own.
         """
@@ -92,7 +92,7 @@ class Scheduled:
         _check_alike(each)
         known: dict[int, Array] = {}
 
-        def asked(t: float, y: Array) -> Array:
+        def control_output(t: float, y: Array) -> Array:
             k = round(t / T)
             x = known.get(k, np.zeros(len(each[0].A))) if k else np.zeros(len(each[0].A))
             shares = list(_weights(self.axes, pose(t)))
@@ -101,13 +101,13 @@ class Scheduled:
             known.pop(k - LATEST, None)
             return C @ x + D @ y
 
-        return Function(function=asked, inputs=each[0].inputs, outputs=each[0].outputs)
+        return FunctionController(function=control_output, inputs=each[0].inputs, outputs=each[0].outputs)
 
 
 def _law(
     one: Controller | StateSpace, outputs: Sequence[str], inputs: Sequence[str], period: float | None
 ) -> StateSpace:
-    law = law_of(one, outputs, inputs, {})
+    law = channel_law(one, outputs, inputs, {})
     return law if period is None or law.sample is not None else law.sampled(period)
 
 
@@ -118,7 +118,7 @@ def _check_alike(each: Sequence[StateSpace]) -> None:
 
 
 def _measures(name: str) -> str:
-    """What a coordinate of a grid measures; one that is no coordinate of a pose is a number."""
+    """Dimension of a coordinate of a grid; a plain number where it is no coordinate of a pose."""
     return POSE.get(name, "number")
 
 
@@ -233,17 +233,17 @@ class AdaptiveDamping:
 
     def sampled(
         self, period: float | str, outputs: Sequence[str], inputs: Sequence[str], units: object = None
-    ) -> Function:
-        """For simulations, from sample to sample; samples that come again find the state that they had.
+    ) -> FunctionController:
+        """Controller for a simulation, from sample to sample; repeated samples find the state that they had.
 
         `outputs`, `inputs`: names of the channels there are, of which it takes its own.
         """
         T, gain = period_of(period), number(self.gain, "gain")
-        sensors, actuators = pairs(self.sensor, self.actuator, outputs, inputs)
+        sensors, actuators = collocated_channels(self.sensor, self.actuator, outputs, inputs)
         start = np.stack([self.tracker.start()] * len(sensors))
         known: dict[int, Array] = {}
 
-        def asked(t: float, y: Array) -> Array:
+        def control_output(t: float, y: Array) -> Array:
             k = round(t / T)
             state = known.get(k, start) if k else start
             state = np.stack([self.tracker.step(v, x, T) for v, x in zip(y, state, strict=True)])
@@ -251,4 +251,4 @@ class AdaptiveDamping:
             known.pop(k - LATEST, None)
             return gain * state[:, 2] * state[:, 1]  # (T21.45)  y' = a' = -w b
 
-        return Function(function=asked, inputs=tuple(sensors), outputs=tuple(actuators))
+        return FunctionController(function=control_output, inputs=tuple(sensors), outputs=tuple(actuators))

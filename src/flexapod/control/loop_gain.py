@@ -12,9 +12,9 @@ from scipy.optimize import linear_sum_assignment, minimize_scalar
 from flexapod.common.arguments import number, numbers
 from flexapod.common.errors import InputError
 from flexapod.common.units import quantity
-from flexapod.control.feedback import closed, law_beside, opened
-from flexapod.control.frequency_response import damping_of
-from flexapod.control.state_space import a_system
+from flexapod.control.feedback import closed_loop, law_beside, open_loop
+from flexapod.control.frequency_response import oscillating_poles
+from flexapod.control.state_space import check_system
 from flexapod.control.zeros import zeros_of
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def root_locus(system: StateSpace, controller: Controller | StateSpace, gains: A
     factors = numbers(gains, "gains", "factors on the controller, one at least")
     if not factors.size:
         raise InputError("are none", key="gains", allowed="factors on the controller, one at least")
-    law = law_beside(a_system(system), controller)
+    law = law_beside(check_system(system), controller)
     poles = np.stack([_poles(system, law, factor) for factor in factors])
     for i in range(1, len(poles)):
         away = np.abs(poles[i - 1][:, None] - poles[i])
@@ -81,7 +81,7 @@ def best_gain(
     """
     from flexapod.control.datasets import best_dataset
 
-    law = law_beside(a_system(system), controller)
+    law = law_beside(check_system(system), controller)
     edge = np.inf if below is None else quantity(below, "frequency", key="below")
     least, most = number(least, "least"), number(most, "most")
     if not 0 < least < most:
@@ -103,12 +103,12 @@ def _scaled(law: StateSpace, factor: float) -> StateSpace:
 
 
 def _poles(system: StateSpace, law: StateSpace, factor: float) -> Complex:
-    return closed(system, _scaled(law, factor)).poles()
+    return closed_loop(system, _scaled(law, factor)).poles()
 
 
 def _least_ratio(system: StateSpace, law: StateSpace, factor: float, edge: float) -> tuple[float, float]:
     """Least damping ratio of oscillating poles below a frequency [Hz], -1 of unstable real ones, and the pole's own."""
-    poles, frequency, ratio = damping_of(_poles(system, law, factor), system.sample)
+    poles, frequency, ratio = oscillating_poles(_poles(system, law, factor), system.sample)
     counts = (frequency <= edge) & ((np.abs(poles.imag) > FINEST * np.abs(poles)) | (ratio < 0))
     counts &= frequency > FINEST * np.median(frequency)
     if not counts.any():
@@ -119,5 +119,5 @@ def _least_ratio(system: StateSpace, law: StateSpace, factor: float, edge: float
 
 def _open_zeros(system: StateSpace, law: StateSpace) -> Complex:
     """Zeros of the loop from its actuators back to them: where branches end as the factor grows without end."""
-    A, B, C, D = opened(system, law)
+    A, B, C, D = open_loop(system, law)
     return zeros_of(A, B, C, D)

@@ -1,4 +1,4 @@
-"""Margins of loops with an exact delay, and how many of their poles grow, (T21.31)-(T21.32)."""
+"""Margins of loops with an exact delay, and number of their unstable poles, (T21.31)-(T21.32)."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from flexapod.common.arguments import number
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.common.units import DIMENSIONS
-from flexapod.control.feedback import DelayedLoop, closed, law_beside
-from flexapod.control.frequency_response import damping_of, swings_of
-from flexapod.control.state_space import a_system
+from flexapod.control.feedback import DelayedLoop, closed_loop, law_beside
+from flexapod.control.frequency_response import oscillating_poles, pole_properties
+from flexapod.control.state_space import check_system
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -55,7 +55,7 @@ class Bracket:
 
 
 def margins(system: StateSpace, controller: Controller | StateSpace, *, delay: float | str = 0.0) -> Dataset:
-    """How far each loop is from its limit, the others closed, its `delay` [s] exact, Eqs. (T21.31)-(T21.32).
+    """Gain, phase, delay and modulus margins of each loop, the others closed, `delay` [s] exact, (T21.31)-(T21.32).
 
     Returns
     -------
@@ -67,28 +67,28 @@ def margins(system: StateSpace, controller: Controller | StateSpace, *, delay: f
     """
     from flexapod.control.datasets import margins_dataset
 
-    law = law_beside(a_system(system), controller)
+    law = law_beside(check_system(system), controller)
     late = number(delay, "delay", "time", least=0.0)
     if system.sample is not None and late:
         raise InputError("is for continuous systems", key="delay", value=delay, next_step=".sampled(period, delay)")
-    around = _around(DelayedLoop(system=system, controller=law, delay=late))
-    poles = closed(system, law).poles()
+    around = _loop_gains(DelayedLoop(system=system, controller=law, delay=late))
+    poles = closed_loop(system, law).poles()
     hz = _frequencies(np.concatenate([system.poles(), law.poles(), poles]), system.sample)
     whole = around(hz)
-    fine, gains = _followed(around, hz, whole, late)
-    beside = _beside(gains, late, fine)
+    fine, gains = _delay_grid(around, hz, whole, late)
+    beside = _near_critical(gains, late, fine)
     fine, gains = _interpolated(gains, late, fine)
-    cut = _cut(gains, late, fine)
+    cut = _open_loop_gains(gains, late, fine)
     brackets = _brackets(cut, fine)
     if late:
         brackets = _decisive(brackets, cut, beside, fine)
-    found = _refined(brackets, lambda f: _cut(around(f), late, f))
-    found += _ends(lambda f: _cut(around(f), late, f), hz, system.sample, late)
+    found = _refined(brackets, lambda f: _open_loop_gains(around(f), late, f))
+    found += _ends(lambda f: _open_loop_gains(around(f), late, f), hz, system.sample, late)
     each = [_of_loop(k, found) for k in range(len(law.outputs))]
     return margins_dataset(law.outputs, each, _growing(poles, system.sample, late, around, hz, whole))
 
 
-def _around(loop: DelayedLoop) -> Gains:
+def _loop_gains(loop: DelayedLoop) -> Gains:
     """Gains around all loops from actuators back to them, (f, k, k), without the delay."""
     at = [loop.system.inputs.index(name) for name in loop.controller.outputs]
 
@@ -99,7 +99,7 @@ def _around(loop: DelayedLoop) -> Gains:
     return around
 
 
-def _cut(whole: Complex, delay: float, hz: Array) -> Complex:
+def _open_loop_gains(whole: Complex, delay: float, hz: Array) -> Complex:
     """Minus the gain around each loop, cut at its actuator while the others stay closed, (k, f), Eq. (T21.31)."""
     L = np.exp(-2j * np.pi * hz * delay)[:, None, None] * whole
     found = np.empty((L.shape[1], len(L)), dtype=complex)
@@ -110,7 +110,7 @@ def _cut(whole: Complex, delay: float, hz: Array) -> Complex:
     return found
 
 
-def _followed(around: Gains, hz: Array, whole: Complex, delay: float) -> tuple[Array, Complex]:
+def _delay_grid(around: Gains, hz: Array, whole: Complex, delay: float) -> tuple[Array, Complex]:
     """Frequencies [Hz] between which the delay turns no loop further than an eighth, and the gains there, (f, k, k).
 
     First where loops are large, then where they are as large as the largest that is met at a limit below 1: beyond that
@@ -129,16 +129,18 @@ def _followed(around: Gains, hz: Array, whole: Complex, delay: float) -> tuple[A
             f"turns the loop {asked / PARTS:.3g} times where it is large", key="delay", value=delay,
             allowed=f"at most {TURNS} turns, {delay * PARTS * TURNS / asked:.3g} s here",
         )  # fmt: skip
-    fine, gains = _parted(around, hz, whole, np.where(wanted, parts, 1))
-    sizes = np.array([max((x for x in _crossings(L)[1] if x < 1), default=0.0) for L in _cut(gains, delay, fine)])
+    fine, gains = _subdivided_grid(around, hz, whole, np.where(wanted, parts, 1))
+    sizes = np.array(
+        [max((x for x in _crossings(L)[1] if x < 1), default=0.0) for L in _open_loop_gains(gains, delay, fine)]
+    )
     order = np.argsort(-larger, kind="stable")
     order = order[np.cumsum(parts[order]) <= PARTS * TURNS]
     more = wanted.copy()
     more[order] |= larger[order] >= max(FAINT, float((sizes / (1 + sizes)).min()))
-    return (fine, gains) if (more == wanted).all() else _parted(around, hz, whole, np.where(more, parts, 1))
+    return (fine, gains) if (more == wanted).all() else _subdivided_grid(around, hz, whole, np.where(more, parts, 1))
 
 
-def _parted(around: Gains, hz: Array, whole: Complex, parts: Array) -> tuple[Array, Complex]:
+def _subdivided_grid(around: Gains, hz: Array, whole: Complex, parts: Array) -> tuple[Array, Complex]:
     """Frequencies whose intervals are cut in `parts`, and the gains there."""
     if not (parts > 1).any():
         return hz, whole
@@ -166,23 +168,23 @@ def _interpolated(gains: Complex, delay: float, hz: Array) -> tuple[Array, Compl
     return fine, gains[at] + share[:, None, None] * (gains[after] - gains[at])
 
 
-def _beside(gains: Complex, delay: float, hz: Array) -> list[tuple[float, float]]:
+def _near_critical(gains: Complex, delay: float, hz: Array) -> list[tuple[float, float]]:
     """Frequencies about which an eigenvalue of several delayed loops is nearest to 1: each loop is near -1 there."""
     values = -np.exp(-2j * np.pi * hz * delay)[:, None] * np.linalg.eigvals(gains)
     if values.shape[1] == 1 or not delay:
         return []
     for i in range(1, len(values)):
         values[i] = values[i][linear_sum_assignment(np.abs(values[i - 1][:, None] - values[i]))[1]]
-    return [_about(hz, i) for locus in values.T for i in _close(locus)]
+    return [_neighbourhood(hz, i) for locus in values.T for i in _close(locus)]
 
 
-def _about(hz: Array, i: int) -> tuple[float, float]:
+def _neighbourhood(hz: Array, i: int) -> tuple[float, float]:
     """Ends of the interval that begins at a frequency and of its neighbours."""
     return float(hz[max(i - 1, 0)]), float(hz[min(i + 2, len(hz) - 1)])
 
 
 def _crossings(L: Complex) -> tuple[NDArray[np.intp], Array]:
-    """Where a loop (f,) crosses the negative real axis between neighbours, and its size there."""
+    """Crossings of a loop (f,) with the negative real axis: index of the point before, and the loop's size there."""
     at = np.flatnonzero((L.imag[1:] * L.imag[:-1] < 0) & (L.real[1:] + L.real[:-1] < 0))
     return at, np.exp(_between(np.log(np.abs(L)), L.imag, at))
 
@@ -197,7 +199,7 @@ def _close(L: Complex) -> list[int]:
 
 
 def _through_poles(L: Complex) -> list[int]:
-    """Where a loop changes to the opposite between neighbours, largest first: a pole without damping may lie there."""
+    """Indices after which a loop changes to its opposite, largest first: an undamped pole may lie there."""
     at = np.flatnonzero((L.imag[1:] * L.imag[:-1] < 0) & (L.real[1:] * L.real[:-1] < 0))
     return at[np.argsort(-np.abs(L[at]), kind="stable")[:CLOSE]].tolist()
 
@@ -209,12 +211,12 @@ def _between(values: Array, zero: Array, at: NDArray[np.intp]) -> Array:
 
 
 def _decisive(brackets: list[Bracket], cut: Complex, beside: list[tuple[float, float]], hz: Array) -> list[Bracket]:
-    """Of many brackets of a delayed loop those that may be its margins, by what is read between neighbours."""
+    """Brackets of a delayed loop that may hold its margins, selected by interpolation between neighbours."""
     chosen = [b for b in brackets if b.kind == "nearest"]
     for k, L in enumerate(cut):
         own = [*_close(L), *_through_poles(L)]
         chosen += [Bracket(loop=k, kind="real", low=float(hz[i]), high=float(hz[i + 1])) for i in own]
-        for low, high in dict.fromkeys((*beside, *(_about(hz, i) for i in own))):
+        for low, high in dict.fromkeys((*beside, *(_neighbourhood(hz, i) for i in own))):
             chosen.append(Bracket(loop=k, kind="nearest", low=low, high=high))
         level = np.log(np.abs(L))
         at = np.flatnonzero(level[1:] * level[:-1] < 0)
@@ -241,7 +243,7 @@ def _brackets(cut: Complex, hz: Array) -> list[Bracket]:
 
 
 def _refined(brackets: list[Bracket], loops: Callable[[Array], Complex]) -> list[tuple[Bracket, float, complex]]:
-    """Each with its frequency [Hz] and the loop's gain there: all cut at once, again and again."""
+    """Brackets, each with its frequency [Hz] and the loop's gain there: all divided at once, repeatedly."""
     values = np.zeros(0, dtype=complex)
     for _ in range(ROUNDS if brackets else 0):
         f = np.linspace([b.low for b in brackets], [b.high for b in brackets], CUTS + 1, axis=1)
@@ -261,7 +263,7 @@ def _refined(brackets: list[Bracket], loops: Callable[[Array], Complex]) -> list
 def _ends(
     loops: Callable[[Array], Complex], hz: Array, sample: float | None, delay: float
 ) -> list[tuple[Bracket, float, complex]]:
-    """What happens at rest, at half of the samples and at no end of frequencies, where a loop is a real number.
+    """Loops at 0 Hz, half the sample rate or infinite frequency, where they are real, as brackets without width.
 
     That is read a little beside: real parts change with the square of the distance.
     """
@@ -280,7 +282,7 @@ def _ends(
 
 
 def _place(kind: Kind, L: Complex) -> int:
-    """Where in a bracket what it is about happens: the part that begins there, for the nearest point the one before."""
+    """Index of the part of a bracket with its crossing; for the point nearest to -1 the part before."""
     if kind == "nearest":
         return int(np.clip(np.abs(1 + L).argmin() - 1, 0, CUTS - 2))
     values = L.imag if kind == "real" else np.abs(L) - 1
@@ -305,7 +307,7 @@ def _of_loop(k: int, found: list[tuple[Bracket, float, complex]]) -> dict[str, t
 
 def _growing(poles: Complex, sample: float | None, delay: float, around: Gains, hz: Array, whole: Complex) -> int:
     """Poles of a delayed loop that grow, Eq. (T21.32): those without delay, and those that cross as it rises."""
-    s, _, _ = swings_of(poles, sample)
+    s, _, _ = pole_properties(poles, sample)
     drifts = FINEST * np.median(np.abs(s)) if len(s) else 0.0
     count = int((s.real > drifts).sum())
     if not delay:
@@ -349,7 +351,7 @@ def _of_size_one(
 
 def _frequencies(poles: Complex, sample: float | None) -> Array:
     """Frequencies [Hz] all over poles of system, controller and loop, and closer and closer about resonances."""
-    s, frequency, ratio = damping_of(poles, sample)
+    s, frequency, ratio = oscillating_poles(poles, sample)
     frequency = np.where(np.isfinite(frequency), frequency, 0.0)
     known = frequency[frequency > FINEST * frequency.max(initial=0.0)]
     if not known.size:

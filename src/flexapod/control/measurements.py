@@ -1,6 +1,6 @@
-"""Measured frequency responses from files: universal files of datasets 58, CSV, MATLAB.
+"""Measured frequency responses and damping: files of responses, and poles of a recorded ring-down.
 
-Poles of what a record of a ring-down is made of: damping that was achieved, beside that of a closed loop.
+Files are universal files of dataset 58, CSV and MATLAB.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flexapod.common.arguments import whole
+from flexapod.common.arguments import integer
 from flexapod.common.arrays import Array, floats
 from flexapod.common.errors import InputError
 from flexapod.common.files import LARGEST_TABLE, path_of, read_bytes
@@ -304,7 +304,7 @@ def ring_down(samples: ArrayLike, period: float | str, order: int = 10) -> NDArr
         x = np.full(1, np.nan)
     if not x.size or not np.isfinite(x).all():
         raise InputError("are no finite numbers", key="samples", allowed="(T,) or (T, m), equally spaced")
-    order = whole(order, "order", 1, 2 * LONGEST)
+    order = integer(order, "order", 1, 2 * LONGEST)
     x = np.diff(x.reshape(len(x), -1), axis=0)
     length = min(len(x) // 2, LONGEST)
     if length * x.shape[1] <= order:

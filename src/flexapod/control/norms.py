@@ -1,6 +1,6 @@
-"""Sizes of responses: H2, H-infinity, relative gains, with the reason of what is infinite, (T21.25)-(T21.28).
+"""Norms of a linear system, relative gains, and systems split and reduced by their poles, (T21.23)-(T21.29).
 
-Systems apart: slow from fast ones, steady from passing ones, by their poles; fewer states, (T21.23)-(T21.24).
+H2 and H-infinity norms come with the reason of infinite ones.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.control.frequency_response import (
     INTEGRATES,
-    Integrated,
-    damping_of,
+    IntegratorSplit,
     integrators,
-    moved_and_shown,
-    reached,
-    swings_of,
+    oscillating_poles,
+    pole_properties,
+    reachable,
+    reachable_observable,
     without_integrators,
 )
 
@@ -43,7 +43,7 @@ class Subsystem:
     C: Array
 
 
-def apart(A: Array, B: Array, C: Array, first: Callable[[complex], bool]) -> tuple[Subsystem, Subsystem]:
+def split_spectrum(A: Array, B: Array, C: Array, first: Callable[[complex], bool]) -> tuple[Subsystem, Subsystem]:
     """Two systems side by side that add up to one: poles for which `first` holds, and the others, Eq. (T21.23)."""
     if not len(A):
         return Subsystem(A=A, B=B, C=C), Subsystem(A=A, B=B, C=C)
@@ -58,16 +58,16 @@ def apart(A: Array, B: Array, C: Array, first: Callable[[complex], bool]) -> tup
     return near, Subsystem(A=T[k:, k:], B=B[k:], C=C[:, k:] + C[:, :k] @ X)
 
 
-def reduced(system: StateSpace, modes: int | None, below: float | str | None, residual: bool) -> StateSpace:
+def truncate_modes(system: StateSpace, modes: int | None, below: float | str | None, residual: bool) -> StateSpace:
     """See `StateSpace.reduce`."""
     if (modes is None) == (below is None) or modes is None is below:
         raise InputError("one of the two says what stays", key="modes", allowed='modes=20, or below="500 Hz"')
     flag(residual, "residual")
     if system.sample is not None:
         raise InputError("is of samples: its fast modes have no static response", key="sample", value=system.sample)
-    poles, frequency, _ = damping_of(system.poles(), None)
+    poles, frequency, _ = oscillating_poles(system.poles(), None)
     edge = _edge(frequency, modes) if modes is not None else number(below, "below", "frequency", least=0.0)
-    slow, fast = apart(system.A, system.B, system.C, lambda pole: abs(pole) < 2 * np.pi * edge)
+    slow, fast = split_spectrum(system.A, system.B, system.C, lambda pole: abs(pole) < 2 * np.pi * edge)
     D = np.array(system.D)
     if residual and len(fast.A):
         if np.abs(np.linalg.eigvals(fast.A)).min() <= STATIC * np.abs(poles).max():
@@ -105,7 +105,7 @@ ROUNDS = 40
 ON_AXIS = 1e-8  # real part of an eigenvalue over its size that lies on the imaginary axis
 
 
-def rates_of(poles: Complex) -> tuple[float, float]:
+def rate_scale(poles: Complex) -> tuple[float, float]:
     """The middle one [rad/s] of the sizes of poles, and the size up to which they are 0.
 
     Rounding splits a double pole at 0, of what nothing holds, into two on opposite sides of it.
@@ -120,8 +120,8 @@ def rates_of(poles: Complex) -> tuple[float, float]:
     return rate, max(LASTS * rate, 2 * float(split.max(initial=0.0)))
 
 
-def stays(pole: complex, rate: float, rest: float) -> bool:
-    """Whether what a pole [1/s] stands for never decays, among others of a `rate`; up to `rest` [rad/s] it is 0."""
+def is_marginal(pole: complex, rate: float, rest: float) -> bool:
+    """Test whether the motion of a pole [1/s] never decays, relative to a `rate`; up to `rest` [rad/s] it is 0."""
     return pole.real >= -max(LASTS * abs(pole), LASTS * LASTS * rate) or abs(pole) <= rest
 
 
@@ -131,10 +131,10 @@ def h2_norms(system: StateSpace) -> tuple[Array, dict[tuple[int, int], str]]:
     found, why = np.zeros(D.shape), {}
     rates = np.zeros(D.shape) if system.D_rate is None else system.D_rate
     links = A != 0
-    shown = np.stack([reached(links.T, row != 0) for row in C]) if len(C) else np.zeros((0, len(A)), bool)
+    shown = np.stack([reachable(links.T, row != 0) for row in C]) if len(C) else np.zeros((0, len(A)), bool)
     drifting = integrators(A) if system.sample is None else np.zeros(len(A), dtype=bool)
     for j in range(B.shape[1]):
-        moved = reached(links, B[:, j] != 0)
+        moved = reachable(links, B[:, j] != 0)
         may = np.flatnonzero((shown & drifting & moved).any(axis=1))
         still, of = _without_drift(A, B[:, j], C[may], moved) if may.size else (np.zeros(0, dtype=bool), None)
         for i in may[~still]:
@@ -159,14 +159,14 @@ def h2_norms(system: StateSpace) -> tuple[Array, dict[tuple[int, int], str]]:
     return found, why
 
 
-def _without_drift(A: Array, b: Array, C: Array, moved: Mask) -> tuple[Mask, Integrated]:
+def _without_drift(A: Array, b: Array, C: Array, moved: Mask) -> tuple[Mask, IntegratorSplit]:
     """Outputs (p,) in which what integrators add cancels, Eq. (T21.34), and the system beside these integrators."""
     at = np.flatnonzero(moved)
     of = without_integrators(A[at][:, at], b[at, None], C[:, at])
     return _cancels(of)[:, 0], of
 
 
-def _cancels(of: Integrated) -> Mask:
+def _cancels(of: IntegratorSplit) -> Mask:
     """Channels (p, m) in which powers of 1/s add up to rounding."""
     return np.asarray((np.abs(of.powers) <= SHOWN * of.most).all(axis=0))
 
@@ -175,9 +175,11 @@ def _h2_of(A: Array, b: Array, C: Array, d: Array, sample: float | None) -> tupl
     """H2 norms of one input by outputs (p,), and of each what lasts in it, "" of those that end."""
     if not len(A):
         return np.abs(d), [""] * len(C)
-    rate, rest = rates_of(np.linalg.eigvals(A).astype(complex))
-    passes = (lambda pole: abs(pole) < 1 - LASTS) if sample is not None else (lambda pole: not stays(pole, rate, rest))
-    ends, lasts = apart(A, b[:, None], C, passes)
+    rate, rest = rate_scale(np.linalg.eigvals(A).astype(complex))
+    passes = (
+        (lambda pole: abs(pole) < 1 - LASTS) if sample is not None else (lambda pole: not is_marginal(pole, rate, rest))
+    )
+    ends, lasts = split_spectrum(A, b[:, None], C, passes)
     words = _lasting(lasts, ends, sample)
     if not len(ends.A):
         return np.abs(d), words
@@ -190,7 +192,7 @@ def _h2_of(A: Array, b: Array, C: Array, d: Array, sample: float | None) -> tupl
 
 
 def _lasting(part: Subsystem, ends: Subsystem, sample: float | None) -> list[str]:
-    """What lasts in each output, in words; "" where nothing of it is seen beside what ends.
+    """Text on the motion of each output that never decays; "" where the decaying part hides it.
 
     Poles of samples are those behind them.
     """
@@ -204,7 +206,7 @@ def _lasting(part: Subsystem, ends: Subsystem, sample: float | None) -> list[str
         power = part.A @ power
         if not power.any():
             break
-    worst = max(swings_of(np.linalg.eigvals(part.A).astype(complex), sample)[0], key=lambda pole: pole.real)
+    worst = max(pole_properties(np.linalg.eigvals(part.A).astype(complex), sample)[0], key=lambda pole: pole.real)
     at = f"a pole at {abs(worst) / (2 * np.pi):.4g} Hz"
     kind = "an unstable motion" if worst.real > LASTS * abs(worst) else "a motion that never decays"
     return [f"{kind}: {at}" if one else "" for one in seen]
@@ -218,7 +220,7 @@ def hinf_norm(system: StateSpace) -> tuple[float, float]:
     """
     if system.D_rate is not None:
         return np.inf, np.inf
-    A, B, C = moved_and_shown(system.A, system.B, system.C)
+    A, B, C = reachable_observable(system.A, system.B, system.C)
     if system.sample is None and len((of := without_integrators(A, B, C)).A) < len(A) and _cancels(of).all():
         A, B, C = of.A, of.B, of.C
     D, poles = system.D, np.linalg.eigvals(A).astype(complex)
@@ -228,8 +230,8 @@ def hinf_norm(system: StateSpace) -> tuple[float, float]:
         if len(lasting := poles[np.abs(poles) >= 1 - LASTS]):
             return np.inf, float(np.abs(np.angle(lasting[0])) / (2 * np.pi * system.sample))
         A, B, C, D, poles = _continuous(A, B, C, D)
-    rate, rest = rates_of(poles)
-    if lasting := [pole for pole in poles if stays(pole, rate, rest)]:
+    rate, rest = rate_scale(poles)
+    if lasting := [pole for pole in poles if is_marginal(pole, rate, rest)]:
         return np.inf, _hertz(abs(lasting[0]), system.sample)
     A, change = scipy.linalg.matrix_balance(A / rate)  # time in units of 1 / rate
     B, C = np.asarray(np.linalg.solve(change, B), dtype=float), C @ change / rate
@@ -260,7 +262,7 @@ def _at(A: Array, B: Array, C: Array, D: Array, omega: float) -> Complex:
 
 
 def _continuous(A: Array, B: Array, C: Array, D: Array) -> tuple[Array, Array, Array, Array, Complex]:
-    """The same sizes on the imaginary axis as between samples on the circle: s = (z - 1) / (z + 1)."""
+    """Continuous system with the sizes on the imaginary axis of a sampled one on the circle: s = (z - 1) / (z + 1)."""
     inverse = np.asarray(np.linalg.inv(np.eye(len(A)) + A), dtype=float)
     found = inverse @ (A - np.eye(len(A)))
     poles = np.linalg.eigvals(found).astype(complex)

@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod.common.arrays import Array, floats
 from flexapod.common.errors import InputError
-from flexapod.control.frequency_response import moved_and_shown
-from flexapod.control.state_space import chosen
+from flexapod.control.frequency_response import reachable_observable
+from flexapod.control.state_space import channel_indices
 from flexapod.model.study.disturbance import Disturbance, Floor, Spectrum, check_density
-from flexapod.solve.linear.random_vibration import FLOOR_RATES, SOURCES, RandomVibration, Source, with_error
+from flexapod.solve.linear.random_vibration import FLOOR_RATES, SOURCES, RandomVibration, Source, vibration_with_error
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
@@ -30,30 +30,30 @@ GROUPS = {"floor": "floor", "wrench": "wrench", "force_noise": "drive"}
 
 @dataclass(frozen=True, kw_only=True)
 class OutputsAsModes:
-    """What an integral over frequency asks of a linear system: outputs stand in place of modes."""
+    """Linear system in the form that integrals over frequency need: its outputs take the place of modes."""
 
     system: StateSpace
 
     @property
     def omega(self) -> Array:
-        """As many numbers as outputs."""
+        """Ones, one for each output."""
         return np.ones(len(self.system.outputs))
 
     @property
     def tool(self) -> Array:
-        """Outputs by themselves."""
+        """Unit matrix: each output by itself."""
         return np.eye(len(self.system.outputs))
 
     def poles(self, rate: float) -> Complex:
         """Poles [1/s] of what inputs move and outputs show."""
-        return np.linalg.eigvals(moved_and_shown(self.system.A, self.system.B, self.system.C)[0]).astype(complex)
+        return np.linalg.eigvals(reachable_observable(self.system.A, self.system.B, self.system.C)[0]).astype(complex)
 
     def amplitudes(self, frequency: Array, forces: Array) -> Complex:
         """Outputs (f, p, k) at frequencies [Hz] under inputs (m, k)."""
         return np.moveaxis(self.system.at(frequency), 2, 0) @ forces
 
 
-def shaken(system: StateSpace, sources: Sources) -> tuple[RandomVibration, float]:
+def output_vibration(system: StateSpace, sources: Sources) -> tuple[RandomVibration, float]:
     """Vibration of all outputs, and the error of the integral over frequency that is estimated, relative."""
     if system.sample is not None:
         raise InputError("is of samples: spectra need a continuous system", key="sample", value=system.sample)
@@ -69,7 +69,7 @@ def shaken(system: StateSpace, sources: Sources) -> tuple[RandomVibration, float
         )
         for one in every
     ]
-    return with_error(OutputsAsModes(system=used), every)
+    return vibration_with_error(OutputsAsModes(system=used), every)
 
 
 def _sources(system: StateSpace, given: Sources) -> list[Source]:
@@ -84,7 +84,7 @@ def _sources(system: StateSpace, given: Sources) -> list[Source]:
 
 
 def _source(system: StateSpace, name: str, group: str, table: Floor | Spectrum | tuple[ArrayLike, ArrayLike]) -> Source:
-    places = chosen(group, system.inputs, "sources")
+    places = channel_indices(group, system.inputs, "sources")
     rates = FLOOR_RATES[table.of] if isinstance(table, Floor) else 0
     if isinstance(table, tuple):
         try:

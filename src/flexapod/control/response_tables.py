@@ -56,7 +56,7 @@ class Response:
 
 @dataclass(frozen=True, kw_only=True)
 class ResponseColumn:
-    """What a name of a column says: the text `head`, the name before the word, its kind, and the unit or None."""
+    """Parsed name of a column: the text `head`, the name before the word, its kind, and the unit or None."""
 
     head: str
     name: str
@@ -207,7 +207,7 @@ def _of_channel(unit: str) -> tuple[float, str] | None:
 
 
 def _depths(text: str) -> list[int]:
-    """How many brackets are open behind each letter."""
+    """Number of open brackets after each letter."""
     return np.cumsum([(letter in "([") - (letter in ")]") for letter in text]).astype(int).tolist()
 
 

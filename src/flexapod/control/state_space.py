@@ -1,4 +1,4 @@
-"""A linear system with named channels: matrices A, B, C, D and what can be asked of them.
+"""A linear system with named channels: matrices A, B, C, D and the analyses of them.
 
 Channels by name: ``drive:3`` is one, ``drive`` stands for all that begin with ``drive:``.
 """
@@ -15,11 +15,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod.common.arguments import frequencies, number
 from flexapod.common.arrays import Array, floats
-from flexapod.common.errors import InputError, closest, names_of
-from flexapod.common.lazy_imports import lazy
+from flexapod.common.errors import InputError, names_of, suggest_word
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.common.units import quantity
-from flexapod.control.frequency_response import damping_of, poles_of, response
-from flexapod.control.norms import h2_norms, hinf_norm, reduced, relative_gains
+from flexapod.control.frequency_response import oscillating_poles, poles_of, response
+from flexapod.control.norms import h2_norms, hinf_norm, relative_gains, truncate_modes
 from flexapod.control.zeros import zeros_of
 
 if TYPE_CHECKING:
@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from flexapod.control.feedback import DelayedLoop
     from flexapod.control.random_response import Sources
 else:
-    datasets = lazy("flexapod.control.datasets")
-    discretization = lazy("flexapod.control.discretization")
-    feedback = lazy("flexapod.control.feedback")
-    random_response = lazy("flexapod.control.random_response")
+    datasets = LazyModule("flexapod.control.datasets")
+    discretization = LazyModule("flexapod.control.discretization")
+    feedback = LazyModule("flexapod.control.feedback")
+    random_response = LazyModule("flexapod.control.random_response")
 
 RATE = "rate:"  # before the name of a reading: its rate of change
 NOISE = "noise:"  # before the name of a sensor: what is added to its reading
@@ -41,7 +41,7 @@ NOISE = "noise:"  # before the name of a sensor: what is added to its reading
 Names = str | Sequence[str] | None
 
 
-def chosen(given: Names, among: Sequence[str], key: str) -> list[int]:
+def channel_indices(given: Names, among: Sequence[str], key: str) -> list[int]:
     """Places of channels by names or groups, in the order of the names; all for None.
 
     Parameters
@@ -69,8 +69,8 @@ def chosen(given: Names, among: Sequence[str], key: str) -> list[int]:
     return found
 
 
-def groups(names: Sequence[str]) -> list[str]:
-    """Groups that channels belong to, in their order: what stands before the last colon."""
+def channel_groups(names: Sequence[str]) -> list[str]:
+    """Groups that channels belong to, in their order: the text before the last colon."""
     return list(dict.fromkeys(name.rpartition(":")[0] or name for name in names))
 
 
@@ -79,8 +79,8 @@ def _unknown(name: str, among: Sequence[str], key: str) -> InputError:
         "is not a channel",
         key=key,
         value=name,
-        allowed=", ".join(groups(among)) + f", or a single one as {among[0]}" if among else "none",
-        next_step=closest(name, [*groups(among), *among]),
+        allowed=", ".join(channel_groups(among)) + f", or a single one as {among[0]}" if among else "none",
+        next_step=suggest_word(name, [*channel_groups(among), *among]),
     )
 
 
@@ -144,17 +144,17 @@ class StateSpace:
                 raise InputError("is of continuous systems", key="D_rate", allowed="None of a sampled one")
 
     def __repr__(self) -> str:
-        """How large it is, and its channels by group."""
-        return f"{type(self).__name__}({self._told()})"
+        """Number of states, sample time, and channels by group."""
+        return f"{type(self).__name__}({self._summary()})"
 
-    def _told(self) -> str:
+    def _summary(self) -> str:
         kind = "" if self.sample is None else f", every {self.sample:g} s"
-        into, out = (f"{len(names)} ({', '.join(groups(names))})" for names in (self.inputs, self.outputs))
+        into, out = (f"{len(names)} ({', '.join(channel_groups(names))})" for names in (self.inputs, self.outputs))
         return f"{len(self.states)} states{kind}, inputs {into}, outputs {out}"
 
     def select(self, inputs: Names = None, outputs: Names = None) -> StateSpace:
-        """The same states with some channels, by names or groups, in the order given."""
-        into, out = chosen(inputs, self.inputs, "inputs"), chosen(outputs, self.outputs, "outputs")
+        """System of the same states with some channels, by names or groups, in the order given."""
+        into, out = channel_indices(inputs, self.inputs, "inputs"), channel_indices(outputs, self.outputs, "outputs")
         return StateSpace(
             A=self.A,
             B=self.B[:, into],
@@ -169,13 +169,15 @@ class StateSpace:
         )
 
     def sampled(self, period: float | str, delay: float | str = 0.0) -> StateSpace:
-        """The same between samples, inputs held for a `period` [s] (or "5 kHz") and late by a `delay` [s], (T21.17).
+        """Sampled system, inputs held for a `period` [s] (or "5 kHz") and late by a `delay` [s], (T21.17).
 
         Rates of inputs are their last differences, Eq. (T21.19).
         """
         if self.sample is not None:
             raise InputError("is sampled already", key="sample", value=self.sample, allowed="a continuous system")
-        return discretization.held(self, discretization.period_of(period), quantity(delay, "time", key="delay"))
+        return discretization.zero_order_hold(
+            self, discretization.period_of(period), quantity(delay, "time", key="delay")
+        )
 
     @overload
     def close(self, controller: Controller | StateSpace) -> StateSpace: ...
@@ -277,12 +279,12 @@ class StateSpace:
             `psd` and `cumulative_rms` (spectrum_frequency, output), `rms` (output), `covariance`.
         """
         part = self.select(outputs=outputs)
-        return datasets.vibration_dataset(part, *random_response.shaken(part, sources))
+        return datasets.vibration_dataset(part, *random_response.output_vibration(part, sources))
 
     def by_source(self, sources: Sources, outputs: Names = None) -> Dataset:
         """`rms_by_source` (source, output) as of `psd`; squares add up to those of `rms`."""
         part = self.select(outputs=outputs)
-        return datasets.source_dataset(part, *random_response.shaken(part, sources))
+        return datasets.source_dataset(part, *random_response.output_vibration(part, sources))
 
     def step(self, duration: float | None = None, step: float | None = None) -> Dataset:
         """`step_response` (output, input, time) after unit steps at 0, exact; by itself as long as motions last.
@@ -316,11 +318,11 @@ class StateSpace:
 
         `residual`: what is left out still gives way as at rest. Without that zeros move.
         """
-        return reduced(self, modes, below, residual)
+        return truncate_modes(self, modes, below, residual)
 
     def damp(self) -> Dataset:
         """Frequencies [Hz], damping ratios and poles, by frequency, Eq. (T21.4); of a pair the pole above the axis."""
-        return datasets.damping_dataset(*damping_of(self.poles(), self.sample))
+        return datasets.damping_dataset(*oscillating_poles(self.poles(), self.sample))
 
 
 def _names(given: object, key: str) -> tuple[str, ...]:
@@ -332,7 +334,7 @@ def _names(given: object, key: str) -> tuple[str, ...]:
     return tuple(found)
 
 
-def a_system(system: StateSpace) -> StateSpace:
+def check_system(system: StateSpace) -> StateSpace:
     """The system, where it is one."""
     if not isinstance(system, StateSpace):
         raise InputError(

@@ -1,4 +1,4 @@
-"""Zeros of a state space by its whole equations, each made sure of, Eqs. (T21.5), (T21.48)-(T21.49)."""
+"""Zeros of a state space by its whole equations, each verified, Eqs. (T21.5), (T21.48)-(T21.49)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from flexapod.common.arrays import Array
 from flexapod.common.resources import one_thread
-from flexapod.control.frequency_response import middle_rate
+from flexapod.control.frequency_response import mean_rate
 
 Complex = NDArray[np.complex128]
 
@@ -40,7 +40,7 @@ def zeros_of(A: Array, B: Array, C: Array, D: Array, D_rate: Array | None = None
     n, m = B.shape
     if not n or not m:
         return np.zeros(0, dtype=complex)
-    rate = middle_rate(np.linalg.eigvals(A).astype(complex))
+    rate = mean_rate(np.linalg.eigvals(A).astype(complex))
     A, change = scipy.linalg.matrix_balance(A / rate)
     B, C = np.asarray(np.linalg.solve(change, B), dtype=float), C @ change
     wide, high = _sizes(B, axis=0), _sizes(C, axis=1)
@@ -52,7 +52,7 @@ def zeros_of(A: Array, B: Array, C: Array, D: Array, D_rate: Array | None = None
     poles, _ = _roots(A, np.eye(n))
     found, doubt = _roots(P, E)
     near = np.abs(found) <= FAR * np.abs(poles).max(initial=1.0)
-    kept = _beside(found[near], poles)
+    kept = _not_cancelled(found[near], poles)
     found, doubt = found[near][kept], doubt[near][kept]
     upon = np.abs(found[:, None] - poles).min(axis=1, initial=np.inf) <= BESIDE * np.abs(found)
     zeros = rate * found[upon | (_least(P, E, n, found) <= np.maximum(SHOWN, 10 * doubt))]
@@ -106,7 +106,7 @@ def _nearest(P: Array, E: Array, s: complex, left: Complex, right: Complex) -> t
     return s, doubt
 
 
-def _beside(zeros: Complex, poles: Complex) -> list[int]:
+def _not_cancelled(zeros: Complex, poles: Complex) -> list[int]:
     """Places of zeros without those, one for one, that lie upon poles; a size below the middle one counts as that."""
     left = list(range(len(zeros)))
     for pole in poles:

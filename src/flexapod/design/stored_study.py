@@ -44,7 +44,7 @@ def load(path: str | Path) -> model.Study | model.ActuatorStudy:
     ending = path_of(path, "path").suffix.lower()
     if ending not in (*RESULTS, *_SWEEPS):
         return model.load(path)
-    from flexapod.analysis.results.attributes import study_in
+    from flexapod.analysis.results.attributes import study_from_attributes
 
     if ending in RESULTS:
         from flexapod.analysis.store import stored_attributes
@@ -54,4 +54,4 @@ def load(path: str | Path) -> model.Study | model.ActuatorStudy:
         from flexapod.design.sweeps.result import open_sweep
 
         attrs = dict(open_sweep(path).attrs)
-    return study_in(attrs, str(path))
+    return study_from_attributes(attrs, str(path))

@@ -1,4 +1,4 @@
-"""The machine as built and warm: what differs from the drawing, and where it then stands, Eqs. (T16.1)-(T16.6)."""
+"""Machine as built and at operating temperature: its deviations and its poses, Eqs. (T16.1)-(T16.6)."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ import numpy as np
 
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError
-from flexapod.kinematics.closures import TAKEN, Task, eliminated, gaps
+from flexapod.kinematics.closures import TAKEN, Task, eliminate_legs, gaps
 from flexapod.kinematics.laws import Law, spline, spline_law
 from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN, FREE, HELD, Limbs
 from flexapod.kinematics.mechanism import coordinates_of
-from flexapod.kinematics.robot import inverse_kinematics, once, rigid_limbs
+from flexapod.kinematics.rigid_poses import inverse_kinematics
+from flexapod.kinematics.robot import cache_per_robot, rigid_limbs
 from flexapod.kinematics.rotations import exponential
 from flexapod.kinematics.screws import screws
 from flexapod.kinematics.trajectory import Poses
@@ -33,7 +34,7 @@ STEPS = 20
 
 @dataclass(frozen=True, kw_only=True)
 class BuiltPart:
-    """Of one cause what it does to n legs, each in proportion to its `size` at an instant.
+    """Deviation of n legs from the nominal machine by one cause, in proportion to its `size` at an instant.
 
     ``base``, ``platform`` (n, 3) [m]: shifts of joints, world axes and platform axes; ``fixed``, ``share`` (n, 8): what
     is added to held and driven `COORDINATES` q, fixed + share q; ``values`` (T or 1, n): sizes at the instants
@@ -50,7 +51,7 @@ class BuiltPart:
 
     @property
     def cause(self) -> str:
-        """What results call it."""
+        """Name of the cause in results."""
         return "geometry" if self.name in GEOMETRY else self.name
 
     def size(self, t: Array) -> Law:
@@ -65,9 +66,9 @@ class BuiltPart:
         return spline(self.time, self.values)  # type: ignore[arg-type]
 
 
-@once
+@cache_per_robot
 def built_parts(robot: Robot) -> tuple[BuiltPart, ...]:
-    """All that differs from the drawing, cause by cause; nothing of a robot as drawn."""
+    """Deviations from the nominal machine, cause by cause; none of a nominal robot."""
     return (*_geometry(robot), *_heat(robot))
 
 
@@ -165,7 +166,7 @@ def shifts(robot: Robot, t: float = 0.0, parts: tuple[BuiltPart, ...] | None = N
 
 
 def added(part: BuiltPart, t: Array, q: Law) -> Law:
-    """What a part adds to coordinates q (T, n, 8) at instants (T,), with rates, Eq. (T16.5)."""
+    """Contribution of a part to coordinates q (T, n, 8) at instants (T,), with rates, Eq. (T16.5)."""
     size, first, second = (x[..., None] for x in part.size(t))
     length = part.fixed + part.share * q.position
     rate, change = part.share * q.rate, part.share * q.acceleration
@@ -173,7 +174,7 @@ def added(part: BuiltPart, t: Array, q: Law) -> Law:
 
 
 def added_by_all(robot: Robot, t: Array, q: Law) -> Law:
-    """What all parts together add to coordinates q (T, n, 8)."""
+    """Contribution of all parts together to coordinates q (T, n, 8), with rates."""
     every = [added(part, t, q) for part in built_parts(robot)]
     return Law(*(np.sum(column, axis=0) for column in zip(*every, strict=True)))
 
@@ -219,7 +220,7 @@ def _dots(x: Array, y: Array) -> Array:
 
 
 def is_plate(part: BuiltPart) -> bool:
-    """Whether it moves joints of base or platform over time."""
+    """Test whether a part moves joints of base or platform over time."""
     return part.time is not None and bool(part.base.any() or part.platform.any())
 
 
@@ -237,7 +238,7 @@ def built_limbs(robot: Robot, limbs: Limbs, parts: tuple[BuiltPart, ...] | None 
 
 
 def built_poses(robot: Robot, path: Poses, t: Array | None = None) -> Poses:
-    """Poses at rest of the rigid robot as built, its drives told what brings the drawn one to `path`, Eq. (T16.6).
+    """Poses at rest of the robot as built, under commands that bring the nominal one to `path`, Eq. (T16.6).
 
     Parameters
     ----------
@@ -271,7 +272,7 @@ def built_poses(robot: Robot, path: Poses, t: Array | None = None) -> Poses:
 
 
 def nearby(limbs: Limbs, q: Array, at: Poses, base: Array, platform: Array) -> tuple[Poses, Array]:
-    """Poses next to T others of legs whose joints are shifted, Eq. (T16.6), and the gaps left (T,) [m].
+    """Poses next to T others of legs whose joints are shifted, Eq. (T16.6), and the remaining gaps (T,) [m].
 
     Parameters
     ----------
@@ -293,7 +294,7 @@ def nearby(limbs: Limbs, q: Array, at: Poses, base: Array, platform: Array) -> t
         columns = np.zeros((*arms.shape[:2], 6, 6))
         columns[..., :3, :3] = columns[..., 3:, 3:] = np.eye(3)
         columns[..., :3, 3:] = np.cross(np.eye(3), arms[..., None], axis=-2)
-        dq, step = eliminated(limbs, task, chain, columns[..., task.platform]).solve(-apart)
+        dq, step = eliminate_legs(limbs, task, chain, columns[..., task.platform]).solve(-apart)
         twist = np.zeros((len(q), 6))
         twist[:, task.platform] = step
         q, p, R = q + dq, p + twist[:, :3], exponential(twist[:, 3:]) @ R

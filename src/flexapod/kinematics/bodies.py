@@ -1,4 +1,4 @@
-"""Legs as bodies: how far they turn at their joints, how near to each other they come, Eqs. (T2.47)-(T2.48)."""
+"""Legs as bodies: their rotation at the joints and the gaps between them, Eqs. (T2.47)-(T2.48)."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Nearest(NamedTuple):
 
 
 def turned_by(axes: Array, rotation: Array, home: Array, home_rotation: Array) -> Array:
-    """How far legs have turned at base and platform joint since home, (T, n, 2) [rad], Eq. (T2.47).
+    """Angles by which legs have turned at base and platform joint since home, (T, n, 2) [rad], Eq. (T2.47).
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def _angle(a: Array, b: Array) -> Array:
 
 
 def nearest_legs(feet: Array, tips: Array, mouth: Array, radii: Array, pairs: Array) -> Nearest:
-    """Which two of some pairs of legs come nearest to each other, and how near, Eq. (T2.48).
+    """Least gap among some pairs of legs at each instant, and the two legs that have it, Eq. (T2.48).
 
     A leg is a cylinder to its mouth and a piston from there on, each with round ends.
 
@@ -90,7 +90,7 @@ def _bodies(feet: Array, tips: Array, mouth: Array) -> tuple[Array, Array]:
 
 
 def _may_be_nearest(a: Array, b: Array, width: Array, one: Index, other: Index) -> Mask:
-    """Which two may be the nearest somewhere in a span, (m, spans): a gap changes at most by what its bodies move."""
+    """Pairs that may be nearest in a span, (m, spans): a gap changes at most by what its bodies move."""
     begins, ends = a[..., SPAN // 2], b[..., SPAN // 2]
     way = np.maximum(*(((x - x[..., SPAN // 2, None]) ** 2).sum(axis=0).max(axis=-1) for x in (a, b)))
     moved = np.sqrt(way)[one] + np.sqrt(way)[other]

@@ -29,7 +29,7 @@ CLOSE = 1e-7  # gap from which one step leaves nothing but rounding
 
 
 class Task(NamedTuple):
-    """What is asked of a mechanism: which coordinates follow from the closures, the others being given.
+    """Task for a mechanism: which coordinates follow from the closures, the others being given.
 
     `legs` (n, 8) and `platform` (6,) (surge, sway, heave, roll, pitch, yaw from home, about `pivot`) are True where a
     coordinate is unknown.
@@ -79,7 +79,7 @@ class _Eliminated(NamedTuple):
         return dq, dx
 
 
-def eliminated(limbs: Limbs, task: Task, chain: Screws, columns: Array) -> _Eliminated:
+def eliminate_legs(limbs: Limbs, task: Task, chain: Screws, columns: Array) -> _Eliminated:
     """Equations of a Newton step, leg by leg; `columns` (T, n, 6, d): what moves the joints of the platform."""
     scale = np.array([1.0, 1.0, 1.0, limbs.L_c, limbs.L_c, limbs.L_c])
     kinds: dict[tuple[int, ...], list[int]] = {}
@@ -118,7 +118,7 @@ def gaps(limbs: Limbs, chain: Screws, at: Poses) -> Array:
     return np.concatenate([place, turn], axis=-1)
 
 
-def turned_over(limbs: Limbs, chain: Screws, rotation: Array) -> Mask:
+def false_roots(limbs: Limbs, chain: Screws, rotation: Array) -> Mask:
     """Legs (T, n) that meet platforms of attitude `rotation` (T, 3, 3) half a turn off, the other root of (T14.6)."""
     goal = rotation[:, None] @ limbs.platform_frames
     return limbs.pose_closure & (np.einsum("tnij,tnij->tn", goal, chain.frame) < 0)  # (T14.23)
@@ -142,7 +142,7 @@ def _poses(limbs: Limbs, task: Task, law: Law) -> Poses:
     return poses_from_coordinates(Poses.at_rest(limbs.position, limbs.rotation), law, task.pivot)
 
 
-def close(limbs: Limbs, task: Task, q: Array, goal: Array | Poses, start: Closed | None = None) -> Closed:
+def solve_closures(limbs: Limbs, task: Task, q: Array, goal: Array | Poses, start: Closed | None = None) -> Closed:
     """Unknown coordinates such that the legs meet the platform, Eqs. (T14.6)-(T14.8).
 
     Newton's method, along the straight way of what is given from `start` (default: home) to `q` and `goal`: so the
@@ -241,7 +241,7 @@ def _each_part(
 
 
 def _units(limbs: Limbs) -> Array:
-    """What counts as far for the six platform coordinates and the eight of a leg: the length of a leg or a radian."""
+    """Units of the six platform coordinates and the eight of a leg: the length of a leg or a radian."""
     far = float(limbs.home[:, COORDINATES.index("l")].mean())
     lengths = {"l", "chi"} if limbs.carriage == "slider" else {"l"}
     return np.array([far] * 3 + [1.0] * 3 + [far if name in lengths else 1.0 for name in COORDINATES])
@@ -250,7 +250,7 @@ def _units(limbs: Limbs) -> Array:
 def _newton(
     limbs: Limbs, task: Task, q: Array, x: Array, given: Poses | None, enough: float
 ) -> tuple[Array, Array, Array]:
-    """Newton steps until nothing but rounding is left; q, x and the gaps of the legs [m], rotations times L_c."""
+    """Newton steps until only rounding remains; q, x and the gaps of the legs [m], rotations times L_c."""
     still, unit = np.zeros_like(x), _units(limbs)
     weight = np.array([1.0, 1.0, 1.0, limbs.L_c, limbs.L_c, limbs.L_c])
     at, chain = given or _poses(limbs, task, Law(x, still, still)), screws(limbs, q)
@@ -262,7 +262,7 @@ def _newton(
         if last:
             break
         last = bool(np.all(gap < enough * limbs.L_c))
-        dq, dx = eliminated(limbs, task, chain, _platform_columns(limbs, task, x, at)).solve(-apart)
+        dq, dx = eliminate_legs(limbs, task, chain, _platform_columns(limbs, task, x, at)).solve(-apart)
         longest = np.abs(dx / unit[:6][task.platform]).max(axis=1, initial=0.0)
         short = STRIDE / np.maximum(np.maximum(np.abs(dq / unit[6:]).max(axis=(1, 2)), longest), STRIDE)
         dq, dx = short[:, None, None] * dq, short[:, None] * dx
@@ -270,7 +270,7 @@ def _newton(
         q, x = q + np.where(off[:, None, None], 0.0, dq), x.copy()
         x[:, task.platform] += np.where(off[:, None], 0.0, dx)
     gap[off] = np.inf
-    gap[turned_over(limbs, chain, at.rotation)] = np.inf
+    gap[false_roots(limbs, chain, at.rotation)] = np.inf
     return q, x, gap
 
 
@@ -283,13 +283,13 @@ class ClosureMotion(NamedTuple):
     platform: Law
 
 
-def move(limbs: Limbs, task: Task, found: Closed, given: Law | Poses) -> ClosureMotion:
+def solve_rates(limbs: Limbs, task: Task, found: Closed, given: Law | Poses) -> ClosureMotion:
     """Rates and accelerations of a solution, by the matrix of its last Newton step, Eqs. (T14.9)-(T14.10).
 
     Parameters
     ----------
     limbs, task, found
-        As for, and of, `close`; no given coordinate of a leg moves.
+        As for, and of, `solve_closures`; no given coordinate of a leg moves.
     given : Law or Poses
         Platform coordinates (T, 6), where rates and accelerations of unknown ones do not count; or its poses.
     """
@@ -314,7 +314,7 @@ def _move(limbs: Limbs, task: Task, found: Closed, given: Law | Poses, where: sl
         return given.part(where) if isinstance(given, Poses) else _poses(limbs, task, Law(x, x_dot, x_ddot))
 
     at, chain = platform(), screws(limbs, q)
-    matrix = eliminated(limbs, task, chain, _platform_columns(limbs, task, x, at))
+    matrix = eliminate_legs(limbs, task, chain, _platform_columns(limbs, task, x, at))
     q_dot, x_dot[:, task.platform] = matrix.solve(
         np.concatenate([at.point(limbs.platform)[1], _each(at.omega, limbs)], axis=-1)
     )

@@ -43,7 +43,7 @@ class Breaks:
     corners: tuple[float, ...] = ()
 
     def __or__(self, other: Breaks) -> Breaks:
-        """Both, each instant once, ascending."""
+        """Union of both, each instant once, ascending."""
         jumps = {*self.jumps, *other.jumps}
         corners = {*self.corners, *other.corners} - jumps
         return Breaks(jumps=tuple(sorted(jumps)), corners=tuple(sorted(corners)))

@@ -19,7 +19,7 @@ import numpy as np
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError
 from flexapod.kinematics.inverse import JointTurn, LegState, leg_rotations
-from flexapod.kinematics.rotations import Vector, blocks, cross, matrix_vector, time_first, time_last
+from flexapod.kinematics.rotations import Vector, blocks, cross, rotate_vector, time_first, time_last
 from flexapod.kinematics.trajectory import Poses
 
 
@@ -45,7 +45,7 @@ class LegBodies:
 
     @property
     def upright(self) -> LegBodies:
-        """The same with columns (n, 1), for arrays (n, T)."""
+        """Bodies with columns (n, 1), for arrays (n, T)."""
         return LegBodies(**{field.name: getattr(self, field.name)[:, None] for field in fields(self)})
 
     @property
@@ -113,12 +113,12 @@ class LegArrays(NamedTuple):
     beta_ddot: Array
 
     @classmethod
-    def of(cls, legs: LegState, where: slice) -> LegArrays:
-        """Of a range of poses."""
+    def from_state(cls, legs: LegState, where: slice) -> LegArrays:
+        """Build the arrays of a range of poses from the state of the legs."""
         alpha, beta = time_last(legs.alpha[where]), time_last(legs.beta[where])
         names = ("length", "rate", "accel", "alpha_dot", "beta_dot", "alpha_ddot", "beta_ddot")
         rest = {name: time_last(getattr(legs, name)[where]) for name in names}
-        return cls(turn=JointTurn.of(alpha, beta), **rest)
+        return cls(turn=JointTurn.from_angles(alpha, beta), **rest)
 
 
 class LegMotion(NamedTuple):
@@ -150,7 +150,7 @@ def leg_motion(bodies: LegBodies, legs: LegArrays) -> LegMotion:
     )
 
 
-def across_the_leg(bodies: LegBodies, legs: LegArrays, motion: LegMotion, gravity: Vector) -> tuple[Vector, Vector]:
+def transverse_forces(bodies: LegBodies, legs: LegArrays, motion: LegMotion, gravity: Vector) -> tuple[Vector, Vector]:
     """Force of the platform on the legs, across them, and moment of the base, in leg axes, Eqs. (T2.29)-(T2.31)."""
     length, (wx, wy, wz), w_dot = legs.length, motion.w, motion.w_dot
     transverse, axial = bodies.transverse(length), bodies.axial
@@ -165,24 +165,24 @@ def across_the_leg(bodies: LegBodies, legs: LegArrays, motion: LegMotion, gravit
     return across, moment
 
 
-def along_the_leg(bodies: LegBodies, motion: LegMotion, gravity: Vector, along: Array) -> Array:
+def axial_drive_force(bodies: LegBodies, motion: LegMotion, gravity: Vector, along: Array) -> Array:
     """Drive force from that of the leg on the platform, both along the leg [N], Eq. (T2.34)."""
     return along + bodies.piston_mass * (motion.piston_acceleration[2] - gravity[2])
 
 
 def _payload_balance(payload: PayloadBody, gravity: Array, poses: Poses, wrench: Array) -> Array:
-    """What the legs must bring about at the payload's CoM: force and moment (6, T), Eqs. (T2.32)-(T2.33)."""
+    """Force and moment that the legs exert on the payload at its CoM, (6, T), Eqs. (T2.32)-(T2.33)."""
     turn, w, alpha = time_last(poses.rotation), time_last(poses.omega), time_last(poses.alpha)
     back = turn.swapaxes(0, 1)
-    inertia, w_local = payload.inertia[..., None], matrix_vector(back, w)
+    inertia, w_local = payload.inertia[..., None], rotate_vector(back, w)
     spin = np.add(
-        matrix_vector(inertia, matrix_vector(back, alpha)),
-        cross(w_local, matrix_vector(inertia, w_local)),
+        rotate_vector(inertia, rotate_vector(back, alpha)),
+        cross(w_local, rotate_vector(inertia, w_local)),
     )
-    arm, lever = matrix_vector(turn, payload.com), matrix_vector(turn, payload.tool - payload.com)
+    arm, lever = rotate_vector(turn, payload.com), rotate_vector(turn, payload.tool - payload.com)
     acceleration = poses.acceleration.T + cross(alpha, arm) + np.array(cross(w, cross(w, arm)))
     force = payload.mass * (acceleration - gravity[:, None]) - wrench[:3]
-    return np.concatenate([force, matrix_vector(turn, spin) - wrench[3:] - cross(lever, wrench[:3])])
+    return np.concatenate([force, rotate_vector(turn, spin) - wrench[3:] - cross(lever, wrench[:3])])
 
 
 def _along_the_legs(balance: Array, arms: Vector, axes: Vector, sides: Vector) -> Array:
@@ -252,7 +252,7 @@ def inverse_dynamics(
     for where in blocks(count):
         part = poses.part(where)
         balance = _payload_balance(payload, gravity, part, time_last(external[where]))
-        found = _forces(*robot, gravity, part, LegArrays.of(legs, where), balance)
+        found = _forces(*robot, gravity, part, LegArrays.from_state(legs, where), balance)
         for name, values in zip(forces, found, strict=True):
             forces[name][where] = values
     return RigidForces(**forces)
@@ -265,10 +265,10 @@ def _forces(
     motion, home = leg_motion(bodies, legs), np.moveaxis(frames, 0, -1)[..., None]  # (3, 3, n, 1)
 
     def in_world(vector: Vector) -> tuple[Array, Array, Array]:
-        return matrix_vector(home, legs.turn.out_of_leg(vector))
+        return rotate_vector(home, legs.turn.out_of_leg(vector))
 
-    leg_gravity = legs.turn.into_leg(matrix_vector(home.swapaxes(0, 1), gravity))
-    across, moment = across_the_leg(bodies, legs, motion, leg_gravity)
+    leg_gravity = legs.turn.into_leg(rotate_vector(home.swapaxes(0, 1), gravity))
+    across, moment = transverse_forces(bodies, legs, motion, leg_gravity)
     sides = [-x for x in in_world(across)]
     none = np.zeros_like(legs.length)
     axes = in_world((none, none, none + 1.0))
@@ -276,7 +276,7 @@ def _forces(
     joint_force = [side + along * axis for side, axis in zip(sides, axes, strict=True)]
     inertial = in_world(_inertial_forces(bodies, motion, leg_gravity))
     return (
-        along_the_leg(bodies, motion, leg_gravity, along).T,
+        axial_drive_force(bodies, motion, leg_gravity, along).T,
         time_first(joint_force),
         time_first([i + f for i, f in zip(inertial, joint_force, strict=True)]),  # (T2.35)
         time_first(in_world(moment)),

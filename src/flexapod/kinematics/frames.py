@@ -1,6 +1,6 @@
-"""Frames that move: how a base is moved over time, and where a plate on a mount stands, Eqs. (T24.1), (T24.8).
+"""Frames of a moved base, of a plate on a mount, and of the joints at the two ends of a leg.
 
-Axes of the joints at the two ends of a leg, at home, Eqs. (T2.14), (T14.1)-(T14.2).
+Displaced frames: Eqs. (T24.1), (T24.8). Axes of the joints at home: Eqs. (T2.14), (T14.1)-(T14.2).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class Placed(NamedTuple):
     rotation: Array
 
     def carried(self, point: Array, rotation: Array) -> tuple[Array, Array]:
-        """Where points (..., 3) and attitudes (..., 3, 3) of the frame are in the world."""
+        """Transform points (..., 3) and attitudes (..., 3, 3) of the frame into the world."""
         return self.origin + (self.rotation @ point[..., None])[..., 0], self.rotation @ rotation
 
     def seen(self, point: Array, rotation: Array) -> tuple[Array, Array]:
@@ -41,7 +41,7 @@ def placed(moved: Array, at: Array) -> Placed:
 
 
 def base_law(robot: Robot, t: Array) -> Law:
-    """How the base is moved at instants (T,): displacements and angles (T, 6), rates, accelerations; zeros if not."""
+    """Motion of the base at instants (T,): displacements and angles (T, 6), rates, accelerations; zeros if none."""
     given = robot.base_motion
     if given is None:
         still = np.zeros((len(t), 6))
@@ -53,7 +53,7 @@ def base_law(robot: Robot, t: Array) -> Law:
 
 
 def base_placed(robot: Robot, t: Array) -> Placed | None:
-    """Where the base is at instants (T,); None where it is not moved."""
+    """Frame of the base at instants (T,); None where the base is not moved."""
     given = robot.base_motion
     return None if given is None else placed(base_law(robot, t).position, given.at)
 

@@ -56,7 +56,7 @@ class LegState:
     gamma_ddot: Array | None = None
 
     def coordinate(self, name: str) -> tuple[Array, Array, Array]:
-        """One of `limbs.COORDINATES` with its rate and acceleration, (T, n) each; zero where no leg has it."""
+        """Coordinate of `leg_geometry.COORDINATES` with rate and acceleration, (T, n) each; zero without one."""
         if name == "l":
             return self.length, self.rate, self.accel
         key, place = (name[:-1], int(name[-1]) - 1) if name.startswith("gamma") else (name, None)
@@ -82,8 +82,8 @@ class LegMap(NamedTuple):
         return self.offset.shape[1]
 
     @classmethod
-    def of(cls, base_joints: Array, platform_joints: Array, frames: Array) -> LegMap:
-        """From joints (n, 3) and home frames (n, 3, 3)."""
+    def from_joints(cls, base_joints: Array, platform_joints: Array, frames: Array) -> LegMap:
+        """Build the map from joints (n, 3) and home frames (n, 3, 3)."""
         turned = np.einsum("ikc,ij->cikj", frames, platform_joints).reshape(-1, 9)
         moved = np.moveaxis(frames, -1, 0).reshape(-1, 3)
         offset = -np.einsum("ikc,ik->ci", frames, base_joints)[..., None]
@@ -99,8 +99,8 @@ class JointTurn(NamedTuple):
     sb: Array
 
     @classmethod
-    def of(cls, alpha: Array, beta: Array) -> JointTurn:
-        """From the angles [rad]."""
+    def from_angles(cls, alpha: Array, beta: Array) -> JointTurn:
+        """Build the cosines and sines from the angles [rad]."""
         return cls(np.cos(alpha), np.sin(alpha), np.cos(beta), np.sin(beta))
 
     def into_leg(self, vector: Vector) -> tuple[Array, Array, Array]:
@@ -240,7 +240,7 @@ def leg_state(base_joints: Array, platform_joints: Array, frames: Array, poses: 
     InputError
         If a leg has no length, or a universal joint comes within 5 deg of |beta| = 90 deg.
     """
-    return state_of(LegMap.of(base_joints, platform_joints, frames), poses)
+    return state_of(LegMap.from_joints(base_joints, platform_joints, frames), poses)
 
 
 def state_of(legs: LegMap, poses: Poses) -> LegState:

@@ -99,12 +99,12 @@ def characteristic_length(platform_joints: ArrayLike) -> float:
     return float(np.sqrt(np.mean(np.sum((joints - joints.mean(axis=0)) ** 2, axis=1))))
 
 
-def scaled(jacobian: Array, length: float) -> Array:
+def dimensionless_jacobian(jacobian: Array, length: float) -> Array:
     """Dimensionless Jacobian: the rotational columns divided by a characteristic length [m], Eq. (T2.23)."""
     return jacobian / np.array([1.0, 1.0, 1.0, length, length, length])
 
 
-def along_path(jacobians: Array) -> SingularityPath:
+def singularity_measures(jacobians: Array) -> SingularityPath:
     """Distance to singularity along a path, Eq. (T2.24).
 
     Parameters
@@ -139,14 +139,14 @@ def _determinant(jacobians: Array, singular: Array) -> Array:
     return np.linalg.det(jacobians) if jacobians.shape[1] == jacobians.shape[2] else singular.prod(axis=1)
 
 
-def nearest(jacobians: Array) -> NearestSingularity:
-    """What `along_path` finds worst, at a fraction of its cost, Eq. (T2.24).
+def most_singular_pose(jacobians: Array) -> NearestSingularity:
+    """Most singular pose of a path as `singularity_measures` finds it, at a fraction of its cost, Eq. (T2.24).
 
     A singular value moves by no more than the matrix does: ``|sigma(J) - sigma(J_k)| <= |J - J_k|`` in the Frobenius
     norm (Weyl). A pose near one whose smallest singular value is known needs none of its own where this bound keeps
     it at or above the smallest found; and as long as that is positive, the determinant has not changed sign between.
 
-    Parameters as for `along_path`.
+    Parameters as for `singularity_measures`.
     """
     j = jacobians
     singular, sign = np.full((len(j), j.shape[2]), np.inf), np.zeros(len(j), dtype=bool)
@@ -180,7 +180,7 @@ def scaled_path(base_joints: ArrayLike, platform_joints: ArrayLike, poses: Poses
     """
     joints = np.asarray(platform_joints, dtype=float)
     raw = length_jacobian(base_joints, joints, poses.position, poses.rotation, joints.mean(axis=0))
-    return scaled(raw, characteristic_length(joints))
+    return dimensionless_jacobian(raw, characteristic_length(joints))
 
 
 def stiffness(jacobian: Array, leg_stiffness: ArrayLike) -> Array:

@@ -1,9 +1,8 @@
-"""Laws of motion in closed form: position, rate and acceleration, exact at each instant, Eqs. (T2.1)-(T2.8).
+"""Laws of motion and of loads in closed form, exact at each instant, Eqs. (T2.1)-(T2.8).
 
-A *step profile* s(tau) rises from 0 at tau = 0 to 1 at tau = 1 and rests outside. A *scalar law* is a function of
-time. Every function here returns position, rate and acceleration together; none holds a state.
-
-Laws of the study file at instants: rotation and extension of an actuator, torques, forces and wrenches.
+A *step profile* s(tau) rises from 0 at tau = 0 to 1 at tau = 1 and rests outside. A *scalar law* is a function
+of time. Laws of motion return position, rate and acceleration together; none holds a state. The laws of a study
+file for rotation and extension of an actuator, torques, forces and wrenches are evaluated at given instants.
 """
 
 from __future__ import annotations

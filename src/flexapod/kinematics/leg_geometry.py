@@ -111,14 +111,14 @@ class Limbs:
 
     @cached_property
     def plain(self) -> bool:
-        """Whether all legs are of the kind UPS, whose kinematics has a closed form."""
+        """Test whether all legs are of the kind UPS, whose kinematics has a closed form."""
         angles = self.state[:, [COORDINATES.index("alpha"), COORDINATES.index("beta")]]
         moves = self.unknown[:, COORDINATES.index("l")]
         return not self.carriage and not self.pose_closure.any() and bool((angles == FREE).all() and moves.all())
 
     @cached_property
     def guides(self) -> bool:
-        """Whether legs or the plane leave the platform fewer than six motions."""
+        """Test whether legs or the plane leave the platform fewer than six motions."""
         rows = np.where(self.pose_closure, 6, 3)
         return bool(self.hub_held.any() or (self.unknown.sum(axis=1) < rows).any())
 
@@ -165,7 +165,7 @@ def limbs(robot: Robot, rigid: bool = False) -> Limbs:
 
 
 def _hub_held(robot: Robot) -> Mask:
-    """What the plane holds: along its normal, and about what lies in it; everything of a fixed platform."""
+    """Platform motions that the plane holds: along its normal, about axes in it; all of a fixed platform."""
     if robot.platform_fixed:
         return np.ones(6, dtype=bool)
     across = robot.normal != 0
@@ -220,7 +220,7 @@ class _Springs(NamedTuple):
 
 
 def _springs(joint: Joint, rigid: bool) -> _Springs:
-    """Whether springs hold a joint across the leg and about it, and whether it gives way as a flexure does."""
+    """Test whether springs hold a joint across the leg and about it, and whether it deflects as a flexure."""
     if rigid:
         return _Springs(False, False, False)
     whole = joint.stiffness is not None and bool(joint.stiffness[3:, 3:].any())

@@ -1,4 +1,4 @@
-"""Kinematics of any mechanism: from poses or commanded coordinates to legs, from drives to poses, in words refused."""
+"""Kinematics of any mechanism: legs from poses or commanded coordinates, poses from drives."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import ComputationError, InputError
-from flexapod.kinematics.closures import Closed, ClosureMotion, Task, close, move
+from flexapod.kinematics.closures import Closed, ClosureMotion, Task, solve_closures, solve_rates
 from flexapod.kinematics.inverse import BETA_LIMIT, NO_LENGTH, LegState
 from flexapod.kinematics.laws import Law
 from flexapod.kinematics.leg_geometry import ABSENT, COORDINATES, DRIVEN, FREE, Limbs
@@ -23,32 +23,26 @@ LOOKS = 33  # instants of each
 CHI, BETA, L, GAMMA2 = (COORDINATES.index(name) for name in ("chi", "beta", "l", "gamma2"))
 
 
-_latest: tuple[Limbs, Poses, Closed] | None = None  # checks, singularities and legs ask for the same path in turn
-
-
 def legs_at(limbs: Limbs, path: Poses) -> Closed:
     """Coordinates of the legs at T poses, NaN where the legs do not reach."""
-    global _latest
-    known = _latest
-    if known is None or known[0] is not limbs or known[1] is not path:
-        task = Task(limbs.unknown, np.zeros(6, dtype=bool), np.zeros(3))
-        known = _latest = limbs, path, close(limbs, task, _tiled(limbs, len(path)), path)
-        known[2].q.flags.writeable = False
-    return known[2]
+    task = Task(limbs.unknown, np.zeros(6, dtype=bool), np.zeros(3))
+    found = solve_closures(limbs, task, _tiled(limbs, len(path)), path)
+    found.q.flags.writeable = False
+    return found
 
 
-def leg_state(limbs: Limbs, path: Poses) -> LegState:
-    """Legs at T poses with two derivatives.
+def leg_state(limbs: Limbs, path: Poses, found: Closed) -> LegState:
+    """Legs at T poses with two derivatives; `found`: as of `legs_at` there.
 
     Raises
     ------
     InputError
         The legs do not reach a pose, a joint folds beyond 85 deg, or a carriage leaves its side.
     """
-    task, found = Task(limbs.unknown, np.zeros(6, dtype=bool), np.zeros(3)), legs_at(limbs, path)
     refuse_lost(limbs, found)
     _refuse_folded(limbs, found.q)
-    return _as_state(limbs, move(limbs, task, found, path))
+    task = Task(limbs.unknown, np.zeros(6, dtype=bool), np.zeros(3))
+    return _as_state(limbs, solve_rates(limbs, task, found, path))
 
 
 def follow(limbs: Limbs, unknown: Mask, law: Law, pivot: Array, t: Array | None = None) -> Poses:
@@ -62,10 +56,10 @@ def follow(limbs: Limbs, unknown: Mask, law: Law, pivot: Array, t: Array | None 
     """
     task = Task(limbs.unknown, unknown, pivot)
     given = Law(*(np.where(unknown, 0.0, part) for part in law))
-    found = close(limbs, task, _tiled(limbs, len(law.position)), given.position)
+    found = solve_closures(limbs, task, _tiled(limbs, len(law.position)), given.position)
     if t is not None:
         refuse_lost(limbs, found, t)
-    moved = move(limbs, task, found, Law(found.x, *given[1:]))
+    moved = solve_rates(limbs, task, found, Law(found.x, *given[1:]))
     return poses_from_coordinates(Poses.at_rest(limbs.position, limbs.rotation), moved.platform, pivot)
 
 
@@ -92,7 +86,7 @@ def forward(limbs: Limbs, drives: Array, guess: Poses | None = None) -> Poses:
     if guess is not None:
         start = legs_at(limbs, guess)
         refuse_lost(limbs, start)
-    found = close(limbs, task, q, np.zeros((len(drives), 6)), start)
+    found = solve_closures(limbs, task, q, np.zeros((len(drives), 6)), start)
     if np.isnan(found.q).any():
         k = int(np.argmax(np.isnan(found.q).any(axis=(1, 2))))
         raise ComputationError(
@@ -136,9 +130,8 @@ class Reach(NamedTuple):
         return ~np.all(self.length >= NO_LENGTH, axis=1)
 
 
-def reach(limbs: Limbs, path: Poses) -> Reach:
-    """What T poses ask of the legs."""
-    found = legs_at(limbs, path)
+def reach(limbs: Limbs, found: Closed) -> Reach:
+    """Demands of T poses on the legs, by their coordinates there as of `legs_at`."""
     place = np.where(limbs.state[:, CHI] != ABSENT, found.q[..., CHI] + limbs.carriage_zero, 0.0)
     return Reach(found.q[..., L], place, angles(limbs, found.q), found.gap)
 
@@ -197,7 +190,7 @@ def _as_state(limbs: Limbs, moved: ClosureMotion) -> LegState:
 
 
 def lost_words(limbs: Limbs, gap: Array) -> str:
-    """Which leg does not reach its platform joint and by how much; `gap` (n,) [m] of one pose."""
+    """Clause on the leg that misses its platform joint by the most; `gap` (n,) [m] of one pose."""
     gap = np.where(np.isfinite(gap), gap, np.inf)
     leg = int(np.argmax(gap))
     off = f" (by {1e3 * gap[leg]:.3g} mm)" if np.isfinite(gap[leg]) else ""

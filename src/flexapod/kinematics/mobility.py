@@ -1,4 +1,4 @@
-"""What a mechanism can do, Eqs. (T14.11)-(T14.14), and the wrenches with which its legs hold, (T14.19)-(T14.21).
+"""Mobility of a mechanism, Eqs. (T14.11)-(T14.14), and constraint wrenches of its legs, (T14.19)-(T14.21).
 
 Everything is counted by rank, at one posture: a mechanism may have more motions there than next to it.
 """
@@ -69,7 +69,7 @@ class Posture(NamedTuple):
 
     @classmethod
     def home(cls, limbs: Limbs) -> Posture:
-        """That at home."""
+        """Posture at home."""
         return cls(limbs.home[None], limbs.position, limbs.rotation)
 
 
@@ -98,7 +98,7 @@ def mobility(limbs: Limbs, at: Posture | None = None) -> Mobility:
 
 
 def nearly_redundant(limbs: Limbs) -> int:
-    """How many closure rows at home almost say what others say, as where axes miss being parallel."""
+    """Number of closure rows at home that are nearly dependent, as where axes miss being parallel."""
     values = np.linalg.svd(_matrix(limbs, Posture.home(limbs))[0], compute_uv=False)
     return int(((values > RANK * values[0]) & (values < NEARLY * values[0])).sum())
 
@@ -195,7 +195,7 @@ def _rows(limbs: Limbs) -> Array:
 CLEAR = 0.1  # share of a driven coordinate's screw that the free ones must leave for it to name a wrench
 
 
-def holding(limbs: Limbs, q: Array, path: Poses, point: Array) -> Array:
+def constraint_wrenches(limbs: Limbs, q: Array, path: Poses, point: Array) -> Array:
     """Unit wrenches of the locked legs as rows of twists of a platform `point`, (T, m, 6), Eq. (T14.19).
 
     Of a leg UPS that is its row of the length Jacobian. Rows of one leg are normal to each other, moments taken at the
@@ -243,7 +243,7 @@ def _names(limbs: Limbs, leg: int, rows: int, scale: Array) -> tuple[list[int], 
 
 
 def _joint_columns(limbs: Limbs, path: Poses, point: Array) -> Array:
-    """From a twist of the platform at `point` to the motion of its joints, (T, n, 6, 6)."""
+    """Matrices from a twist of the platform at `point` to the motion of its joints, (T, n, 6, 6)."""
     arms = (limbs.platform - point) @ path.rotation.swapaxes(-1, -2)
     joints = np.zeros((*arms.shape[:2], 6, 6))
     joints[..., :, :] = np.eye(6)

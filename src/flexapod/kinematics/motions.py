@@ -1,4 +1,4 @@
-"""Motions of a mechanism in words, and which coordinates of the platform can be commanded, Eqs. (T14.15)-(T14.16)."""
+"""Motions of a mechanism as text, and coordinates of the platform that can be commanded, Eqs. (T14.15)-(T14.16)."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def independent_axes(
     return np.isin(np.arange(6), asked)
 
 
-def commanded(limbs: Limbs, motion: Motion, found: Mobility) -> Mask:
+def commanded_coordinates(limbs: Limbs, motion: Motion, found: Mobility) -> Mask:
     """Platform coordinates (6,) that a motion commands of a mechanism with the motions `found` at home.
 
     Raises
@@ -151,7 +151,7 @@ def _count(number: int, what: str) -> str:
 
 
 def mobility_words(limbs: Limbs, at: Posture | None = None) -> list[str]:
-    """What `check` says about the motions of a mechanism, sentence by sentence without full stops."""
+    """Report on the motions of a mechanism for `check`, sentence by sentence without full stops."""
     home, near = mobility(limbs, at), [mobility(limbs, there) for there in displaced(limbs, at)]
     here = "home" if at is None else "this pose"
     count = home.platform.shape[1]
@@ -183,7 +183,7 @@ def _legs(legs: list[int]) -> str:
 
 
 def _loose_words(limbs: Limbs, home: Mobility, near: list[Mobility], at: Posture | None = None) -> list[str]:
-    """What is left free with all drives locked."""
+    """Sentence on the motions that remain free with all drives locked; none where there are none."""
     loose = home.locked_platform.shape[1]
     if not loose:
         return []
@@ -195,7 +195,7 @@ def _loose_words(limbs: Limbs, home: Mobility, near: list[Mobility], at: Posture
 
 
 def _bends(limbs: Limbs) -> bool:
-    """Whether legs are welded to the base or to the platform, or held by flexures."""
+    """Test whether legs are clamped to the base or to the platform, or held by flexures."""
     return any("F" in (chain_of(chain).base, chain_of(chain).platform) for chain in limbs.chain)
 
 

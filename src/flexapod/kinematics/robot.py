@@ -11,14 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import InputError
-from flexapod.kinematics import dynamics, forward, inverse, jacobian, mechanism, motions, trajectory, workspace
-from flexapod.kinematics.dynamics import LegBodies, PayloadBody, RigidForces
-from flexapod.kinematics.inverse import LegState
+from flexapod.kinematics import forward, inverse, mechanism, motions, trajectory, workspace
+from flexapod.kinematics.dynamics import LegBodies, PayloadBody
 from flexapod.kinematics.laws import Law
-from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN, Limbs, limbs
-from flexapod.kinematics.mechanism import Reach
-from flexapod.kinematics.mobility import Mobility, Posture, holding, mobility
-from flexapod.kinematics.mobility import drive_jacobian as rates_of_drives
+from flexapod.kinematics.leg_geometry import Limbs, limbs
+from flexapod.kinematics.mobility import Mobility, mobility
 from flexapod.kinematics.trajectory import Poses
 
 if TYPE_CHECKING:
@@ -28,81 +25,49 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
-def once(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
+def cache_per_robot(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
     """Compute it once for each of the last 64 robots; the same robot again is not compared with its equals."""
     of_equals = cast("Callable[[Robot], T]", lru_cache(maxsize=64)(compute))
     latest: tuple[Robot, T] | None = None
 
-    def recalled(robot: Robot) -> T:
+    def look_up(robot: Robot) -> T:
         nonlocal latest
         known = latest
         if known is None or known[0] is not robot:
             known = latest = robot, of_equals(robot)
         return known[1]
 
-    return wraps(compute)(recalled)
+    return wraps(compute)(look_up)
 
 
-@once
+@cache_per_robot
 def home_pose(robot: Robot) -> Poses:
     """Home pose, at rest: one sample."""
     return Poses.at_rest(robot.home_position, robot.home_rotation)
 
 
-@once
+@cache_per_robot
 def robot_limbs(robot: Robot) -> Limbs:
-    """The legs of a robot as numbers, see `limbs.limbs`."""
+    """Geometry of the legs of a robot as numbers, see `leg_geometry.limbs`."""
     return limbs(robot)
 
 
-@once
+@cache_per_robot
 def rigid_limbs(robot: Robot) -> Limbs:
-    """The legs of the rigid path as numbers, see `limbs.limbs`."""
+    """Geometry of the legs on the rigid path as numbers, see `leg_geometry.limbs`."""
     return limbs(robot, rigid=True)
 
 
-@once
+@cache_per_robot
 def home_frames(robot: Robot) -> Array:
     """Home frames [x y z]_i of the legs, leg to world, shape (n, 3, 3), read-only, Eq. (T2.14)."""
     return rigid_limbs(robot).frames
 
 
-def posture(robot: Robot, pose: Poses) -> Posture:
-    """Legs and platform at one pose.
-
-    Raises
-    ------
-    InputError
-        The legs do not reach it.
-    """
-    legs = rigid_limbs(robot)
-    found = mechanism.legs_at(legs, pose)
-    mechanism.refuse_lost(legs, found)
-    return Posture(found.q, pose.position[0], pose.rotation[0])
-
-
-def reach(robot: Robot, path: Poses) -> Reach:
-    """What T poses ask of the legs, whether they can take them or not; see `mechanism.Reach`."""
-    legs = rigid_limbs(robot)
-    if legs.plain:
-        length, _, beta = inverse.directions_of(_leg_map(robot), path)
-        gap = np.where(length < inverse.NO_LENGTH, np.inf, 0.0)
-        return Reach(length, np.zeros_like(length), {"universal joint": np.abs(beta)}, gap)
-    return mechanism.reach(legs, path)
-
-
-def leg_axes(robot: Robot, path: Poses, legs: LegState | None = None) -> Array:
-    """Unit vectors along the legs, from base to platform joint, (T, n, 3); `legs` of the same poses, if known."""
-    if rigid_limbs(robot).plain:
-        vectors = path.place(robot.platform_joints) - robot.base_joints
-        return vectors / (np.linalg.norm(vectors, axis=-1) if legs is None else legs.length)[..., None]
-    limbs = rigid_limbs(robot)
-    return mechanism.axes(limbs, mechanism.legs_at(limbs, path).q if legs is None else mechanism.coordinates_of(legs))
-
-
-@once
-def _leg_map(robot: Robot) -> inverse.LegMap:
-    return inverse.LegMap.of(robot.base_joints, robot.platform_joints, home_frames(robot))
+@cache_per_robot
+def leg_map(robot: Robot) -> inverse.LegMap:
+    """Numbers by which poses become legs UPS."""
+    return inverse.LegMap.from_joints(robot.base_joints, robot.platform_joints, home_frames(robot))
 
 
 def leg_bodies(robot: Robot) -> LegBodies:
@@ -137,7 +102,7 @@ def poses(robot: Robot, motion: Motion, t: ArrayLike) -> Poses:
     InputError
         The robot does not have a motion that is asked for, or cannot take a pose.
     """
-    legs, t = rigid_limbs(robot), trajectory.instants(t)
+    legs, t = rigid_limbs(robot), trajectory.check_instants(t)
     if legs.guides:
         return poses_of_law(robot, motion, trajectory.coordinates(motion, t), t)
     mechanism.refuse_far(legs, trajectory.coordinates(motion, t), motion.pivot, t)
@@ -168,7 +133,7 @@ def commanded_axes(robot: Robot, motion: Motion) -> Mask:
         The robot does not have a motion that is asked for.
     """
     legs = rigid_limbs(robot)
-    return motions.commanded(legs, motion, _mobility(robot)) if legs.guides else ~legs.hub_held
+    return motions.commanded_coordinates(legs, motion, _mobility(robot)) if legs.guides else ~legs.hub_held
 
 
 def first_looks(robot: Robot, motion: Motion, t: Array) -> Iterator[NDArray[np.intp]]:
@@ -194,7 +159,9 @@ def places(robot: Robot, motion: Motion, t: ArrayLike) -> tuple[Array, Array]:
     if rigid_limbs(robot).guides:
         path = poses(robot, motion, t)
         return path.position, path.rotation
-    return trajectory.places(home_pose(robot), trajectory.coordinates(motion, trajectory.instants(t)), motion.pivot)
+    return trajectory.places(
+        home_pose(robot), trajectory.coordinates(motion, trajectory.check_instants(t)), motion.pivot
+    )
 
 
 def poses_from_home(robot: Robot, values: Array, named: Mask | None = None) -> Poses:
@@ -218,91 +185,9 @@ def _following(robot: Robot, free: Mask, law: Law, pivot: Array, t: Array | None
     return mechanism.follow(legs, ~(free | legs.hub_held), law, pivot, t)
 
 
-@once
+@cache_per_robot
 def _mobility(robot: Robot) -> Mobility:
     return mobility(rigid_limbs(robot))
-
-
-def inverse_kinematics(robot: Robot, path: Poses) -> LegState:
-    """Legs with two derivatives, arrays (T, n); see `inverse.leg_state`, of others than UPS `mechanism.leg_state`."""
-    if rigid_limbs(robot).plain:
-        return inverse.state_of(_leg_map(robot), path)
-    return mechanism.leg_state(rigid_limbs(robot), path)
-
-
-def refuse_folded(robot: Robot, path: Poses, found: Reach) -> None:
-    """Raise as `inverse_kinematics` of poses that legs reach, if one of their joints folds."""
-    if not rigid_limbs(robot).plain or (found.angles["universal joint"] > inverse.BETA_LIMIT).any():
-        inverse_kinematics(robot, path)
-
-
-def drive_positions(robot: Robot, path: Poses) -> Array:
-    """Positions (T, m) of the driven legs as the study file counts them: lengths, ways [m], angles of cranks [rad]."""
-    legs = rigid_limbs(robot)
-    return mechanism.drives_of(legs, mechanism.legs_at(legs, path).q)
-
-
-def inverse_dynamics(
-    robot: Robot, path: Poses, wrench: ArrayLike | None = None, legs: LegState | None = None
-) -> RigidForces:
-    """Drive forces and joint reactions along a path; `wrench` (T, 6) or (6,) at the tool, world axes.
-
-    `legs`: of the same poses, where they are known already.
-    """
-    return dynamics.inverse_dynamics(
-        home_frames(robot),
-        robot.platform_joints,
-        leg_bodies(robot),
-        payload_body(robot),
-        robot.gravity,
-        path,
-        inverse_kinematics(robot, path) if legs is None else legs,
-        None if wrench is None else np.asarray(wrench, dtype=float),
-    )
-
-
-def energies(robot: Robot, path: Poses) -> tuple[Array, Array]:
-    """Kinetic and gravity potential energy [J] along a path, each shape (T,)."""
-    legs = inverse_kinematics(robot, path)
-    return dynamics.energies(
-        home_frames(robot), robot.base_joints, leg_bodies(robot), payload_body(robot), robot.gravity, path, legs
-    )
-
-
-def drive_jacobian(robot: Robot, path: Poses, point: ArrayLike = (0.0, 0.0, 0.0)) -> Array:
-    """Rates of the m driven coordinates for twists of a platform point, (T, m, 6); see `mobility.drive_jacobian`."""
-    legs, at = rigid_limbs(robot), np.asarray(point, dtype=float)
-    if legs.plain and (legs.state[:, COORDINATES.index("l")] == DRIVEN).all():
-        return jacobian.length_jacobian(robot.base_joints, robot.platform_joints, path.position, path.rotation, at)
-    return rates_of_drives(legs, mechanism.legs_at(legs, path).q, path, at)
-
-
-def _scaled_jacobian(robot: Robot, path: Poses) -> Array:
-    """What the locked legs hold of the platform, (T, m, d) with m at least d, Eqs. (T2.23), (T14.19)."""
-    legs, held = rigid_limbs(robot), rigid_limbs(robot).hub_held
-    if legs.plain and not held.any() and len(legs) == 6:
-        return jacobian.scaled_path(robot.base_joints, robot.platform_joints, path)
-    if held.all():
-        return np.ones((len(path), 1, 1))
-    rows = holding(legs, mechanism.legs_at(legs, path).q, path, legs.platform.mean(axis=0))
-    found = jacobian.scaled(rows, legs.L_c)[..., ~held]
-    short = max(found.shape[2] - found.shape[1], 0)
-    return np.concatenate([found, np.zeros((len(path), short, found.shape[2]))], axis=1)
-
-
-def singularity(robot: Robot, path: Poses) -> jacobian.SingularityPath:
-    """Singular values, condition and determinant along a path; see `jacobian.along_path`."""
-    return jacobian.along_path(_scaled_jacobian(robot, path))
-
-
-def determinants(robot: Robot, path: Poses) -> Array:
-    """Of what six locked legs hold of the six motions of their platform, (T,)."""
-    return np.asarray(np.linalg.det(_scaled_jacobian(robot, path)), dtype=np.float64)
-
-
-def nearest_singularity(robot: Robot, path: Poses) -> jacobian.NearestSingularity:
-    """The pose of a path that is nearest to a singularity; see `jacobian.nearest`."""
-    return jacobian.nearest(_scaled_jacobian(robot, path))
 
 
 def forward_kinematics(robot: Robot, drives: ArrayLike, guess: Poses | None = None) -> Poses:
@@ -340,16 +225,16 @@ def postures(robot: Robot, lengths: ArrayLike) -> forward.Postures:
 
 def strokes(robot: Robot, t: ArrayLike, length: Array) -> list[workspace.Excess]:
     """Legs that leave their stroke on a path of lengths (T, 6) at instants `t` (T,); empty if none does."""
-    return workspace.stroke_excess(t, length, _limits(robot))
+    return workspace.stroke_excess(t, length, stroke_limits(robot))
 
 
-@once
-def _limits(robot: Robot) -> Array:
+@cache_per_robot
+def stroke_limits(robot: Robot) -> Array:
     """Least and largest lengths of the legs (n, 2) [m]."""
     return np.array([(leg.stroke.min, leg.stroke.max) if leg.stroke else (0.0, np.inf) for leg in robot.legs])
 
 
-@once
+@cache_per_robot
 def carriage_limits(robot: Robot) -> Array:
     """Least and largest place of the carriages (n, 2) [m, of a crank rad]; infinite without a limit."""
     travels = [leg.carriage.stroke if leg.carriage else None for leg in robot.legs]
@@ -364,18 +249,11 @@ def carriages(robot: Robot, t: ArrayLike, place: Array) -> list[workspace.Excess
 
 def pull_out(robot: Robot, t: ArrayLike, length: Array) -> list[workspace.Excess]:
     """Pistons that vanish in their cylinder, leave it or pass the universal joint; see `workspace.piston_excess`."""
-    return workspace.piston_excess(t, length, *_pistons(robot))
+    return workspace.piston_excess(t, length, *pistons(robot))
 
 
-def reachable(robot: Robot, path: Poses) -> Mask:
-    """Whether each of T poses keeps legs and carriages within their strokes and pistons in their cylinders, (T,)."""
-    found, ways = reach(robot, path), carriage_limits(robot)
-    within = np.all((found.carriage >= ways[:, 0]) & (found.carriage <= ways[:, 1]), axis=1)
-    return workspace.reachable(found.length, _limits(robot), *_pistons(robot)) & within & ~found.lost
-
-
-@once
-def _pistons(robot: Robot) -> tuple[Array, Array]:
+@cache_per_robot
+def pistons(robot: Robot) -> tuple[Array, Array]:
     """Mouths of the cylinders and lengths of the pistons (n,) [m]; a strut leaves no cylinder."""
     mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
     return mouth, np.array([leg.piston.length if leg.strut is None else np.inf for leg in robot.legs])

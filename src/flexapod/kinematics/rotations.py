@@ -1,12 +1,11 @@
-"""Rotations as matrices, unit quaternions (w x y z, platform to world) and rotation vectors, vectorised.
+"""Rotations as matrices, unit quaternions and rotation vectors, and vectors with time last, in NumPy alone.
 
-NumPy alone: SciPy's class of the same purpose takes a tenth of the time in which a whole simulation starts and ends.
+Quaternions are w x y z, platform to world. SciPy's class of the same purpose takes a tenth of the time in which
+a whole simulation starts and ends.
 
-Vectors of many legs and poses with the component first and time last: whole arrays without a short last axis.
-
-A vector here is a sequence of three arrays of equal shape, mostly (n legs, T poses): NumPy then runs along time. The
-functions of this package take and return arrays with time first; only their inner part is turned round, in blocks
-of poses that stay in the cache.
+A vector with time last is a sequence of three arrays of equal shape, mostly (n legs, T poses): NumPy then runs
+along time. The functions of this package take and return arrays with time first; only their inner part is
+turned round, in blocks of poses that stay in the cache.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ from flexapod.common.arrays import Array
 
 
 def canonical(e: Array) -> Array:
-    """The same rotations by unit quaternions (..., 4) with w >= 0."""
+    """Unit quaternions (..., 4) of the same rotations with w >= 0."""
     return np.copysign(1 / _size(e), e[..., :1]) * e
 
 
@@ -100,7 +99,7 @@ def exponential(turn: Array) -> Array:
     return np.eye(3) + np.sinc(angle / np.pi) * k + half**2 / 2 * (k @ k)
 
 
-def turned(pose: Array, step: Array) -> Array:
+def displace_pose(pose: Array, step: Array) -> Array:
     """Poses (..., 7) moved by steps (..., 6): x + dx, R exp(theta^), Eqs. (T4.3) and (T6.2)."""
     half = 0.5 * _size(step[..., 3:])
     turn = np.concatenate([np.cos(half), 0.5 * np.sinc(half / np.pi) * step[..., 3:]], axis=-1)
@@ -143,6 +142,6 @@ def dot(a: Vector, b: Vector) -> Array:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-def matrix_vector(matrix: Array, vector: Vector) -> tuple[Array, Array, Array]:
+def rotate_vector(matrix: Array, vector: Vector) -> tuple[Array, Array, Array]:
     """Matrix times vector; `matrix` (3, 3, ...) broadcasts against the vector's components."""
     return dot(matrix[0], vector), dot(matrix[1], vector), dot(matrix[2], vector)

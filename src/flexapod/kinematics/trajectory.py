@@ -243,10 +243,10 @@ def sample(home: Poses, motion: Motion, t: ArrayLike) -> Poses:
     InputError
         If an instant is not finite.
     """
-    return poses_from_coordinates(home, coordinates(motion, instants(t)), motion.pivot)
+    return poses_from_coordinates(home, coordinates(motion, check_instants(t)), motion.pivot)
 
 
-def instants(t: ArrayLike) -> Array:
+def check_instants(t: ArrayLike) -> Array:
     """Instants (T,) [s], refused where one is not finite."""
     t = np.atleast_1d(np.asarray(t, dtype=float))
     if not np.all(np.isfinite(t)):

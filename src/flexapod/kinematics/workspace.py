@@ -1,4 +1,4 @@
-"""What the legs can reach: strokes and pistons along a path, and maps of poses, Eqs. (T2.37)-(T2.39)."""
+"""Reach of the legs: strokes and pistons along a path, and maps of poses, Eqs. (T2.37)-(T2.39)."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ def piston_excess(t: ArrayLike, length: Array, mouth: Array, piston_length: Arra
 
 
 def reachable(length: Array, limits: Array, mouth: Array, piston_length: Array) -> np.ndarray:
-    """Whether the lengths keep strokes and pistons, bool of shape (...), Eqs. (T2.37)-(T2.38).
+    """Test whether lengths are within strokes and pistons, bool of shape (...), Eqs. (T2.37)-(T2.38).
 
     Parameters
     ----------
@@ -190,7 +190,7 @@ def reachable_map(
     z: ArrayLike,
     rotation: ArrayLike | None = None,
 ) -> WorkspaceMap:
-    """Which positions of the platform frame the strokes allow at one orientation, Eq. (T2.39).
+    """Map of the positions of the platform frame that the strokes allow at one orientation, Eq. (T2.39).
 
     Parameters
     ----------

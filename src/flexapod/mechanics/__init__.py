@@ -1,1 +1,1 @@
-"""A leg as energies, and as C: symbolic, shapes, elements, leg."""
+"""Equations of a leg from energies, compiled to C: symbolic, shapes, elements, leg."""

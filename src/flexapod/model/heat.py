@@ -1,4 +1,4 @@
-"""How warm the parts of a robot are."""
+"""Temperatures of the parts of a robot."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexapod.common.errors import InputError
 from flexapod.common.tables.base import FileKey, Key, Quantity, Series, array_of
 from flexapod.common.tables.named_files import Content, columns_of_table
 from flexapod.common.tables.table import Place, Table
-from flexapod.model.leg.geometry import PerLeg, check_legs, one_for_all, read_each
+from flexapod.model.leg.geometry import OfLegs, PerLeg, check_legs
 from flexapod.model.motion import check_times
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ class Expansion(Table):
     screw: Annotated[float | None, Quantity("expansion", why="of screws", usual="of leg.drive")] = None
 
 
-class Gradient(Table):
+class Gradient(OfLegs):
     """Temperature differences across parts [K]: of `piston` (or strut), for all legs or for each."""
 
     piston: Annotated[
@@ -48,17 +48,8 @@ class Gradient(Table):
         ),
     ] = None
 
-    @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
-        """A number for all legs, or for each."""
-        return {"piston": read_each(section, "piston", "temperature difference")}
 
-    def told(self) -> dict[str, object]:
-        """All that it has to say in a file: what is the same for all legs as one number."""
-        return {name: one_for_all(value) for name, value in super().told().items()}
-
-
-class Heat(Table):
+class Heat(OfLegs):
     """Temperatures [degC]: those at which lengths are as drawn, `reference`, and of parts, where they differ.
 
     `base`, `platform`: the plates between the joints; `piston` (or strut), `cylinder`, `screw`: for all legs or for
@@ -113,18 +104,17 @@ class Heat(Table):
     table: Annotated[_Rows | None, Quantity("temperature")] = None
 
     @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
-        """Temperatures for all legs or for each, tables in it, and the table over time."""
+    def fields_from_section(cls, section: Section) -> Mapping[str, object]:
+        """Tables in it, and the table over time."""
         expansion, gradient = section.section("expansion"), section.section("gradient")
-        return {
-            **{name: read_each(section, name, "temperature") for name in LEG_PARTS},
+        tables = {
             "expansion": expansion and expansion.read(Expansion),
             "gradient": gradient and gradient.read(Gradient),
-            **(_over_time(section, section.leg[1]) if "file" in section else {}),
         }
+        return tables | (_over_time(section, section.leg[1]) if "file" in section else {})
 
-    def tabled(self, place: Place) -> Content:
-        """Its temperatures over time."""
+    def file_content(self, place: Place) -> Content:
+        """Temperatures over time."""
         if self.table is None:
             return {}
         return columns_of_table(dict.fromkeys(self.columns, "temperature"), self.time, self.table)
@@ -149,11 +139,11 @@ class Heat(Table):
             check_legs(self.gradient.piston, "heat.gradient.piston", count)
 
     def warms(self, part: str) -> bool:
-        """Whether a part has a temperature of its own."""
+        """Tell whether a part has a temperature of its own."""
         return getattr(self, part) is not None or any(name.partition(" ")[0] == part for name in self.columns)
 
     def temperatures(self, part: str, count: int) -> Array:
-        """Of a part of each of `count` legs, at each instant of the table or at the only one, (T or 1, count)."""
+        """Temperatures of a part of `count` legs, at each instant of the table or at the only one, (T or 1, count)."""
         given = getattr(self, part)
         constant = np.broadcast_to(self.reference if given is None else given, count)
         if self.table is None:
@@ -164,10 +154,6 @@ class Heat(Table):
             if what == part:
                 found[:, slice(None) if not leg else int(leg) - 1] = values[:, None] if not leg else values
         return found
-
-    def told(self) -> dict[str, object]:
-        """All that it has to say in a file: what is the same for all legs as one number."""
-        return {name: one_for_all(value) for name, value in super().told().items()}
 
 
 def _over_time(section: Section, count: int) -> dict[str, object]:

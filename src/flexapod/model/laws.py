@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from flexapod.common.tables.base import FileKey, Key, Quantity, Series, Series6, Vec6
-from flexapod.common.tables.csv_tables import WRENCH, beside
+from flexapod.common.tables.csv_tables import WRENCH, stack_columns
 from flexapod.common.tables.named_files import Content, columns_of_table
 from flexapod.common.tables.table import Place, Table
 from flexapod.model.motion import Profile, check_times
@@ -36,7 +36,7 @@ class RateLaw(Table):
 
 
 class ProfileLaw(Table):
-    """From 0 to `amplitude` [rad, m, N m or N] in `duration` [s], then constant."""
+    """Way from 0 to `amplitude` [rad, m, N m or N] in `duration` [s], then constant."""
 
     law: Annotated[Profile, Key("law over time")]
     amplitude: Annotated[float, Quantity(*_AMPLITUDE)]
@@ -44,7 +44,7 @@ class ProfileLaw(Table):
 
 
 class SpinUpLaw(Table):
-    """From rest to `rate` [rad/s or m/s] in `duration` [s] with a smooth acceleration, then constant rate."""
+    """Start from rest to `rate` [rad/s or m/s] in `duration` [s] with a smooth acceleration, then constant rate."""
 
     law: Annotated[Literal["spin-up"], Key("law over time", usual="rate")] = "spin-up"
     rate: Annotated[float, Quantity("angular rate", "velocity", why="rate")]
@@ -63,8 +63,8 @@ class CsvLaw(Table):
     time: Annotated[Series, Quantity("time", why="instant of the step")]
     value: Annotated[Series, Quantity(*_AMPLITUDE)]
 
-    def tabled(self, place: Place) -> Content:
-        """Its values; what they measure the key says."""
+    def file_content(self, place: Place) -> Content:
+        """Values; what they measure the key says."""
         return columns_of_table({"value": _MEASURED[place.key.rpartition(".")[2]]}, self.time, self.value[:, None])
 
     @model_validator(mode="after")
@@ -138,13 +138,13 @@ class CsvWrench(Table):
     wrench: Annotated[Series6, Quantity("force", "torque")]
 
     @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
-        """Its table."""
+    def fields_from_section(cls, section: Section) -> Mapping[str, object]:
+        """Columns of its table."""
         table = section.table(WRENCH, jumps=True)
-        return {"time": table["time"], "wrench": beside(table, WRENCH)}
+        return {"time": table["time"], "wrench": stack_columns(table, WRENCH)}
 
-    def tabled(self, place: Place) -> Content:
-        """Its forces and moments."""
+    def file_content(self, place: Place) -> Content:
+        """Forces and moments."""
         return columns_of_table(WRENCH, self.time, self.wrench)
 
     @model_validator(mode="after")
@@ -163,10 +163,10 @@ class Load(Table):
 
     @classmethod
     def from_table(cls, section: Section, among: tuple[str, ...] = ()) -> Load:
-        """What a table says: a wrench, six numbers or a law."""
-        section.only("wrench")
-        section.need("wrench")
-        return section.build(cls, wrench=read_wrench(section)).keep(section.written)
+        """Load of a table: a wrench, six numbers or a law."""
+        section.check_keys("wrench")
+        section.require_keys("wrench")
+        return section.build(cls, wrench=read_wrench(section)).attach_source(section.source_table)
 
 
 def read_wrench(section: Section) -> Wrench:

@@ -13,7 +13,7 @@ from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.common.quantities import number, text
 from flexapod.common.tables.base import FileKey, Key, Quantity, Series, Series6, Vec3
-from flexapod.common.tables.csv_tables import POSE, beside, wrong_instant
+from flexapod.common.tables.csv_tables import POSE, stack_columns, wrong_instant
 from flexapod.common.tables.named_files import Content, columns_of_table
 from flexapod.common.tables.table import Place, Table
 from flexapod.common.units import DIMENSIONS, quantities
@@ -49,7 +49,7 @@ Hold = Annotated[float, Quantity("time", least=0, why="rest after it")]
 
 
 class AxisMotion(Table):
-    """From home to `amplitude` [m or rad] along or about one world axis, in `duration` [s], then `hold` [s].
+    """Motion from home to `amplitude` [m or rad] along or about one world axis, in `duration` [s], then `hold` [s].
 
     Turns are about `pivot` (3,) [m], a point given in the platform frame.
     """
@@ -82,11 +82,6 @@ class AxisMotion(Table):
         if "amplitude" not in given or not isinstance(axis, str):
             return given
         return {**given, "amplitude": _poses_in_si({axis: given["amplitude"]}, "amplitude")[axis]}
-
-    @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
-        """Its axes that are commanded."""
-        return {"independent": section.words("independent", AXES)}
 
     def _shown(self) -> dict[str, str]:
         return _in_words(self.target, self.duration, self.hold, self.profile)
@@ -127,13 +122,13 @@ class CombinedMotion(Table):
     independent: Independent = None
 
     @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
-        """Amplitudes by axis, and its axes that are commanded."""
-        inner, found = section.section("amplitudes"), {}
-        if inner is not None:
-            inner.only(*AXES)
-            found = {"amplitudes": {axis: inner.number(axis, POSE[axis]) for axis in AXES if axis in inner}}
-        return {**found, "independent": section.words("independent", AXES)}
+    def fields_from_section(cls, section: Section) -> Mapping[str, object]:
+        """Amplitudes by axis."""
+        inner = section.section("amplitudes")
+        if inner is None:
+            return {}
+        inner.check_keys(*AXES)
+        return {"amplitudes": {axis: inner.number(axis, POSE[axis]) for axis in AXES if axis in inner}}
 
     def _shown(self) -> dict[str, str]:
         return _in_words(self.target, self.duration, self.hold, self.profile)
@@ -191,7 +186,7 @@ class Waypoint(Table):
 
 
 class WaypointMotion(Table):
-    """From point to point, at rest at each; from home at t = 0 if the first point is later."""
+    """Motion from point to point, at rest at each; from home at t = 0 if the first point is later."""
 
     placed: ClassVar[tuple[str, ...]] = ("pivot",)
     type: Annotated[Literal["waypoints"], Key("kind of motion: an axis, several, points, a table")] = "waypoints"
@@ -202,14 +197,13 @@ class WaypointMotion(Table):
     independent: Independent = None
 
     @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
-        """Its points, and its axes that are commanded."""
+    def fields_from_section(cls, section: Section) -> Mapping[str, object]:
+        """Points of the motion."""
         value = section.data.get("points")
         if value is not None and (not isinstance(value, list) or not value):
             raise section.error("is not a list of points", "points", allowed="[{ time = .., roll = .. }, ...]")
         points = (section.child(item, f"points[{i}]") for i, item in enumerate(value or (), start=1))
-        found = {} if value is None else {"points": tuple(point.read(Waypoint) for point in points)}
-        return {**found, "independent": section.words("independent", AXES)}
+        return {} if value is None else {"points": tuple(point.read(Waypoint) for point in points)}
 
     def _shown(self) -> dict[str, str]:
         return {"to": f"{len(self.points)} points", "in": f"{number(self.end_time, 4)} s", "profile": self.profile}
@@ -268,14 +262,13 @@ class CsvMotion(Table):
     independent: Independent = None
 
     @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
-        """Its table, and its axes that are commanded."""
+    def fields_from_section(cls, section: Section) -> Mapping[str, object]:
+        """Columns of its table."""
         table = section.table(POSE)
-        poses = {"time": table["time"], "pose": beside(table, AXES)}
-        return {**poses, "independent": section.words("independent", AXES)}
+        return {"time": table["time"], "pose": stack_columns(table, AXES)}
 
-    def tabled(self, place: Place) -> Content:
-        """Its poses."""
+    def file_content(self, place: Place) -> Content:
+        """Poses over time."""
         return columns_of_table(POSE, self.time, self.pose)
 
     def _shown(self) -> dict[str, str]:
@@ -332,7 +325,7 @@ def check_times(time: Array, rows: int, *, key: str = "time", jumps: bool = Fals
 
 
 def _in_words(target: Array, duration: float, hold: float, profile: str) -> dict[str, str]:
-    """What a motion from home to `target` (6,) [m, rad] shows."""
+    """Words that a motion from home to `target` (6,) [m, rad] shows."""
     units = ("m",) * 3 + ("rad",) * 3
     parts = [f"{axis} {text(v, unit, 4)}" for axis, v, unit in zip(AXES, target, units, strict=True) if v]
     rest = {"hold": f"{number(hold, 4)} s"} if hold else {}

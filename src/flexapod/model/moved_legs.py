@@ -37,27 +37,33 @@ def _moved(leg: Leg, base: Array, platform: Array, normal: Array) -> Leg:
     for name, place in (("base_joint", base), ("carriage", base), ("platform_joint", platform)):
         part: Joint | Carriage | None = getattr(leg, name)
         axis = None if part is None else _meant(part, place, normal)
-        if part is not None and part.written is not None and axis is not None:
+        if part is not None and part.source_table is not None and axis is not None:
             arm = _arm(part, axis, place, normal) if isinstance(part, Carriage) else {}
-            found[name] = part.replace(axis=axis, **arm).keep(part.written)  # the words are the same
+            found[name] = part.replace(axis=axis, **arm).attach_source(part.source_table)  # the words are the same
     return leg.replace(**found) if found else leg
 
 
 def _meant(part: Joint | Carriage, place: Array, normal: Array) -> Array | None:
     """The direction at a place of an axis that was given by a word, and is still that; None of another one."""
     key = part.kind if isinstance(part, Carriage) else "axis"
-    if part.written is None or "axis" in part.written.changed or not isinstance(part.written.data.get(key), str):
+    if (
+        part.source_table is None
+        or "axis" in part.source_table.changed
+        or not isinstance(part.source_table.data.get(key), str)
+    ):
         return None
-    found = axis_of(part.written.data[key], place, normal)
+    found = axis_of(part.source_table.data[key], place, normal)
     if found is None:
-        raise InputError(NO_PLACE, key=f"leg.{key}", value=part.written.data[key], allowed="a vector, or vertical")
+        raise InputError(NO_PLACE, key=f"leg.{key}", value=part.source_table.data[key], allowed="a vector, or vertical")
     return found
 
 
 def _arm(crank: Carriage, axis: Array, base: Array, normal: Array) -> dict[str, Array]:
     """The arm of a crank that was given by its radius, and is still that."""
-    if crank.arm is None or crank.written is None or "radius" not in crank.written.data:
+    if crank.arm is None or crank.source_table is None or "radius" not in crank.source_table.data:
         return {}
     return (
-        {} if "arm" in crank.written.changed else {"arm": arm_of(float(np.linalg.norm(crank.arm)), axis, base, normal)}
+        {}
+        if "arm" in crank.source_table.changed
+        else {"arm": arm_of(float(np.linalg.norm(crank.arm)), axis, base, normal)}
     )

@@ -1,1 +1,1 @@
-"""What people read and send on: text, figures, report, scene, exchange."""
+"""Output for people and other programs: text, figures, report, scene, exchange."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from flexapod.common.arrays import Array
-from flexapod.kinematics.rotations import turned
+from flexapod.kinematics.rotations import displace_pose
 from flexapod.solve.kernel import evaluate
 from flexapod.solve.system import Index, State, System
 
@@ -29,19 +29,19 @@ class RestStates:
         return len(self.q)
 
     def __getitem__(self, chosen: Index | slice) -> RestStates:
-        """Some of the states."""
+        """Select some of the states."""
         return RestStates(**{f.name: getattr(self, f.name)[chosen] for f in fields(self)})
 
-    def with_(self, chosen: Index, part: RestStates) -> RestStates:
+    def replace_states(self, chosen: Index, part: RestStates) -> RestStates:
         """Return the states with some of them replaced."""
         new = {f.name: getattr(self, f.name).copy() for f in fields(self)}
         for name, values in new.items():
             values[chosen] = getattr(part, name)
         return RestStates(**new)
 
-    def moved(self, dq: Array, step: Array) -> RestStates:
+    def displace(self, dq: Array, step: Array) -> RestStates:
         """States displaced by dq (P, legs, n) and payload steps (P, 6): q + dq, x + dx, R exp(theta^), Eq. (T4.3)."""
-        return replace(self, q=self.q + dq, pose=turned(self.pose, step) if step.size else self.pose)
+        return replace(self, q=self.q + dq, pose=displace_pose(self.pose, step) if step.size else self.pose)
 
     def state(self, k: int) -> State:
         """One of them as the state of a robot."""
@@ -51,7 +51,7 @@ class RestStates:
         )
 
     @classmethod
-    def of(cls, x: State) -> RestStates:
+    def from_state(cls, x: State) -> RestStates:
         """One state brought to rest."""
         return cls(q=x.q[None], pose=x.pose[None], lam=x.lam[None], drive=x.drive[None])
 
@@ -76,7 +76,7 @@ class RestMatrices:
     X: Array | None
 
     def __getitem__(self, chosen: Index) -> RestMatrices:
-        """Those of some of the states."""
+        """Select some of the states."""
         parts = {f.name: getattr(self, f.name)[chosen] for f in fields(self) if f.name != "X"}
         return RestMatrices(**parts, X=None if self.X is None else self.X[chosen])
 
@@ -104,7 +104,7 @@ class Rates:
     u_dot: Array
 
     def __getitem__(self, chosen: Index | slice) -> Rates:
-        """Those of some of the states."""
+        """Select some of the states."""
         return Rates(**{f.name: getattr(self, f.name)[chosen] for f in fields(self)})
 
 
@@ -124,7 +124,7 @@ def residual(
     around = _around(system, pose, wrench)
     arguments, drive = [x.q, at.v, at.v_dot, x.lam, springs, system.leg_p, *around], (count // 2,)
     net = np.zeros((legs * P, 6))
-    if shapes.posed:
+    if shapes.reads_pose:
         outputs = [(system.n,), (system.rows,), (6,), (2,), drive]
         r, g, net, *_ = evaluate(system.kernel, "leg_residual", legs * P, arguments, outputs)
     else:
@@ -133,9 +133,9 @@ def residual(
             "leg_residual",
             legs * P,
             arguments,
-            [(system.n,), (3,), (2 + shapes.loaded,), drive],
+            [(system.n,), (3,), (2 + shapes.has_tip_load,), drive],
         )
-    if shapes.rows and not shapes.posed:
+    if shapes.rows and not shapes.reads_pose:
         points, net = evaluate(system.kernel, "joint_residual", legs * P, [pose, x.lam, system.joint_p], [(3,), (6,)])
         g = g - points
     payload = np.zeros((P, 0))
@@ -151,16 +151,16 @@ def residual(
 
 
 def _of_plate(system: System, values: Array) -> Array:
-    """Of values (P or 1, legs, n) those of the plate below the payload, (P or 1, 6)."""
+    """Values of the plate below the payload (P or 1, 6), out of those of legs (P or 1, legs, n)."""
     return values[:, 0, system.plate] if values.ndim == 3 else values[None, system.plate]
 
 
 def _around(system: System, pose: Array, wrench: Array) -> list[Array]:
-    """What the functions of each leg read from outside it: the payload's pose, or a load on a tip without payload."""
+    """External arguments of each leg's functions: the payload's pose, or a load on a tip without payload."""
     shapes = system.kernel.shapes
-    if shapes.loaded:
+    if shapes.has_tip_load:
         return [np.repeat(np.atleast_2d(wrench), system.legs, axis=0)]
-    return [pose] if shapes.posed else []
+    return [pose] if shapes.reads_pose else []
 
 
 def port_forces(system: System, x: RestStates, command: Array, force: Array) -> Array:
@@ -179,17 +179,17 @@ def matrices_at_rest(system: System, x: RestStates, wrench: Array) -> RestMatric
     pose = x.pose.repeat(legs, axis=0)
     arguments, outputs = [x.q, x.lam, system.leg_p, *_around(system, pose, wrench)], [(n, n)] * 3 + [(rows, n)]
     moving, H, X = np.zeros((legs * P, rows, 0)), np.zeros((legs * P, 0, 0)), None
-    if system.kernel.shapes.posed:
+    if system.kernel.shapes.reads_pose:
         outputs += [(rows, 6), (6, 6), (n, 6)]
         M, D, K, J, moving, H, X = evaluate(system.kernel, "leg_matrices", legs * P, arguments, outputs)
         X = X.reshape(P, legs, n, 6)
     else:
         M, D, K, J = evaluate(system.kernel, "leg_matrices", legs * P, arguments, outputs)
-    if system.kernel.shapes.rows and not system.kernel.shapes.posed:
+    if system.kernel.shapes.rows and not system.kernel.shapes.reads_pose:
         joints = [pose, x.lam, system.joint_p]
         moving, H = evaluate(system.kernel, "joint_matrices", legs * P, joints, [(3, 6), (6, 6)])
     hub, plate = 6 if system.hub else 0, system.kernel.shapes.plate
-    border = hub + system.shared.size
+    border = hub + system.shared_coordinates.size
     payload_M, payload_K = np.zeros((P, border, border)), np.zeros((P, border, border))
     if system.hub:
         arguments = [x.pose, wrench, system.payload_p, *([_of_plate(system, x.q)] if plate else [])]
@@ -205,9 +205,9 @@ def matrices_at_rest(system: System, x: RestStates, wrench: Array) -> RestMatric
 def tips(system: System, q: Array) -> Array:
     """Tips of legs that carry no payload, in the world, of coordinates (P, legs, n): (P, legs, 3) [m]."""
     n, none = np.zeros(system.n), np.zeros(0)
-    outside = [np.zeros(system.load_size)] if system.kernel.shapes.loaded else []
+    outside = [np.zeros(system.load_size)] if system.kernel.shapes.has_tip_load else []
     springs = np.zeros(system.kernel.shapes.commands)
-    count, outputs = q.shape[0] * system.legs, [(system.n,), (3,), (2 + system.kernel.shapes.loaded,)]
+    count, outputs = q.shape[0] * system.legs, [(system.n,), (3,), (2 + system.kernel.shapes.has_tip_load,)]
     inputs = [q, n, n, none, springs, system.leg_p, *outside]
     found = evaluate(system.kernel, "leg_residual", count, inputs, [*outputs, (springs.size // 2,)])
     return found[1].reshape(*q.shape[:-1], 3)

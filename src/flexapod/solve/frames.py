@@ -1,4 +1,4 @@
-"""Where base and platform plate stand in a state of the robot, Eqs. (T24.1), (T24.5)."""
+"""Poses of base and platform plate in a state of the robot, Eqs. (T24.1), (T24.5)."""
 
 from __future__ import annotations
 
@@ -21,29 +21,29 @@ def shared_by_legs(system: System, q: Array, name: str) -> Array:
 
 
 def floor(system: System, robot: Robot, q: Array) -> kinematics.Placed:
-    """Where a base that is moved stands, without its mount."""
+    """Pose of a base that is moved, without its mount."""
     at = np.zeros(3) if robot.base_motion is None else robot.base_motion.at
     return kinematics.placed(shared_by_legs(system, q, "g"), at)
 
 
 def base_on_mount(system: System, robot: Robot, q: Array) -> kinematics.Placed:
-    """Where the base plate stands on its mount, as seen from the floor."""
+    """Pose of the base plate on its mount, relative to the floor."""
     at = np.zeros(3) if robot.base_mount is None else robot.base_mount.at
     return kinematics.placed(shared_by_legs(system, q, "f"), at)
 
 
-def of_platform(robot: Robot, pose: Array) -> tuple[Array, Array]:
+def platform_frame(robot: Robot, pose: Array) -> tuple[Array, Array]:
     """Origin (..., 3) and axes (..., 3, 3) of the platform frame of payload poses (..., 7)."""
     R = matrix(pose[..., 3:])
     return pose[..., :3] - R @ robot.com, R
 
 
-def on_plates(system: System, robot: Robot, q: Array, pose: Array) -> list[tuple[str, Array, Array]]:
+def plate_frames(system: System, robot: Robot, q: Array, pose: Array) -> list[tuple[str, Array, Array]]:
     """Platform frame, origin (..., 3) and axes (..., 3, 3), as ever more of the moving frames are taken away.
 
     By cause: seen from the floor, where it is below the mount of the platform, as seen from the base plate.
     """
-    place, R = floor(system, robot, q).seen(*of_platform(robot, pose))
+    place, R = floor(system, robot, q).seen(*platform_frame(robot, pose))
     found = [("", place, R)]
     if robot.platform_mount is not None:
         below = kinematics.placed(shared_by_legs(system, q, "m"), robot.platform_mount.at)
@@ -55,15 +55,15 @@ def on_plates(system: System, robot: Robot, q: Array, pose: Array) -> list[tuple
     return found
 
 
-def as_drawn(system: System, robot: Robot, q: Array, pose: Array) -> tuple[Array, Array]:
+def rigid_pose(system: System, robot: Robot, q: Array, pose: Array) -> tuple[Array, Array]:
     """Centre of mass (..., 3) and attitude (..., 3, 3) of a payload on rigid frames at rest between the same joints."""
     if not _moves(system):
         return pose[..., :3], matrix(pose[..., 3:])
-    _, place, R = on_plates(system, robot, q, pose)[-1]
+    _, place, R = plate_frames(system, robot, q, pose)[-1]
     return place + R @ robot.com, R
 
 
-def in_world(system: System, robot: Robot, q: Array, vectors: Array) -> Array:
+def to_world(system: System, robot: Robot, q: Array, vectors: Array) -> Array:
     """Vectors (..., legs, 3) of the base plate in world axes."""
     if not _moves(system):
         return vectors

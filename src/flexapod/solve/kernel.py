@@ -92,7 +92,7 @@ def interpreted_kernel(shapes: Shapes) -> Kernel:
 
 
 class Equations(ctypes.Structure):
-    """What the compiled time loops know of a kind of robot, as in ``native/system.h``."""
+    """Description of a kind of robot for the compiled time loops, as in ``native/system.h``."""
 
     _fields_ = [
         *[(name, ctypes.c_long) for name in ("n", "rows", "leg_p", "joint", "command", "common", "plate", "posed")],
@@ -113,9 +113,13 @@ def loaded_kernel(
     """Kernel of functions that `compiled_library` makes; ``leg_p``, ``joint``: how many numbers legs, joints read."""
     library, signatures = compiled_library(key, functions, command)
     n, pivots, leg_p = shapes.size, shapes.pivots, leg_p or sum(size for _, size in leg_parameters(shapes))
-    order = [*pivots, *(i for i in range(n) if i not in (*pivots, *shapes.shared)), *shapes.shared]  # as in system.h
+    order = [
+        *pivots,
+        *(i for i in range(n) if i not in (*pivots, *shapes.shared_coordinates)),
+        *shapes.shared_coordinates,
+    ]  # as in system.h
     values = {"n": n, "rows": shapes.rows, "leg_p": leg_p, "joint": joint, "command": shapes.commands}
-    values |= {"common": len(shapes.shared), "plate": shapes.plate, "posed": int(shapes.posed)}
+    values |= {"common": len(shapes.shared_coordinates), "plate": shapes.plate, "posed": int(shapes.reads_pose)}
     values |= {"bristles": shapes.bristles, "floor": shapes.index("g") if shapes.has("g") else n}
     lists = {"order": order, "place": sorted(range(n), key=order.__getitem__)}
     kinds = {name: "double" if name.startswith("payload") else "lanes" for name in FOR_LOOPS if name in signatures}
@@ -138,9 +142,9 @@ def generated_text(shapes: Shapes) -> dict[str, str]:
 
 def text_of_one_unit(shapes: Shapes) -> str:
     """C text of all functions that time loops call, for one unit with these."""
-    from flexapod.mechanics.symbolic.c_source import of_one_unit
+    from flexapod.mechanics.symbolic.c_source import unit_source
 
-    return "\n".join(of_one_unit(function) for function in _functions(shapes) if function.name in FOR_LOOPS)
+    return "\n".join(unit_source(function) for function in _functions(shapes) if function.name in FOR_LOOPS)
 
 
 def _functions(shapes: Shapes) -> "list[NamedFunction]":

@@ -4,7 +4,7 @@ import numpy as np
 
 from flexapod.common.arrays import Array
 from flexapod.kinematics.leg_geometry import COORDINATES, FREE, Limbs
-from flexapod.mechanics.elements.element import Standing
+from flexapod.mechanics.elements.element import LegContext
 from flexapod.mechanics.elements.mount import plate_mass
 from flexapod.mechanics.elements.springs import viscous
 from flexapod.mechanics.elements.trial import refuse_numbers
@@ -65,8 +65,8 @@ def leg_parameters(robot: Robot, legs: Limbs, shapes: Shapes, per_loss: float = 
     return np.array([_pack(layout_of_legs, values) for values in rows])
 
 
-def standings(robot: Robot, legs: Limbs, per_loss: float, *, at_rest: bool) -> list[Standing]:
-    """How the legs stand, for their elements."""
+def standings(robot: Robot, legs: Limbs, per_loss: float, *, at_rest: bool) -> list[LegContext]:
+    """Circumstances of each leg, for the parameters of its elements."""
     found = []
     for i in range(len(legs)):
         beta = legs.home[i, COORDINATES.index("beta")]
@@ -76,7 +76,7 @@ def standings(robot: Robot, legs: Limbs, per_loss: float, *, at_rest: bool) -> l
             "platform": (legs.platform_frames[i].T, legs.leg_frames[i].T),
         }
         length = float(legs.home[i, COORDINATES.index("l")])
-        found.append(Standing(length, per_loss, at_rest, robot, bool(legs.pose_closure[i]), axes))
+        found.append(LegContext(length, per_loss, at_rest, robot, bool(legs.pose_closure[i]), axes))
     return found
 
 
@@ -120,7 +120,7 @@ def axial_inertia(leg: Leg) -> float:
 
 
 def _place(robot: Robot, legs: Limbs, i: int) -> dict[str, object]:
-    """Where a leg is at home; frames column by column."""
+    """Parameters of a leg's place at home; frames column by column."""
     return {
         "gravity": robot.gravity,
         "base": legs.base[i],
@@ -159,7 +159,7 @@ def _joints(leg: Leg, legs: Limbs, i: int, per_loss: float) -> dict[str, object]
     }
 
 
-def _of_elements(leg: Leg, shapes: Shapes, standing: Standing) -> dict[str, object]:
+def _of_elements(leg: Leg, shapes: Shapes, standing: LegContext) -> dict[str, object]:
     found: dict[str, object] = {}
     known = dict(layout.leg_parameters(shapes))
     for element in shapes.elements:

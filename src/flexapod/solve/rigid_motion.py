@@ -9,8 +9,8 @@ import numpy as np
 from flexapod import kinematics
 from flexapod.common.arrays import Array
 from flexapod.kinematics.leg_geometry import COORDINATES, HELD, Limbs
-from flexapod.kinematics.mechanism import leg_state
-from flexapod.kinematics.robot import once
+from flexapod.kinematics.mechanism import leg_state, legs_at
+from flexapod.kinematics.robot import cache_per_robot
 from flexapod.kinematics.rotations import cross, quaternion
 from flexapod.kinematics.screws import screws
 from flexapod.mechanics.leg.layout import Shapes
@@ -22,20 +22,15 @@ GAMMA = slice(COORDINATES.index("gamma1"), None)
 
 
 def leg_coordinates(shapes: Shapes) -> tuple[Index, Index]:
-    """Which of `kinematics.limbs.COORDINATES` a leg of these shapes has, and where in q."""
+    """Indices of the `leg_geometry.COORDINATES` that a leg of these shapes has, and their positions in q."""
     there = [k for k, name in enumerate(COORDINATES) if shapes.has(name)]
     return np.array(there), np.array([shapes.index(COORDINATES[k]) for k in there])
 
 
-def rigid_motion(
-    system: System, robot: Robot, path: kinematics.Poses, legs: kinematics.LegState | None = None
-) -> tuple[RestStates, Rates]:
-    """Configurations of the undeformed robot at the instants of a path, without forces, and their rates.
-
-    `legs`: at these poses, of a robot that is not as drawn.
-    """
-    legs = kinematics.inverse_kinematics(robot, path) if legs is None else legs
-    q, v, v_dot = _undeformed(system, robot, path, legs, 3)
+def rigid_motion(system: System, at: kinematics.RigidPoses) -> tuple[RestStates, Rates]:
+    """Configurations of the undeformed robot at the instants of a path, without forces, and their rates."""
+    q, v, v_dot = _undeformed(system, at, 3)
+    robot, path = at.robot, at.poses
     R, w, w_dot = path.rotation, path.omega, path.alpha
     arm, inverse = R @ robot.com, R.swapaxes(1, 2)
     turning = _cross(w, arm)
@@ -44,19 +39,18 @@ def rigid_motion(
         np.concatenate([linear, (inverse @ angular[..., None])[..., 0]], axis=1)
         for linear, angular in ((velocity, w), (acceleration, w_dot))
     )
-    return _without_forces(system, robot, path, q), Rates(v=v, v_dot=v_dot, u=u, u_dot=u_dot)
+    return _without_forces(system, at, q), Rates(v=v, v_dot=v_dot, u=u, u_dot=u_dot)
 
 
-def rigid_rest(system: System, robot: Robot, path: kinematics.Poses) -> RestStates:
-    """States of the undeformed robot at the poses of a path, without forces."""
-    q = _undeformed(system, robot, path, kinematics.inverse_kinematics(robot, path), 1)[0]
-    return _without_forces(system, robot, path, q)
+def rigid_rest(system: System, at: kinematics.RigidPoses) -> RestStates:
+    """States of the undeformed robot at poses, without forces."""
+    return _without_forces(system, at, _undeformed(system, at, 1)[0])
 
 
-def rigid_rates(system: System, robot: Robot, path: kinematics.Poses) -> Array:
+def rigid_rates(system: System, at: kinematics.RigidPoses) -> Array:
     """Rates of the undeformed robot in its flat coordinates at the instants of a path, (T, size)."""
-    v = _undeformed(system, robot, path, kinematics.inverse_kinematics(robot, path), 2)[1]
-    velocity = path.velocity + _cross(path.omega, path.rotation @ robot.com)
+    v, path = _undeformed(system, at, 2)[1], at.poses
+    velocity = path.velocity + _cross(path.omega, path.rotation @ at.robot.com)
     turn = (path.rotation.swapaxes(1, 2) @ path.omega[..., None])[..., 0]
     return np.concatenate([v.reshape(len(path), -1), velocity, turn], axis=1)
 
@@ -66,30 +60,31 @@ def _cross(a: Array, b: Array) -> Array:
     return np.stack(cross(a.T, b.T), axis=-1)
 
 
-def _without_forces(system: System, robot: Robot, path: kinematics.Poses, q: Array) -> RestStates:
-    T, R = len(path), path.rotation
+def _without_forces(system: System, at: kinematics.RigidPoses, q: Array) -> RestStates:
+    T, R = len(at.poses), at.poses.rotation
     return RestStates(
         q=q,
-        pose=np.concatenate([path.position + R @ robot.com, quaternion(R)], axis=1),
+        pose=np.concatenate([at.poses.position + R @ at.robot.com, quaternion(R)], axis=1),
         lam=np.zeros((T, system.legs, system.rows)),
         drive=np.zeros((T, system.legs, system.ports.size)),
     )
 
 
-def rigid_state(system: System, robot: Robot, path: kinematics.Poses) -> State:
+def rigid_state(system: System, at: kinematics.RigidPoses) -> State:
     """State of the undeformed robot on the commanded path (one sample), with its rates and accelerations; no forces."""
-    return _with_rates(rigid_motion(system, robot, path))
+    return _with_rates(rigid_motion(system, at))
 
 
-def built_state(system: System, robot: Robot, path: kinematics.Poses) -> State:
-    """State of the undeformed robot as built, its drives told to follow the rigid path (one sample), with rates.
+def built_state(system: System, at: kinematics.RigidPoses) -> State:
+    """State of the undeformed robot as built, its drives commanded along the rigid path (one sample), with rates.
 
     The platform's rates are those of the path; a start makes them fit.
     """
-    at = kinematics.built_poses(robot, path)
-    at = replace(path, position=at.position, rotation=at.rotation)
-    legs = leg_state(kinematics.built_limbs(robot, kinematics.rigid_limbs(robot)), at)
-    return _with_rates(rigid_motion(system, robot, at, legs))
+    robot, found = at.robot, kinematics.built_poses(at.robot, at.poses)
+    path = replace(at.poses, position=found.position, rotation=found.rotation)
+    built = kinematics.built_limbs(robot, kinematics.rigid_limbs(robot))
+    legs = leg_state(built, path, legs_at(built, path))
+    return _with_rates(rigid_motion(system, kinematics.RigidPoses(robot, path, legs)))
 
 
 def _with_rates(motion: tuple[RestStates, Rates]) -> State:
@@ -98,11 +93,12 @@ def _with_rates(motion: tuple[RestStates, Rates]) -> State:
     return replace(states.state(0), v=v, v_dot=v_dot)
 
 
-def _undeformed(system: System, robot: Robot, path: kinematics.Poses, found: kinematics.LegState, orders: int) -> Array:
-    """Coordinates of the undeformed legs on a path of T poses, rates and accelerations, (orders, T, legs, n)."""
+def _undeformed(system: System, at: kinematics.RigidPoses, orders: int) -> Array:
+    """Coordinates of the undeformed legs at T poses, rates and accelerations, (orders, T, legs, n)."""
+    robot, path, found = at.robot, at.poses, at.legs
     legs, shapes = _as_built(robot), system.kernel.shapes
     x = np.zeros((orders, *found.length.shape, len(COORDINATES)))
-    there, at = leg_coordinates(shapes)
+    there, places = leg_coordinates(shapes)
     for k in range(len(COORDINATES)) if shapes.has("gamma1") else there:
         for order, values in zip(range(orders), found.coordinate(COORDINATES[k]), strict=False):
             x[order, ..., k] = values
@@ -112,7 +108,7 @@ def _undeformed(system: System, robot: Robot, path: kinematics.Poses, found: kin
     if shapes.has("gamma1"):
         _turn_balls(legs, x, path)
     q = np.zeros((*x.shape[:3], system.n))
-    q[..., at] = x[..., there]
+    q[..., places] = x[..., there]
     for element in shapes.elements:
         has = [element.of(leg) is not None for leg in robot.legs]
         for name, other in element.follows.items():
@@ -120,7 +116,7 @@ def _undeformed(system: System, robot: Robot, path: kinematics.Poses, found: kin
     return q
 
 
-@once
+@cache_per_robot
 def _as_built(robot: Robot) -> Limbs:
     return kinematics.built_limbs(robot, kinematics.robot_limbs(robot))
 

@@ -1,6 +1,6 @@
-"""The equations of a robot.
+"""Equations of a robot, and a trial of its external elements in numbers at home.
 
-Elements from outside on trial in numbers, in a robot at home: what is none there is told with class and file.
+An element whose parts are no number there is reported with class and file.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from flexapod import kinematics
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import InputError
 from flexapod.kinematics.leg_geometry import ABSENT, COORDINATES, DRIVEN, HELD, Limbs
-from flexapod.mechanics.elements.element import Standing
+from flexapod.mechanics.elements.element import LegContext
 from flexapod.mechanics.elements.registry import kinds_of
 from flexapod.mechanics.elements.slot import Slot
 from flexapod.mechanics.elements.springs import springs_along
-from flexapod.mechanics.elements.trial import refused
+from flexapod.mechanics.elements.trial import hook_error
 from flexapod.mechanics.leg.layout import Shapes, columns
 from flexapod.mechanics.leg.layout import leg_parameters as leg_layout
 from flexapod.model import Robot, Simulation, Study
@@ -44,7 +44,7 @@ def try_elements(robot: Robot, system: System) -> None:
     """
     if not any(leg.elements for leg in robot.legs):
         return
-    x, none = rigid_rest(system, robot, kinematics.home_pose(robot)), np.zeros(6)
+    x, none = rigid_rest(system, kinematics.RigidPoses(robot, kinematics.home_pose(robot))), np.zeros(6)
     still = np.zeros((1, system.legs, system.ports.size))
     m = matrices_at_rest(system, x, none)
     found = [m.M, m.D, m.K]
@@ -59,7 +59,7 @@ def try_elements(robot: Robot, system: System) -> None:
 
 
 def _without_number(system: System, *values: Array) -> Iterator[tuple[Slot, list[str]]]:
-    """Elements from outside with parts that are no number for coordinates, rates and parameters of a leg."""
+    """External elements with parts that are no number for coordinates, rates and parameters of a leg."""
     from flexapod.mechanics.leg.kernel_functions import parts_of_elements
 
     for slot, parts in parts_of_elements(system.kernel.shapes, values).items():
@@ -72,7 +72,7 @@ def _refused(slot: Slot, robot: Robot, i: int, parts: list[str]) -> Exception:
     hook = "energy" if {"kinetic", "gravity", "strain", "dissipation"} & set(parts) else "damping_force"
     which = f"of leg {i + 1} at home" if there else f"in leg {i + 1}, which is without it"
     names = ", ".join(parts)
-    return refused(
+    return hook_error(
         slot.kind, hook, f"{names}: {which} a value or a derivative is no number",
         allowed="what has finite values and first and second derivatives, at rest too",
         next_step=None if there else "Say numbers for a leg without it in `absent`: there they are 0 without one",
@@ -106,13 +106,13 @@ def robot_system(
     return system
 
 
-def smooth(robot: Robot) -> Robot:
-    """The robot without ripple of its motors and the like: where in a period it rests is not known."""
+def without_ripple(robot: Robot) -> Robot:
+    """Robot without ripple of its motors and the like: the position at rest within a period is unknown."""
     legs = list(robot.legs)
     for kind in kinds_of(legs):
         for i, leg in enumerate(robot.legs):
             for own in kind.all_of(leg):
-                legs[i] = own.smoothed(legs[i])
+                legs[i] = own.without_ripple(legs[i])
     same = all(now is before for now, before in zip(legs, robot.legs, strict=True))
     return robot if same else robot.replace(legs=tuple(legs))
 
@@ -146,12 +146,12 @@ def _held_inside(robot: Robot, shapes: Shapes) -> Mask:
     return held
 
 
-def _held_by_elements(robot: Robot, shapes: Shapes, standing: Sequence[Standing]) -> Mask:
+def _held_by_elements(robot: Robot, shapes: Shapes, standing: Sequence[LegContext]) -> Mask:
     """Coordinates that elements let follow a table: one of their own if all that have it do, others if any does."""
     held: Mask = np.zeros((len(robot.legs), shapes.size), dtype=bool)
     sizes = dict(shapes.layout)
     for i, leg in enumerate(robot.legs):
-        holds = [(dict(element.coordinates), element.held(leg, standing[i])) for element in shapes.elements]
+        holds = [(dict(element.coordinates), element.prescribed(leg, standing[i])) for element in shapes.elements]
         for name in {name for _, names in holds for name in names}:
             own = [name in names for has, names in holds if name in has]
             other = any(name in names for has, names in holds if name not in has)
@@ -160,7 +160,7 @@ def _held_by_elements(robot: Robot, shapes: Shapes, standing: Sequence[Standing]
     return held
 
 
-def at_rotors(robot: Robot, simulation: Simulation, per_loss: float) -> System:
+def rotor_loop_system(robot: Robot, simulation: Simulation, per_loss: float) -> System:
     """The robot's equations in motion with loops as springs and dampers on their rotors, which act at once.
 
     ``per_loss``: as of `robot_system`.

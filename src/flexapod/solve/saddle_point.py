@@ -4,7 +4,7 @@ import numpy as np
 
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import ComputationError
-from flexapod.mechanics.shapes.beam_functions import finite
+from flexapod.mechanics.shapes.beam_functions import check_finite
 
 
 def saddle_solve(A: Array, G: Array, r: Array, g: Array) -> tuple[Array, Array]:
@@ -19,7 +19,7 @@ def saddle_solve(A: Array, G: Array, r: Array, g: Array) -> tuple[Array, Array]:
     full = np.block([[A, G.T], [G, np.zeros((len(G), len(G)))]])
     if not len(full):
         return r, g
-    finite(full, r, g)
+    check_finite(full, r, g)
     scale = 1.0 / np.sqrt(np.maximum(np.abs(full).max(axis=1), 1e-300))
     scale[:size] = 1.0 / np.sqrt(np.maximum(np.abs(np.diag(A)), 1e-12 * np.abs(A).max(initial=0.0)))
     scale[size:] = 1.0 / np.maximum(np.abs(G * scale[:size]).max(axis=1, initial=0.0), 1e-300)

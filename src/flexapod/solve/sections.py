@@ -10,7 +10,17 @@ import numpy as np
 
 from flexapod.common.arrays import Array
 from flexapod.mechanics.elements.chains import chain, is_chain
-from flexapod.mechanics.elements.steps import Piece, StepNodes, Uniform, held, law, nodes, on_pieces, pieces, sheared
+from flexapod.mechanics.elements.steps import (
+    Piece,
+    StepNodes,
+    Uniform,
+    law,
+    nodes,
+    piece_nodes,
+    pieces,
+    shear_pieces,
+    tip_elimination,
+)
 from flexapod.mechanics.leg.layout import Shapes
 from flexapod.mechanics.leg.leg_beam import POWERS, LegBeam
 from flexapod.mechanics.shapes import LateralBasis
@@ -27,8 +37,8 @@ _STRESS_POINTS = 6  # on a section
 
 
 @dataclass(frozen=True, kw_only=True)
-class Laws:
-    """What the sections of a piston are along them, from the tip to the driven end.
+class SectionLaws:
+    """Properties of a piston's sections along them, from the tip to the driven end.
 
     Lengths (n,) [m], and of each value the coefficients of the powers of the distance from a section's end at the tip;
     E (n,) [Pa], which of them are round, and the length of the leg inside of the mouth [m].
@@ -46,7 +56,7 @@ class Laws:
         return [values[0, 0] / law(values[section].tolist(), free * (y - start)) for y in x]
 
 
-def laws_of(leg: Leg, sections: int = 0, *, inwards: bool = False) -> Laws:
+def section_laws(leg: Leg, sections: int = 0, *, inwards: bool = False) -> SectionLaws:
     """Sections of a leg, with sections without length before them where there are to be more.
 
     ``inwards``: from the driven end to the tip, as the part inside of the mouth sees them.
@@ -59,12 +69,12 @@ def laws_of(leg: Leg, sections: int = 0, *, inwards: bool = False) -> Laws:
         "EI_a": lambda x: x.EI[0],
         "EI_b": lambda x: x.EI[1],
         "shear": lambda x: x.shear,
-        "turning_a": lambda x: turning(x, 0),
-        "turning_b": lambda x: turning(x, 1),
+        "turning_a": lambda x: section_rotary_inertia(x, 0),
+        "turning_b": lambda x: section_rotary_inertia(x, 1),
         "depth_a": lambda x: x.depth[0],
         "depth_b": lambda x: x.depth[1],
     }
-    return Laws(
+    return SectionLaws(
         length=np.array([length for length, _ in parts]),
         values={name: np.array([_powers(length, [of(x) for x in at]) for length, at in parts])
                 for name, of in names.items()},
@@ -84,7 +94,7 @@ def _powers(length: float, values: list[float]) -> Array:
 def section_parameters(leg: Leg, beam: LegBeam, home: float) -> dict[str, object]:
     """Parameters of the sections of a leg whose length at home is given [m], by name."""
     piston, n, m, zeta = leg.piston, beam.sections, beam.axial.count, damping_parts(leg.damping)[0]
-    laws = laws_of(leg, n)
+    laws = section_laws(leg, n)
     length, powers = laws.length, POWERS if beam.tapers else 1
     ends = np.concatenate([[0.0], np.cumsum(length)])
     offset = length[:, None] * _POINTS
@@ -98,7 +108,7 @@ def section_parameters(leg: Leg, beam: LegBeam, home: float) -> dict[str, object
     along, dm = piston.length - (ends[:-1, None] + offset).ravel(), dm.ravel()
     mass, whole_mass = (psi * dm) @ psi.T, dm.sum()
     free = home - leg.cylinder.mouth
-    lateral = _diagonal([_damping(laws_of(leg), beam.b, beam.sheared, free, way) for way in beam.planes])
+    lateral = _diagonal([_damping(section_laws(leg), beam.b, beam.shear_basis, free, way) for way in beam.planes])
     inner = {} if beam.guide is None else _inner(leg, beam, beam.guide, home)
     return inner | {
         **{f"section_{name}": laws.values[name][:, :powers] for name in laws.values},
@@ -121,7 +131,7 @@ def section_parameters(leg: Leg, beam: LegBeam, home: float) -> dict[str, object
 
 def _inner(leg: Leg, beam: LegBeam, basis: LateralBasis, home: float) -> dict[str, object]:
     """The same for the part inside of the mouth."""
-    laws, powers, overlap = laws_of(leg, beam.sections, inwards=True), POWERS if beam.tapers else 1, 0.0
+    laws, powers, overlap = section_laws(leg, beam.sections, inwards=True), POWERS if beam.tapers else 1, 0.0
     at = {name: np.array([law(c, x) for c, x in zip(laws.values[name], laws.length[:, None] * _POINTS, strict=True)])
           for name in ("EA", "rhoA")}  # fmt: skip
     soft = laws.length * ((1 / at["EA"]) @ _WEIGHTS)
@@ -129,7 +139,7 @@ def _inner(leg: Leg, beam: LegBeam, basis: LateralBasis, home: float) -> dict[st
         overlap = leg.overlap(home)
     damping = np.zeros((len(beam.planes) * basis.count,) * 2)
     if overlap > 0:
-        own = laws_of(leg, inwards=True)
+        own = section_laws(leg, inwards=True)
         damping = _diagonal([_damping(own, basis, None, overlap, way) for way in beam.planes])
     return {
         **{f"inner_{name}": laws.values[name][:, :powers] for name in ("rhoA", *(f"EI_{way}" for way in beam.planes))},
@@ -142,8 +152,8 @@ def _inner(leg: Leg, beam: LegBeam, basis: LateralBasis, home: float) -> dict[st
     }
 
 
-def loads(laws: Laws, *, of_points: bool = False) -> Array:
-    """Mass per length over its mean, of pistons without mass 1, as `Laws.values`; else its mean on every section."""
+def loads(laws: SectionLaws, *, of_points: bool = False) -> Array:
+    """Mass per length over its mean, 1 of pistons without mass, as `SectionLaws.values`; else its mean on a section."""
     rhoA = laws.values["rhoA"]
     mean = np.array([law(c, length * _POINTS) @ _WEIGHTS for c, length in zip(rhoA, laws.length, strict=True)])
     if not of_points or not mean.any():
@@ -153,10 +163,10 @@ def loads(laws: Laws, *, of_points: bool = False) -> Array:
 
 def numeric_pieces(leg: Leg, basis: LateralBasis, free: Any, direction: int) -> list[Piece]:
     """Shapes of a leg at free lengths [m], a number or (N,), along leg x (0) or y (1), before (T1.22)."""
-    return _pieces(laws_of(leg), basis, free, f"EI_{'ab'[direction]}")
+    return _pieces(section_laws(leg), basis, free, f"EI_{'ab'[direction]}")
 
 
-def _pieces(laws: Laws, basis: LateralBasis, free: Any, name: str) -> list[Piece]:
+def _pieces(laws: SectionLaws, basis: LateralBasis, free: Any, name: str) -> list[Piece]:
     at, chained = nodes(basis.count + _MORE), is_chain(basis)
     cuts = [np.minimum(cut / free, 1.0) for cut in np.cumsum(laws.length)[:-1]]
     places = [0.0 * np.asarray(free), *cuts, 1.0 + 0.0 * np.asarray(free)]
@@ -165,21 +175,21 @@ def _pieces(laws: Laws, basis: LateralBasis, free: Any, name: str) -> list[Piece
         return pieces(Uniform(basis=basis), at, places, by_mass[:, 0].tolist(), gives)
     at_points = [
         [law(by_mass[j].tolist(), free * (x - start)) for x in row]
-        for j, (row, start) in enumerate(zip(on_pieces(at, places), places, strict=False))
+        for j, (row, start) in enumerate(zip(piece_nodes(at, places), places, strict=False))
     ]
     return chain(basis, at, places, at_points, gives, laws.mouth / free)
 
 
-def _gives(laws: Laws, at: StepNodes, places: list[Any], name: str, free: Any) -> list[list[Any]]:
+def _gives(laws: SectionLaws, at: StepNodes, places: list[Any], name: str, free: Any) -> list[list[Any]]:
     points = [(a, [a + (b - a) * t for t in at.t.tolist()]) for a, b in pairwise(places)]
     return [laws.over(name, x, start, j, free) for j, (start, x) in enumerate(points)]
 
 
-def _thick(laws: Laws, basis: LateralBasis, free: Any, name: str) -> list[Piece]:
+def _thick(laws: SectionLaws, basis: LateralBasis, free: Any, name: str) -> list[Piece]:
     """The same of what shears."""
     bent = _pieces(laws, basis, free, name)
     places = [*(piece.start for piece in bent), bent[-1].end]
-    return sheared(bent, _gives(laws, bent[0].nodes, places, "shear", free))
+    return shear_pieces(bent, _gives(laws, bent[0].nodes, places, "shear", free))
 
 
 def leg_values(leg: Leg, basis: LateralBasis, free: Array, zeta: Array, derivative: int = 0) -> Array:
@@ -212,12 +222,12 @@ def _along(parts: list[Piece], zeta: Array, derivative: int) -> Array:
         there = sum(x > piece.end for piece in parts[:-1]) if len(parts) > 1 else np.zeros(part.shape[-1], dtype=int)
         found.append(np.take_along_axis(part, np.broadcast_to(there, part.shape[1:])[None], axis=0)[0])
     values = np.stack(found, axis=1)
-    return values - held(parts[0].value_start)[:, None] * values[:1]
+    return values - tip_elimination(parts[0].value_start)[:, None] * values[:1]
 
 
 def shear_tips(leg: Leg, beam: LegBeam, free: Array) -> Array:
     """Deflections at the tip of the shapes of shear before (T1.22), at free lengths (N,), (k, N)."""
-    return _thick(laws_of(leg), beam.sheared or beam.b, free, "EI_b")[0].value_start
+    return _thick(section_laws(leg), beam.shear_basis or beam.b, free, "EI_b")[0].value_start
 
 
 def bending_amplitudes(leg: Leg, shapes: Shapes, q: Array) -> Array:
@@ -234,9 +244,9 @@ def bending_amplitudes(leg: Leg, shapes: Shapes, q: Array) -> Array:
 
 def stepped_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compression: Array) -> Array:
     """Largest axial plus bending stress in a piston of several sections, (T,) [Pa]; arguments of `leg_stress`."""
-    largest, laws, thrust = np.zeros(len(free)), laws_of(leg), np.abs(compression)
+    largest, laws, thrust = np.zeros(len(free)), section_laws(leg), np.abs(compression)
     planes = [numeric_pieces(leg, basis, free, k) for k in (0, 1)] if basis.count else []
-    tips = [held(parts[0].value_start) for parts in planes]
+    tips = [tip_elimination(parts[0].value_start) for parts in planes]
     for j, E in enumerate(laws.E):
         EA = laws.values["EA"][j].tolist()
         for share in np.linspace(0.0, 1.0, _STRESS_POINTS):
@@ -255,7 +265,7 @@ def stepped_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, c
     return largest
 
 
-def _damping(laws: Laws, basis: LateralBasis, shear: LateralBasis | None, free: float, way: str) -> Array:
+def _damping(laws: SectionLaws, basis: LateralBasis, shear: LateralBasis | None, free: float, way: str) -> Array:
     """Damping of ratio 1 in every mode of the bare part of a length, of bending and shear (K, K) [N s/m]."""
     size = basis.count * (1 + (shear is not None))
     M, K = np.zeros((size, size)), np.zeros((size, size))
@@ -263,7 +273,7 @@ def _damping(laws: Laws, basis: LateralBasis, shear: LateralBasis | None, free: 
         return M
     bent = _pieces(laws, basis, np.array([free]), f"EI_{way}")
     thick = _thick(laws, shear, np.array([free]), f"EI_{way}") if shear else []
-    E = held(bent[0].value_start)
+    E = tip_elimination(bent[0].value_start)
     for j, piece in enumerate(bent):
         w = (piece.end - piece.start) * piece.nodes.w
         offset = free * (np.concatenate(piece.x) - piece.start)
@@ -294,6 +304,6 @@ def _diagonal(parts: list[Array]) -> Array:
     return found.reshape(n * size, n * size)
 
 
-def turning(step: PistonStep, direction: int) -> float:
+def section_rotary_inertia(step: PistonStep, direction: int) -> float:
     """Rotary inertia of a homogeneous section, rho I [kg m]."""
     return step.rhoA * step.EI[direction] / step.EA

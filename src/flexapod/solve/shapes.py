@@ -1,4 +1,4 @@
-"""The coordinates of a study: its shapes, by name or reduced from the solid piston, and where those of a beam stand."""
+"""Coordinates of a study: its shapes, by name or reduced from the solid piston, and the places of a beam's."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def _cylinder(count: int, robot: Robot) -> LateralBasis | None:
 
 
 def space_shapes(lateral: LateralBasis, axial_modes: int, *elements: type[Physics], **joints: Any) -> Shapes:
-    """Shapes of a leg that bends alike in both planes; ``joints`` as `LegChain` has them, by default of a leg UPS."""
+    """Shapes of a leg that bends equally in both planes; ``joints`` as in `LegChain`, by default of a leg UPS."""
     beam = LegBeam(a=lateral, b=lateral, axial=bases.axial_basis(axial_modes))
     return Shapes(beam=beam, chain=LegChain(**joints), elements=tuple(map(Slot, elements)))
 
@@ -102,7 +102,7 @@ def actuator_shapes(actuator: Actuator, simulation: Simulation, rate: float = 0.
 
 
 def leg_shapes(robot: Robot, simulation: Simulation) -> LateralBasis:
-    """Shapes of the legs of a robot, the same in both planes of all; solid pistons are alike (`model.Study`).
+    """Shapes of the legs of a robot, the same in both planes of all; solid pistons are equal (`model.Study`).
 
     Where a platform joint takes a moment, static answers to one are among them, Eq. (T1.18).
     """
@@ -125,7 +125,7 @@ def beam_shapes(actuator: Actuator, simulation: Simulation, rate: float = 0.0) -
 
 
 def _ratios(actuator: Actuator, basis: str, rate: float) -> tuple[float, ...]:
-    """What the shapes depend on, dimensionless: arguments of `bases.lateral_basis` after the count.
+    """Dimensionless numbers of the shapes: arguments of `lateral_basis` after the count.
 
     ``tip-mass`` shapes know mass and inertia of the tip body. ``tip-load`` shapes know whether it takes a moment and,
     in steady rotation, speed, hub radius and the mass that pulls at the tip. The others know nothing.
@@ -143,7 +143,7 @@ def _ratios(actuator: Actuator, basis: str, rate: float) -> tuple[float, ...]:
 
 @lru_cache(maxsize=16)
 def _solid(section: Tube | Rectangle, length: float, count: int, moment: bool = False) -> LateralBasis:
-    """Without lateral contraction, as a beam: no study file gives Poisson's ratio."""
+    """Lateral basis of a solid leg without lateral contraction: no study file gives Poisson's ratio."""
     from flexapod.solve.fem.reduction import solid_leg_shapes  # scikit-fem loads on use
 
     return solid_leg_shapes(section, length, count, moment=moment)
@@ -156,7 +156,7 @@ def places(shapes: Shapes) -> dict[str, int]:
 
 
 def home(actuator: Actuator) -> dict[str, float]:
-    """Where an actuator stands at t = 0 [rad, m], by the names of `places`; the extension from the pivot."""
+    """Coordinates of an actuator at t = 0 [rad, m], by the names of `places`; the extension from the pivot."""
     begin = {"extension": actuator.hub_radius + actuator.free_length, "rotation": actuator.angle}
     return begin | ({"elevation": actuator.elevation} if actuator.space else {})
 

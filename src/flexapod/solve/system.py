@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod.common.arrays import Array, Mask
-from flexapod.kinematics.rotations import turned
+from flexapod.kinematics.rotations import displace_pose
 from flexapod.mechanics.leg.layout import LOAD_SIZE, columns, leg_parameters
 from flexapod.solve.kernel import Kernel, evaluate
 
@@ -115,7 +115,7 @@ class System:
 
     @property
     def hub(self) -> bool:
-        """Whether the legs carry a payload."""
+        """True where the legs carry a payload."""
         return self.payload_p.size > 0
 
     @property
@@ -135,49 +135,49 @@ class System:
         return self.ports >= (shapes.index("g") if shapes.has("g") else self.n)
 
     @cached_property
-    def shared(self) -> Index:
+    def shared_coordinates(self) -> Index:
         """Coordinates of a leg that are one coordinate of all legs, those that the payload's functions know first."""
-        return np.array(self.kernel.shapes.shared, dtype=np.intp)
+        return np.array(self.kernel.shapes.shared_coordinates, dtype=np.intp)
 
     @cached_property
     def border(self) -> Index:
         """Coordinates onto which legs are eliminated, of the payload (0 to 5) and shared (6 on): the free ones."""
-        return np.append(self.hub_free, 6 + np.arange(self.shared.size)).astype(np.intp)
+        return np.append(self.hub_free, 6 + np.arange(self.shared_coordinates.size)).astype(np.intp)
 
     @property
     def plate(self) -> Index:
-        """Those of them that the payload's functions know."""
-        return self.shared[: self.kernel.shapes.plate]
+        """Shared coordinates that the payload's functions read."""
+        return self.shared_coordinates[: self.kernel.shapes.plate]
 
     @cached_property
     def tie(self) -> Array | None:
         """Flat coordinates by those that are not copies, (size, any); None where legs share nothing."""
-        if not self.shared.size:
+        if not self.shared_coordinates.size:
             return None
-        copies = (np.arange(1, self.legs)[:, None] * self.n + self.shared).ravel()
+        copies = (np.arange(1, self.legs)[:, None] * self.n + self.shared_coordinates).ravel()
         tie = np.eye(self.size)
         for i in range(1, self.legs):
-            tie[i * self.n + self.shared, self.shared] = 1.0
+            tie[i * self.n + self.shared_coordinates, self.shared_coordinates] = 1.0
         return np.delete(tie, copies, axis=1)
 
     @cached_property
     def independent(self) -> Array | None:
-        """Those columns of `tie` that are not `fixed`."""
-        return None if self.tie is None else self.tie[:, ~self.fixed[self.tie.argmax(axis=0)]]
+        """Columns of `tie` that are not in `fixed_mask`; None where legs share nothing."""
+        return None if self.tie is None else self.tie[:, ~self.fixed_mask[self.tie.argmax(axis=0)]]
 
     @cached_property
     def kinds(self) -> list[tuple[Index, Mask, Index]]:
         """Legs that hold the same coordinates: which, what they hold, and what is neither held nor from closures."""
         stays = np.ones(self.n, dtype=bool)
-        stays[[*self.kernel.shapes.pivots, *self.shared]] = False
+        stays[[*self.kernel.shapes.pivots, *self.shared_coordinates]] = False
         kinds = [np.array(held, dtype=bool) for held in sorted(set(map(tuple, self.held.tolist())))]
         return [
             (np.flatnonzero((self.held == held).all(axis=1)), held, np.flatnonzero(stays & ~held)) for held in kinds
         ]
 
     @cached_property
-    def open(self) -> bool:
-        """Whether legs hold the payload against each other in ways in which none of them gives way."""
+    def has_self_stress(self) -> bool:
+        """True where legs hold the payload against each other in ways in which none of them is compliant."""
         pivots = list(self.kernel.shapes.pivots)
         return bool(self.substitutes.size and (self.held[:, pivots] & (self.substitutes[:, pivots] < 0)).any())
 
@@ -198,12 +198,12 @@ class System:
         return np.array([*driven, *(k for k in np.flatnonzero(self.held.any(axis=0)) if k not in driven)])
 
     @cached_property
-    def fixed(self) -> Mask:
+    def fixed_mask(self) -> Mask:
         """Mask (size,) of the coordinates that do not follow from the equations of motion."""
-        return np.concatenate([self.enforced.ravel(), self.hub_held[: 6 * self.hub]])
+        return np.concatenate([self.enforced_mask.ravel(), self.hub_held[: 6 * self.hub]])
 
     @cached_property
-    def enforced(self) -> Mask:
+    def enforced_mask(self) -> Mask:
         """Mask (legs, n) of the coordinates that follow their table, whatever the closures say."""
         return self.held if self.slack is None else self.held & ~self.slack
 
@@ -223,9 +223,9 @@ class System:
 
     @cached_property
     def as_read_by_c(self) -> tuple[Array, ...]:
-        """What of it the compiled loops read, row by row: which ports are held, what of the payload, parameters."""
+        """Arrays that the compiled loops read, row by row: held ports, held payload, parameters."""
         hub_held = self.hub_held if self.hub else np.ones(6)
-        read = (self.enforced[:, self.ports], hub_held, self.leg_p, self.joint_p, self.payload_p)
+        read = (self.enforced_mask[:, self.ports], hub_held, self.leg_p, self.joint_p, self.payload_p)
         return tuple(np.ascontiguousarray(x, dtype=float) for x in read)
 
     def by_leg(self, vector: Array) -> Array:
@@ -241,10 +241,10 @@ class System:
         v, v_dot, force = self.by_leg(x.v), self.by_leg(x.v_dot), table[:, :, 3] + x.drive
         inputs = [x.q, v, v_dot, x.lam, self.spring_commands(table), self.leg_p, *self._around(x, wrench)]
         shapes = self.kernel.shapes
-        meeting = [(self.rows,), (6,)] if shapes.posed else [(3,)]
-        outputs = [(self.n,), *meeting, (2 + shapes.loaded,), (shapes.commands // 2,)]
+        meeting = [(self.rows,), (6,)] if shapes.reads_pose else [(3,)]
+        outputs = [(self.n,), *meeting, (2 + shapes.has_tip_load,), (shapes.commands // 2,)]
         r, gaps, *push, power, _ = evaluate(self.kernel, "leg_residual", self.legs, inputs, outputs)
-        if self.rows == 3 and not shapes.posed:
+        if self.rows == 3 and not shapes.reads_pose:
             joints = [x.pose, x.lam, self.joint_p]
             points, *push = evaluate(self.kernel, "joint_residual", self.legs, joints, [(3,), (6,)])
             gaps -= points
@@ -274,7 +274,7 @@ class System:
         return Friction(*evaluate(self.kernel, "leg_friction", count, self._sliding(x, h), outputs))
 
     def friction_matrix(self, x: State, h: float) -> Array:
-        """How the friction of the legs grows with their rates, (legs, n, n)."""
+        """Derivative of the legs' friction by their rates, (legs, n, n)."""
         return evaluate(self.kernel, "leg_friction_matrix", self.legs, self._sliding(x, h), [(self.n, self.n)])[0]
 
     def _sliding(self, x: State, h: float) -> list[Array]:
@@ -285,7 +285,7 @@ class System:
         """Matrices at rest with geometric stiffness, and the Jacobian of the closures."""
         n, k, legs, rows = self.n, self.legs * self.n, self.legs, self.rows
         inputs = [x.q, x.lam, self.leg_p, *self._around(x, wrench)]
-        outputs = [(n, n)] * 3 + [(rows, n)] + ([(rows, 6), (6, 6), (n, 6)] if self.kernel.shapes.posed else [])
+        outputs = [(n, n)] * 3 + [(rows, n)] + ([(rows, 6), (6, 6), (n, 6)] if self.kernel.shapes.reads_pose else [])
         found = evaluate(self.kernel, "leg_matrices", legs, inputs, outputs)
         M, D, K, G = (np.zeros((size, self.size)) for size in (self.size, self.size, self.size, legs * rows))
         for whole, parts in zip((M, D, K, G), found[:4], strict=True):
@@ -311,7 +311,7 @@ class System:
         return Matrices(M=M, D=D, K=K, G=G)
 
     def loops(self, x: State) -> list[Array]:
-        """What loops add to D and K (legs, n, n), what they measure (legs, 1), and how that grows (legs, n)."""
+        """Terms of loops in D and K (legs, n, n), the measured place (legs, 1) and its slope (legs, n)."""
         n = self.n
         return evaluate(self.kernel, "leg_loop", self.legs, [x.q, self.leg_p], [(n, n), (n, n), (1,), (n,)])
 
@@ -333,15 +333,15 @@ class System:
         return table[..., : count // 2, :2].reshape(*table.shape[:-2], count)
 
     def _around(self, x: State, wrench: Array) -> list[Array]:
-        """What the functions of a leg read from outside it: the payload's pose, or a load on a tip without payload."""
+        """External arguments of a leg's functions: the payload's pose, or a load on a tip without payload."""
         shapes = self.kernel.shapes
-        if shapes.posed:
+        if shapes.reads_pose:
             return [x.pose]
-        return [wrench] if shapes.loaded else []
+        return [wrench] if shapes.has_tip_load else []
 
-    def moved(self, x: State, step: Array) -> State:
+    def displace(self, x: State, step: Array) -> State:
         """State displaced by a step in the flat coordinates: q + dq, x + dx, R exp(theta^)."""
-        pose = turned(x.pose, step[self.legs * self.n :]) if self.hub else x.pose
+        pose = displace_pose(x.pose, step[self.legs * self.n :]) if self.hub else x.pose
         return replace(x, q=x.q + self.by_leg(step), pose=pose)
 
 

@@ -42,8 +42,8 @@ class Check:
         return self.error / self.tolerance if np.isfinite(self.error) else float("inf")
 
     @property
-    def passed(self) -> bool:
-        """Whether the error is a number within the tolerance."""
+    def within_tolerance(self) -> bool:
+        """Test whether the error is a number within the tolerance."""
         return bool(np.isfinite(self.error) and self.error <= self.tolerance)
 
 
@@ -64,8 +64,8 @@ class Case:
 
     @property
     def obstacle(self) -> str:
-        """Why it cannot be computed here; empty if it can."""
-        if self.engine is not None and not self.engine.found():
+        """Reason why the case cannot be computed here; empty if it can."""
+        if self.engine is not None and not self.engine.is_available():
             return f"{self.engine.name} is not installed: {self.engine.install}"
         return ""
 
@@ -97,7 +97,7 @@ def checks(
     return [Check(name, a, b, bound, unit, absolute=absolute) for name, a, b, bound in rows]
 
 
-def curves(
+def curve_checks(
     what: str, reference: ArrayLike, ours: ArrayLike, of_peak: float, of_curve: float, unit: str
 ) -> Iterator[Check]:
     """Checks of the largest values of curves, and of their largest difference, both as shares of the peak."""

@@ -1,7 +1,8 @@
 """Exact frequencies of a parallel robot with locked drives, undeformed and without prestress, by counting.
 
-Dynamic stiffness of uniform members, transcendental in omega, no shape functions. Equations (T7.9)-(T7.15). A second
-road to the frequencies that `flexapod.modes` finds: plain NumPy, nothing of the package is used here.
+Dynamic stiffness of uniform members, transcendental in omega, no shape functions. Equations (T7.9)-(T7.15). A
+second road to the frequencies that `flexapod.modes` finds: plain NumPy; of the package only the study's robot
+is read. For comparison, the errors of the frequencies by a finite number of shapes are estimated.
 
 References
 ----------
@@ -9,8 +10,6 @@ W. H. Wittrick, F. W. Williams, "A general algorithm for computing natural frequ
 Q. J. Mech. Appl. Math. 24 (1971) 263-284: the count, and the clamped-clamped frequencies of a beam.
 R. W. Clough, J. Penzien, "Dynamics of Structures", 2nd ed. (1993), ch. 20; A. Y. T. Leung, "Dynamic Stiffness and
 Substructures" (1993), ch. 2: the stiffnesses of bar and beam.
-
-The locked robot as `dynamic_stiffness` takes it, and what a number of shapes leaves out of its frequencies.
 """
 
 from __future__ import annotations
@@ -63,7 +62,7 @@ class UniformLeg:
 
     @property
     def length(self) -> float:
-        """Joint to joint [m]."""
+        """Length from joint to joint [m]."""
         return float(np.linalg.norm(self.tip - self.base))
 
     def axes(self) -> np.ndarray:
@@ -101,7 +100,7 @@ class LockedPayload:
     free: np.ndarray = field(default_factory=lambda: np.eye(6))
 
 
-def bar(omega: float, leg: UniformLeg) -> tuple[float, int]:
+def bar_stiffness(omega: float, leg: UniformLeg) -> tuple[float, int]:
     """Return force over displacement at the tip of the piston, driven at its inner end, Eqs. (T7.9)-(T7.10)."""
     wave = omega * np.sqrt(leg.rhoA / leg.EA)
     x, shift = wave * leg.Lp, np.arctan(leg.EA * wave * leg.compliance)
@@ -112,7 +111,7 @@ def bar(omega: float, leg: UniformLeg) -> tuple[float, int]:
     return leg.EA / leg.Lp * ritz, int(np.sum(roots < x))
 
 
-def beam(omega: float, length: float, EI: float, rhoA: float) -> Stiffness:
+def beam_stiffness(omega: float, length: float, EI: float, rhoA: float) -> Stiffness:
     """Return the stiffness of a beam on (v, v') at both ends and its clamped-clamped count, Eqs. (T7.11), (T7.15)."""
     lam = length * np.sqrt(omega) * (rhoA / EI) ** 0.25
     c, s, th, sech = np.cos(lam), np.sin(lam), np.tanh(lam), 1 / np.cosh(lam)  # all divided by cosh: no term grows
@@ -126,26 +125,26 @@ def beam(omega: float, length: float, EI: float, rhoA: float) -> Stiffness:
     return K, i - int(1 - (-1) ** i * np.sign(gap)) // 2
 
 
-def lateral(omega: float, leg: UniformLeg, inertia: float) -> Stiffness:
+def lateral_stiffness(omega: float, leg: UniformLeg, inertia: float) -> Stiffness:
     """Return the stiffness of one plane on (angle of the cylinder, slope at the tip, displacement of the tip)."""
-    K, count = beam(omega, leg.length - leg.mouth, leg.EI, leg.rhoA)
+    K, count = beam_stiffness(omega, leg.length - leg.mouth, leg.EI, leg.rhoA)
     ends = np.array([[leg.mouth, 0, 0], [1, 0, 0], [0, 0, 1], [0, 1, 0]])
     return ends.T @ K @ ends - np.diag([omega**2 * inertia, 0, 0]), count
 
 
-def shaft(omega: float, leg: UniformLeg) -> Stiffness:
+def shaft_stiffness(omega: float, leg: UniformLeg) -> Stiffness:
     """Return the stiffness on the turns about the leg at both ends of the piston, as (T7.9) of a bar."""
     x = omega * np.sqrt(leg.spin_inertia * leg.Lp / leg.GJ)
     cot, cosec = 1 / np.tan(x), 1 / np.sin(x)
     return leg.GJ / leg.Lp * x * np.array([[cot, -cosec], [-cosec, cot]]), int(x // np.pi)
 
 
-def robot(omega: float, legs: Sequence[UniformLeg], body: LockedPayload) -> Stiffness:
+def robot_stiffness(omega: float, legs: Sequence[UniformLeg], body: LockedPayload) -> Stiffness:
     """Return the stiffness on the payload's coordinates and the turns of each leg's ends, Eq. (T7.13)."""
-    return assembled(legs, body)(omega)
+    return assemble_stiffness(legs, body)(omega)
 
 
-def assembled(legs: Sequence[UniformLeg], body: LockedPayload) -> Callable[[float], Stiffness]:
+def assemble_stiffness(legs: Sequence[UniformLeg], body: LockedPayload) -> Callable[[float], Stiffness]:
     """Return `robot` as a function of omega: where its legs stand is found once."""
     free, turns = len(body.free), [sum(map(len, leg.turns())) for leg in legs]
     twist, mass = np.zeros((6, free + sum(turns))), np.zeros((6, 6))
@@ -182,29 +181,29 @@ def _placed(
 def _leg(
     omega: float, leg: UniformLeg, inertia: float, cylinder: np.ndarray, turn: np.ndarray, moved: np.ndarray
 ) -> Stiffness:
-    """One leg's part, of what `_placed` gives."""
-    along, count = bar(omega, leg)
+    """Dynamic stiffness of one leg in the robot's coordinates, from what `_placed` returns."""
+    along, count = bar_stiffness(omega, leg)
     K = along * np.outer(moved[2], moved[2]) - omega**2 * leg.axial_inertia * np.outer(cylinder[2], cylinder[2])
     slopes = ((cylinder[1], turn[1]), (-cylinder[0], -turn[0]))
-    local, held = lateral(omega, leg, inertia)
+    local, held = lateral_stiffness(omega, leg, inertia)
     for plane in leg.planes:
         place = np.stack([*slopes[plane], moved[plane]])
         K, count = K + place.T @ local @ place, count + held
     if leg.GJ:
-        local, held = shaft(omega, leg)
+        local, held = shaft_stiffness(omega, leg)
         place = np.stack([cylinder[2], turn[2]])
         K, count = K + place.T @ local @ place, count + held
     return K, count
 
 
-def below(stiffness: tuple[np.ndarray | float, int]) -> int:
+def frequency_count(stiffness: tuple[np.ndarray | float, int]) -> int:
     """Return the number of frequencies below omega, J = J_0 + s{K(omega)}, Eq. (T7.14)."""
     K, held = np.atleast_2d(stiffness[0]), stiffness[1]
     scale = 1 / np.sqrt(np.linalg.norm(K, axis=0))  # a congruence: signs stay, units go
     return held + int(np.sum(np.linalg.eigvalsh(K * np.outer(scale, scale)) < 0))
 
 
-def roots(count: Count, n: int, start: float = 1.0, tolerance: float = 1e-12) -> np.ndarray:
+def bisect_frequencies(count: Count, n: int, start: float = 1.0, tolerance: float = 1e-12) -> np.ndarray:
     """Return the first n frequencies [Hz] by halving, each as often as the count jumps there."""
     high = start
     while count(high) < n:
@@ -224,8 +223,8 @@ def roots(count: Count, n: int, start: float = 1.0, tolerance: float = 1e-12) ->
 
 def robot_frequencies(legs: Sequence[UniformLeg], body: LockedPayload, n: int) -> np.ndarray:
     """Return the first n frequencies [Hz] of the robot."""
-    stiffness = assembled(legs, body)
-    return roots(lambda omega: below(stiffness(omega)), n)
+    stiffness = assemble_stiffness(legs, body)
+    return bisect_frequencies(lambda omega: frequency_count(stiffness(omega)), n)
 
 
 def legs_and_body(
@@ -296,7 +295,7 @@ def wave_number(legs: Sequence[UniformLeg], frequency: Array) -> Array:
     return slowest * np.sqrt(2 * np.pi * np.asarray(frequency))
 
 
-def missing_sines(legs: Sequence[UniformLeg], frequency: Array, axial: int) -> Array:
+def sine_truncation(legs: Sequence[UniformLeg], frequency: Array, axial: int) -> Array:
     """Relative error of frequencies [Hz] from the axial shapes left out, at most: half the rest of (T7.10)'s series.
 
     To first order the shift is the tip's strain energy that the rest adds over twice the whole, and the whole is at
@@ -307,14 +306,14 @@ def missing_sines(legs: Sequence[UniformLeg], frequency: Array, axial: int) -> A
     return np.array([np.sum(y**4 / (squares * (squares - y**2))) for y in x])
 
 
-def missing_twist(legs: Sequence[UniformLeg], frequency: Array) -> Array:
-    """Relative error of frequencies [Hz] from one shape of twist, as `missing_sines` of a shaft in place of a bar."""
+def twist_truncation(legs: Sequence[UniformLeg], frequency: Array) -> Array:
+    """Relative error of frequencies [Hz] from one shape of twist, as `sine_truncation` of a shaft in place of a bar."""
     slow = max((np.sqrt(leg.spin_inertia * leg.Lp / leg.GJ) for leg in legs if leg.GJ), default=0.0)
     squares = (np.pi * np.arange(1, 2000)) ** 2
     return np.array([np.sum(y**4 / (squares * (squares - y**2))) for y in 2 * np.pi * slow * np.asarray(frequency)])
 
 
-def missing_polynomials(legs: Sequence[UniformLeg], frequency: Array, k: int) -> Array:
+def polynomial_truncation(legs: Sequence[UniformLeg], frequency: Array, k: int) -> Array:
     """Relative error of frequencies [Hz] from k shapes a plane: what polynomials of degree < k lack of a sine.
 
     The curvature of `tip-load` has degree k; the free tip takes one. Legendre coefficient n of sin(lambda z + phase) is

@@ -72,13 +72,13 @@ class Mechanism:
     driven: tuple[int, ...] = (0,)
 
 
-def still(t: Array) -> tuple[Array, Array, Array]:
+def rest_motion(t: Array) -> tuple[Array, Array, Array]:
     """A drive that rests at zero."""
     return np.zeros_like(t), np.zeros_like(t), np.zeros_like(t)
 
 
-def extrapolated(coarse: Array, fine: Array) -> Array:
-    """What two step sizes, the second half the first, give of a method of order two, to order four (Richardson)."""
+def extrapolate_second_order(coarse: Array, fine: Array) -> Array:
+    """Extrapolate a method of order two from steps h and h / 2 to order four (Richardson)."""
     return (4 * fine - coarse) / 3
 
 
@@ -215,7 +215,7 @@ def _branch_functions(mechanism: Mechanism, shapes: Shapes, general: int) -> lis
 
 
 def _hub_functions(mechanism: Mechanism) -> list[NamedFunction]:
-    """The same of the hub: three coordinates, and a turn of unit inertia that nothing moves."""
+    """Functions of the hub for the kernel: three coordinates, and a turn of unit inertia that nothing moves."""
     pose, u, u_dot = symbol("pose", 7), symbol("u", 6), symbol("u_dot", 6)
     net, wrench, p = symbol("net", 6), symbol("wrench", 6), symbol("p", 1)
     branches = len(mechanism.parameters)

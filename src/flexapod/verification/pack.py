@@ -1,6 +1,7 @@
-"""Running the pack: every case by itself, a failure of one leaves the others.
+"""Verification pack: every case run by itself, and the outcomes as a page of the documentation.
 
-The pack as a page of the documentation: what is compared, with what, and why the tolerance is what it is.
+A failure of one case leaves the others. The page says what is compared, with what, and why the tolerance is
+what it is.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from flexapod.verification.cases import CASES
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """What a case gave: its checks, or why it failed or was not run; `seconds` it took."""
+    """Outcome of a case: its checks, or why it failed or was not run; `seconds` it took."""
 
     case: Case
     checks: tuple[Check, ...]
@@ -26,34 +27,36 @@ class Outcome:
     not_run: str = ""
 
     @property
-    def counted(self) -> tuple[Check, ...]:
+    def valid_checks(self) -> tuple[Check, ...]:
         """The checks whose reference is not at fault."""
         return tuple(check for check in self.checks if not check.fault)
 
     @property
-    def passed(self) -> bool:
-        """Whether it was computed and every check lies within its tolerance or has a reference shown to be wrong."""
-        return not self.failure and bool(self.counted) and all(check.passed for check in self.counted)
+    def is_verified(self) -> bool:
+        """Test whether all checks were computed and are within tolerance, those of wrong references aside."""
+        return (
+            not self.failure and bool(self.valid_checks) and all(check.within_tolerance for check in self.valid_checks)
+        )
 
     @property
     def verdict(self) -> str:
-        """In words: pass, fail, not run, not computed."""
+        """Verdict as text: pass, fail, not run, not computed."""
         if self.not_run:
             return "not run"
         if self.failure:
             return "not computed"
-        return "pass" if self.passed else "fail"
+        return "pass" if self.is_verified else "fail"
 
     @property
     def worst(self) -> Check | None:
         """The check that comes nearest to its tolerance or exceeds it most; None if nothing was computed."""
-        return max(self.counted, key=lambda check: check.strain, default=None)
+        return max(self.valid_checks, key=lambda check: check.strain, default=None)
 
     def as_dict(self) -> dict[str, object]:
-        """Everything as plain data."""
-        rows = [{**asdict(check), "error": check.error, "passed": check.passed} for check in self.checks]
+        """Outcome as a dictionary of plain data."""
+        rows = [{**asdict(check), "error": check.error, "passed": check.within_tolerance} for check in self.checks]
         words = {name: getattr(self.case, name) for name in ("name", "statement", "source", "argument")}
-        state = {"verdict": self.verdict, "passed": self.passed, "failure": self.failure, "not_run": self.not_run}
+        state = {"verdict": self.verdict, "passed": self.is_verified, "failure": self.failure, "not_run": self.not_run}
         return {**words, **state, "seconds": self.seconds, "checks": rows}
 
 
@@ -136,15 +139,15 @@ def _row(outcome: Outcome) -> tuple[str, ...]:
 
 
 def sentence(outcomes: Sequence[Outcome]) -> str:
-    """How many cases and numbers agree."""
-    passed, numbers = sum(o.passed for o in outcomes), sum(len(o.checks) for o in outcomes)
+    """Summary of outcomes in a sentence: cases that pass, numbers compared, cases not run."""
+    passed, numbers = sum(o.is_verified for o in outcomes), sum(len(o.checks) for o in outcomes)
     missing = sum(bool(o.not_run) for o in outcomes)
     rest = f" {missing} not run." if missing else ""
     return f"{passed} of {len(outcomes)} cases pass, {numbers} numbers compared.{rest}"
 
 
 def faults(outcome: Outcome) -> list[str]:
-    """The references shown to be wrong, in words."""
+    """References shown to be wrong, a sentence each."""
     return [
         f"{c.what}: the reference gives {c.reference:.8g}, we {c.ours:.8g}. {c.fault}"
         for c in outcome.checks
@@ -160,7 +163,7 @@ def notes(outcome: Outcome) -> list[str]:
     return [*told, *faults(outcome)]
 
 
-def markdown(outcomes: Sequence[Outcome]) -> str:
+def verification_markdown(outcomes: Sequence[Outcome]) -> str:
     """The page `docs/verification.md`."""
     table = [HEAD[:-1], ("---",) * (len(HEAD) - 1), *(row[:-1] for row in rows(outcomes))]
     lines = ["| " + " | ".join(cells) + " |" for cells in table]

@@ -42,7 +42,7 @@ def leg(chain: str, base_axis: Array | None = None, platform_axis: Array | None 
     return Leg(chain=chain, **{**joints, **parts, **more})
 
 
-def built(kind: str, base: Array, top: Array, height: float, legs: Sequence[Leg], **more: Any) -> Robot:
+def build_robot(kind: str, base: Array, top: Array, height: float, legs: Sequence[Leg], **more: Any) -> Robot:
     """A robot with a platform of 100 kg unless another is given."""
     given = {"payload": LOAD, "gravity": [0, 0, -9.81]} | more
     return Robot(
@@ -57,7 +57,7 @@ def hexapod(
     own = leg(chain)
     own = own if joint is None else own.replace(base_joint=joint, platform_joint=joint)
     legs = [own] * np.size(lower)
-    return built(f"{len(legs)}-{chain}", ring(0.35, lower), ring(0.2, upper), 0.8, legs)
+    return build_robot(f"{len(legs)}-{chain}", ring(0.35, lower), ring(0.2, upper), 0.8, legs)
 
 
 def eight_legs() -> Robot:
@@ -69,14 +69,14 @@ def eight_legs() -> Robot:
 def tripod(chain: str = "RPS", **more: Any) -> Robot:
     """3-RPS, hinges along the base circle, or with a letter changed."""
     legs = [leg(chain, axis, axis if chain.endswith("U") else None, **more) for axis in tangents(THREE)]
-    return built(f"3-{chain}", ring(0.35, THREE), ring(0.2, THREE), 0.6, legs)
+    return build_robot(f"3-{chain}", ring(0.35, THREE), ring(0.2, THREE), 0.6, legs)
 
 
 def tricept() -> Robot:
     """3-UPS+UP, the passive leg in the middle."""
     base, top = (np.vstack([ring(r, THREE), np.zeros((1, 3))]) for r in (0.35, 0.2))
     legs = [*[leg("UPS")] * 3, leg("UP", np.eye(3)[0], passive=True)]
-    return built("3-UPS+UP", base, top, 0.7, legs)
+    return build_robot("3-UPS+UP", base, top, 0.7, legs)
 
 
 def rod(length: float) -> Strut:
@@ -85,7 +85,7 @@ def rod(length: float) -> Strut:
 
 
 def sliders(chain: str = "PUS", length: float = 0.65, mass: float = 3.0) -> Robot:
-    """Six rods PUS, or three with other letters, below whose platform upright rails carry their feet."""
+    """Six rods PUS, or three with other letters, whose feet move on vertical rails below the platform."""
     few = chain != "PUS"
     lower, upper = (THREE, THREE) if few else (LOWER, UPPER)
     axes = list(tangents(THREE)) if few else [None] * 6
@@ -93,23 +93,23 @@ def sliders(chain: str = "PUS", length: float = 0.65, mass: float = 3.0) -> Robo
     ends = [axis if chain.endswith("U") else None for axis in axes]
     pairs = zip(axes, ends, strict=True)
     legs = [leg(chain, a, e, carriage=carriage, strut=rod(length)) for a, e in pairs]
-    return built(f"{len(legs)}-{chain}", ring(0.3, lower), ring(0.15, upper), 0.6, legs)
+    return build_robot(f"{len(legs)}-{chain}", ring(0.3, lower), ring(0.15, upper), 0.6, legs)
 
 
 def planar() -> Robot:
     """3-PRR in a level plane, rails along the circle."""
     ways = [Carriage(kind="slider", axis=axis, mass=0.2, side=-1) for axis in tangents(THREE)]
     legs = [leg("PRR", carriage=way, strut=rod(0.4)) for way in ways]
-    return built("3-PRR", ring(0.35, THREE), ring(0.08, THREE + 10.0), 0.0, legs, plane="xy")
+    return build_robot("3-PRR", ring(0.35, THREE), ring(0.08, THREE + 10.0), 0.0, legs, plane="xy")
 
 
 def table(chain: str, *, mass: float, inertia: float, height: float = 0.8, **rod: Any) -> Robot:
-    """A platform, its centre of mass among the tips, on four upright legs all of which is piston."""
+    """Platform on four vertical legs all of which is piston, its centre of mass among the tips."""
     sizes: dict[str, Any] = {"length": height, "EA": 1.1e8, "EI": 5e3, "rhoA": 4.5}
     piston = Piston(**(sizes | rod))
     own = leg(chain, cylinder=Cylinder(mass=0.0, mouth=0.0), piston=piston)
     load = Payload(mass=mass, inertia=[inertia] * 3, com=[0.0, 0.0, 0.0])
-    return built(f"4-{chain}", ring(0.3, FOUR), ring(0.3, FOUR), height, [own] * 4, payload=load)
+    return build_robot(f"4-{chain}", ring(0.3, FOUR), ring(0.3, FOUR), height, [own] * 4, payload=load)
 
 
 def without_gravity(robot: Robot) -> Robot:
@@ -124,7 +124,7 @@ def without_cylinders(robot: Robot) -> Robot:
     return robot.replace(legs=[leg.replace(cylinder=bare, piston=rod) for leg in robot.legs])
 
 
-def unlike_legs(robot: Robot) -> Robot:
+def with_unequal_legs(robot: Robot) -> Robot:
     """The robot with legs that differ in all they have, axial inertias and universal joints included."""
     return robot.replace(legs=[_unlike(i, leg) for i, leg in enumerate(robot.legs)])
 

@@ -1,1 +1,1 @@
-"""What is known of a study before it runs: checks, estimates, its description in words."""
+"""Checks, estimates and remarks on a study and its results."""

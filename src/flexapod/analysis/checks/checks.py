@@ -8,11 +8,12 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.analysis.checks.resource_limits import check_outputs
-from flexapod.analysis.results.bodies import clearance, gap_words, largest_turns, turns
+from flexapod.analysis.results.bodies import clearance, joint_angle_limits, joint_angles
+from flexapod.analysis.results.remarks import remark
 from flexapod.analysis.results.rigid_path import RigidPath, open_force_words, path_instants
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError, check_kind
-from flexapod.common.ranking import first_largest, first_least, most
+from flexapod.common.ranking import first_largest, first_least, largest_item
 from flexapod.common.resources import one_thread
 from flexapod.kinematics.inverse import BETA_LIMIT
 from flexapod.kinematics.workspace import BEFORE, BEYOND, LONGEST, PULLED_OUT, SHORTEST
@@ -67,7 +68,7 @@ def check_path(study: Study, path: RigidPath | None = None) -> list[str]:
 
 
 def _rigid_remarks(path: RigidPath) -> list[str]:
-    """What elastic legs would settle and rigid ones do not: refuse what cannot move, say which forces are open."""
+    """Refuse rigid legs that cannot follow the motion; remarks on forces that rigid statics leaves open."""
     study, robot = path.study, path.robot
     if study.simulation.fidelity != "rigid":
         return []
@@ -98,7 +99,7 @@ def check_geometry(study: Study, path: RigidPath | None = None) -> list[str]:
         limbs = kinematics.rigid_limbs(robot)
         if limbs.guides or np.count_nonzero(limbs.state == kinematics.DRIVEN) < 6:
             kinematics.refuse_loose(limbs)
-        for early in path.first_looks:
+        for early in path.coarse_paths:
             _refuse_lost(robot, early.time, early.reach)
             _refuse_excess(robot, early.time, early.reach)
         t, found = path.time, path.reach
@@ -113,26 +114,30 @@ def check_geometry(study: Study, path: RigidPath | None = None) -> list[str]:
     return remarks + _remarks(robot, t, found.length, path.nearest) + _touching(path)
 
 
-def path_remarks(robot: Robot, t: Array, poses: kinematics.Poses) -> list[str]:
-    """Remarks on poses near a singularity and pistons that reach behind their universal joint.
+def pose_remarks(at: kinematics.RigidPoses) -> list[str]:
+    """Remarks on a pose near a singularity and pistons that reach behind their universal joint.
 
     Raises
     ------
     InputError
         The nut of a leg is outside its screw.
     """
-    length = kinematics.reach(robot, poses).length
-    _refuse_off_the_screw(robot, t, length)
-    return _remarks(robot, t, length, kinematics.nearest_singularity(robot, poses))
+    t, length = np.zeros(1), at.reach.length
+    _refuse_off_the_screw(at.robot, t, length)
+    return _remarks(at.robot, t, length, at.nearest)
 
 
 def _remarks(robot: Robot, t: Array, length: Array, found: kinematics.NearestSingularity) -> list[str]:
     remarks = [e.message for e in kinematics.pull_out(robot, t, length) if not e.fatal]
     if found.smallest_singular_value < NEAR_SINGULAR:
         remarks.append(
-            f"the path comes near a singular pose at t = {t[found.worst]:.6g} s: smallest singular value "
-            f"{found.smallest_singular_value:.3g} of the scaled Jacobian, condition {found.condition:.3g} "
-            f"(remarked on below {NEAR_SINGULAR:g})"
+            remark(
+                "near singular",
+                time=t[found.worst],
+                value=found.smallest_singular_value,
+                condition=found.condition,
+                limit=NEAR_SINGULAR,
+            )
         )
     return remarks
 
@@ -153,7 +158,7 @@ def _refuse_excess(robot: Robot, t: Array, reach: kinematics.Reach) -> None:
     fatal = [e for e in (*found, *kinematics.carriages(robot, t, reach.carriage)) if e.fatal]
     if not fatal:
         return
-    worst = most(fatal, key=lambda e: abs(e.value - e.limit))
+    worst = largest_item(fatal, key=lambda e: abs(e.value - e.limit))
     others = [str(leg) for leg in sorted({e.leg for e in fatal} - {worst.leg})]
     also = f"; so do legs {', '.join(others)}" if len(others) > 1 else "".join(f"; so does leg {n}" for n in others)
     raise InputError(
@@ -260,10 +265,10 @@ def _refuse_folded(t: Array, found: kinematics.Reach) -> None:
 
 
 def _refuse_turned(path: RigidPath) -> None:
-    largest = largest_turns(path.robot)
+    largest = joint_angle_limits(path.robot)
     if not np.isfinite(largest).any():
         return
-    found = turns(path.robot, path.axes, path.poses.rotation)
+    found = joint_angles(path.robot, path.axes, path.poses.rotation)
     k, leg, end = np.unravel_index(first_largest(found - largest), found.shape)
     if found[k, leg, end] <= largest[leg, end] + ROUNDING:
         return
@@ -281,25 +286,25 @@ def _refuse_turned(path: RigidPath) -> None:
 
 def _touching(path: RigidPath) -> list[str]:
     """Legs that run into each other."""
-    if _apart(path):
+    if _legs_clear(path):
         return []
     nearest = clearance(path.robot, path.poses.place(path.robot.platform_joints), path.axes, path.legs.length)
     if nearest is None or nearest.gap.min() >= 0:
         return []
     k = first_least(nearest.gap)
-    return [gap_words(float(nearest.gap[k]), nearest.legs[k] + 1, float(path.time[k])).rstrip(".")]
+    one, other = nearest.legs[k] + 1
+    return [remark("legs overlap", one=one, other=other, overlap=-float(nearest.gap[k]), time=float(path.time[k]))]
 
 
-def _apart(path: RigidPath) -> bool:
-    """Whether no legs UPS touch, told at few instants: a gap changes by no more than the two legs' tips move."""
+def _legs_clear(path: RigidPath) -> bool:
+    """Test at a few instants whether no legs UPS touch: a gap changes by no more than both legs' tips move."""
     if not kinematics.rigid_limbs(path.robot).plain:
         return False
     count, tips = len(path.time), path.poses.place(path.robot.platform_joints)
     of = np.arange(count) // FEW
     some = np.minimum(np.arange(of[-1] + 1) * FEW + FEW // 2, count - 1)
-    poses = path.poses.part(some)
-    axes, length = kinematics.leg_axes(path.robot, poses), kinematics.reach(path.robot, poses).length
-    found = clearance(path.robot, tips[some], axes, length)
+    at = path.resting(some)
+    found = clearance(path.robot, tips[some], at.directions, at.reach.length)
     moved = np.sqrt(((tips - tips[some[of]]) ** 2).sum(axis=2).max(axis=1))
     return found is None or bool((found.gap[of] > 2 * moved + ROUNDING).all())
 

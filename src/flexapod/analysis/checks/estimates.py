@@ -1,6 +1,6 @@
-"""Estimates before a simulation: thick pistons (T8.19)-(T8.21), Euler loads, stresses, vibration (T8.11)-(T8.18).
+"""Estimates before a simulation: Euler loads, stresses, vibration (T8.11)-(T8.18), thick pistons (T8.19)-(T8.21).
 
-Buckling of legs whose pistons have sections, Eq. (T8.23).
+Pistons with sections buckle by Eq. (T8.23).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod import kinematics
-from flexapod.analysis.results.legs import base_motion, of_drives
+from flexapod.analysis.results.legs import base_motion, drive_values
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.arrays import Array, Mask
 from flexapod.kinematics.rotations import matrix
@@ -69,7 +69,7 @@ POISSON = 0.3  # of metals; materials give none
 
 @dataclass(frozen=True, kw_only=True)
 class BendingSection:
-    """What shear asks of a section: radius of gyration [m], Cowper's coefficient kappa."""
+    """Data of a section for its shear: radius of gyration [m], Cowper's coefficient kappa."""
 
     gyration: float
     kappa: float
@@ -150,17 +150,17 @@ def buckling_loads(robot: Robot, length: Array, system: System | None = None) ->
     ``system``: see `solve.statics.buckling`.
     """
     found = np.stack([buckling_load(leg, x - leg.cylinder.mouth) for leg, x in zip(robot.legs, length.T, strict=True)])
-    inside = gives_inside(robot)
+    inside = soft_guide_legs(robot)
     return np.where(inside, leg_loads(robot, length, system), found.T) if inside.any() else found.T
 
 
-def gives_inside(robot: Robot) -> Mask:
-    """Which legs have bushings or a cylinder that bends, (n,)."""
+def soft_guide_legs(robot: Robot) -> Mask:
+    """Mask of the legs that have bushings or a cylinder that bends, (n,)."""
     return np.array([leg.guide is not None or leg.cylinder.section is not None for leg in robot.legs])
 
 
 def _clamped(leg: Leg) -> tuple[bool, bool]:
-    """Whether base and platform end of a leg are clamped."""
+    """Pair of flags: base end and platform end of a leg are clamped."""
     letters, joints = leg.letters, (leg.base_joint, leg.platform_joint)
     base, platform = (
         letter in ("F", "") and joint.bending is None and joint.stiffness is None
@@ -299,12 +299,11 @@ def residual_vibration(
     shapes, omega = modes.shapes[keep], 2 * np.pi * frequency
     damped = omega * np.sqrt(1 - ratio**2)
     mass = modes.system.matrices(modes.equilibrium.state, np.zeros(6)).M
-    rates = rigid_rates(modes.system, robot, path)
+    at = kinematics.RigidPoses(robot, path)
+    rates = rigid_rates(modes.system, at)
     before = np.zeros(rates.shape[1]) if from_rest else rates[0]
     steps = np.diff(rates, axis=0, prepend=before[None], append=np.zeros((1, rates.shape[1])))
-    impulse = (
-        -steps @ (mass @ shapes.T) + _fed_forward(robot, t, path) @ _ways(robot, modes, shapes).T
-    )  # (T8.14)  Q_j dt
+    impulse = -steps @ (mass @ shapes.T) + _fed_forward(at, t) @ _ways(robot, modes, shapes).T  # (T8.14)  Q_j dt
     answer = np.abs(_rung_on(impulse, 1j * damped - ratio * omega, t)) / damped  # (T8.15)
     amplitude = answer * _tool_amplitudes(robot, modes, shapes)  # (T8.16)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -331,11 +330,10 @@ def _rung_on(impulse: Array, rate: NDArray[Any], t: Array) -> NDArray[Any]:
     return impulse[0] * np.exp(rate * (t[-1] - t[0])) + inside + impulse[-1]
 
 
-def _fed_forward(robot: Robot, t: Array, path: kinematics.Poses) -> Array:
+def _fed_forward(at: kinematics.RigidPoses, t: Array) -> Array:
     """Impulses (T + 1, legs) [N s] of what drives feed forward of inertia: none at jumps at the start and the end."""
-    still = kinematics.Poses.at_rest(path.position, path.rotation)
     none = np.zeros((len(t), 6))  # no wrench
-    force = feed_forward(robot, t, path, none) - feed_forward(robot, t, still, none)
+    force = feed_forward(at, t, none) - feed_forward(at.resting(), t, none)
     return np.pad(0.5 * (force[1:] + force[:-1]) * np.diff(t)[:, None], ((1, 1), (0, 0)))
 
 
@@ -343,7 +341,7 @@ def _ways(robot: Robot, modes: RobotModes, shapes: Array) -> Array:
     """Ways of the drives in every shape, (m, legs)."""
     system = modes.system
     of_legs = shapes[:, :-6].reshape(len(shapes), system.legs, system.n)
-    return of_drives(kinematics.rigid_limbs(robot), system.kernel.shapes, of_legs)
+    return drive_values(kinematics.rigid_limbs(robot), system.kernel.shapes, of_legs)
 
 
 def _tool_amplitudes(robot: Robot, modes: RobotModes, shapes: Array) -> Array:

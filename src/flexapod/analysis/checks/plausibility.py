@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -13,15 +14,15 @@ from flexapod.analysis.checks.estimates import (
     bending_errors,
     buckling_load,
     buckling_loads,
-    gives_inside,
     piston_section,
+    soft_guide_legs,
 )
 from flexapod.analysis.results.bodies import flexible_axes
-from flexapod.analysis.results.legs import bending, bending_basis, lateral
+from flexapod.analysis.results.legs import bending_amplitudes_of_leg, bending_basis, lateral_amplitudes
+from flexapod.analysis.results.remarks import Doubt, remark, worst_remarks
 from flexapod.analysis.results.time_history import Record
 from flexapod.common.arrays import Array
-from flexapod.common.quantities import brief
-from flexapod.common.ranking import first_largest, first_least, most
+from flexapod.common.ranking import first_largest, first_least
 from flexapod.mechanics.leg.layout import Shapes
 from flexapod.mechanics.shapes import LateralBasis
 from flexapod.model import Actuator, Leg, Robot
@@ -41,7 +42,7 @@ KINDS = {"slope", "stroke", "buckling", "nut", "slenderness", "yield"}  # of rem
 
 @dataclass(frozen=True)
 class _When:
-    """When the kth of several states is, in words: at an instant of `time` [s], or, at rest, nothing."""
+    """Text for the kth of several states: its instant of `time` [s], or empty at rest."""
 
     time: Array | None = None
 
@@ -55,7 +56,7 @@ def robot_warnings(robot: Robot, system: System, record: Record) -> list[str]:
 
 
 def rest_warnings(robot: Robot, system: System, states: RestStates) -> list[str]:
-    """The same remarks on a robot at rest."""
+    """Remarks on a robot at rest, each with leg, value and limit."""
     return _leg_warnings(robot, system, states, _When())
 
 
@@ -63,11 +64,13 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
     axes = flexible_axes(robot, system, record)
     compression = np.einsum("tli,tli->tl", record.lam[..., :3], axes)
     shapes, basis, found = system.kernel.shapes, bending_basis(system.kernel.shapes), []
-    inside = gives_inside(robot)
+    inside = soft_guide_legs(robot)
     own = system if shapes.beam.a.count or shapes.beam.b.count else None
     loads = buckling_loads(robot, record.q[..., shapes.l_index], own) if inside.any() else None
     low, high, most_thrust = record.q.min(axis=0), record.q.max(axis=0), np.abs(compression).max(axis=0)
-    amplitude = np.sqrt(2) * lateral(shapes, np.maximum(high, -low)).max(axis=1)  # of both directions together
+    amplitude = np.sqrt(2) * lateral_amplitudes(shapes, np.maximum(high, -low)).max(
+        axis=1
+    )  # of both directions together
     slope, curved = amplitude @ np.abs(basis.tip_slope), amplitude @ np.abs(_curvatures(basis)).max(axis=1, initial=0.0)
     for i, leg in enumerate(robot.legs):
         load = None if loads is None else loads[:, i]
@@ -77,8 +80,8 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
         if not doubt:
             continue
         length, push = record.q[:, i, shapes.l_index], compression[:, i]
-        free, bent = length - leg.cylinder.mouth, bending(leg, shapes, record.q[:, i])
-        remarks: list[_Remark] = []
+        free, bent = length - leg.cylinder.mouth, bending_amplitudes_of_leg(leg, shapes, record.q[:, i])
+        remarks: list[_Found] = []
         if "slope" in doubt:
             remarks += _slope(leg_values(leg, basis, free, np.ones(1), 1)[:, :, 0] / free, bent, when)
         remarks += _stroke(leg, length, when) if "stroke" in doubt else []
@@ -86,8 +89,8 @@ def _leg_warnings(robot: Robot, system: System, record: Record | RestStates, whe
         remarks += _nut(leg, push, when) if "nut" in doubt else []
         remarks += _slender(leg, basis, free, when) if "slenderness" in doubt else []
         remarks += _stress(leg, basis, bent, free, push, when) if "yield" in doubt else []
-        found += [(i, *remark) for remark in remarks]
-    return worst_of_each(found)
+        found += [Doubt(leg=i, kind=kind, severity=bad, numbers=numbers) for kind, bad, numbers in remarks]
+    return worst_remarks(found)
 
 
 def _in_doubt(
@@ -126,11 +129,11 @@ def actuator_warnings(actuator: Actuator, shapes: Shapes, record: Record) -> lis
         section = beam_section(actuator)
         if free.min() < SLENDERNESS * depth and section is not None:
             k = first_least(free)
-            found.append(_slender_remark(free[k], depth, section, basis, when[k]))
+            found.append(_thick(free[k], depth, section, basis, when[k]))
         if material.yield_stress is not None:
             bending = _bending(basis, lateral, free) * material.E * depth / 2
-            found += _yield_words(bending, material.yield_stress, when)
-    return [f"the beam: {words}" for _, _, words in found]
+            found += _yielding(bending, material.yield_stress, when)
+    return [f"the beam: {remark(kind, **numbers)}" for kind, _, numbers in found]
 
 
 def leg_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compression: Array) -> Array | None:
@@ -154,22 +157,21 @@ def leg_stress(leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compr
     return np.abs(compression) * piston.E / piston.EA + bending
 
 
-_Remark = tuple[str, float, str]  # kind, severity (value over limit), words
+_Found = tuple[str, float, Mapping[str, object]]  # kind, severity (value over limit), numbers of a remark
 
 
-def _slope(slopes: Array, lateral: Array, when: _When) -> list[_Remark]:
-    """By the slopes of the shapes at the tip, (directions, k, T) [1/m]."""
+def _slope(slopes: Array, lateral: Array, when: _When) -> list[_Found]:
+    """Remark on the tip slope, by the slopes of the shapes at the tip, (directions, k, T) [1/m]."""
     if not lateral.shape[-1]:
         return []
     slope = np.linalg.norm((np.moveaxis(slopes, -1, 0) * lateral).sum(axis=-1), axis=1)
     k = first_largest(slope)
     if slope[k] <= SLOPE:
         return []
-    words = f"the tip slope reaches {slope[k]:.3g}{when[k]}: above {SLOPE:g} second-order theory is strained"
-    return [("slope", slope[k] / SLOPE, words)]
+    return [("slope", slope[k] / SLOPE, {"slope": slope[k], "when": when[k], "limit": SLOPE})]
 
 
-def _stroke(leg: Leg, length: Array, when: _When) -> list[_Remark]:
+def _stroke(leg: Leg, length: Array, when: _When) -> list[_Found]:
     """Strokes that are a result, not commands, may leave their limits; the stops there are not part of the model."""
     if leg.stroke is None:
         return []
@@ -177,71 +179,51 @@ def _stroke(leg: Leg, length: Array, when: _When) -> list[_Remark]:
     k = first_largest(excess)
     if excess[k] <= STROKE_ROUNDING:
         return []
-    words = (
-        f"its drive leaves the stroke of {leg.stroke.min:g} to {leg.stroke.max:g} m by "
-        f"{1e3 * excess[k]:.3g} mm{when[k]}: end stops are not part of the model"
-    )
-    return [("stroke", excess[k], words)]
+    low, high = leg.stroke.min, leg.stroke.max
+    return [("stroke", excess[k], {"low": low, "high": high, "excess": 1e3 * excess[k], "when": when[k]})]
 
 
-def _axial(leg: Leg, free: Array, compression: Array, when: _When, load: Array | None) -> list[_Remark]:
+def _axial(leg: Leg, free: Array, compression: Array, when: _When, load: Array | None) -> list[_Found]:
     if load is None and (compression * free**2).max() <= NEAR_BUCKLING * leg.piston.least_EI * (np.pi / 2) ** 2:
         return []  # even with the least root that (T8.11) can have
     share = compression / (buckling_load(leg, free) if load is None else load)
     k = first_largest(share)
     if share[k] <= NEAR_BUCKLING:
         return []
-    return [("buckling", share[k], buckling_words(share[k], compression[k], when[k]))]
+    return [("buckling", share[k], buckling_numbers(share[k], compression[k], when[k]))]
 
 
-def _nut(leg: Leg, thrust: Array, when: _When) -> list[_Remark]:
+def _nut(leg: Leg, thrust: Array, when: _When) -> list[_Found]:
+    """A thrust that unloads one half of a preloaded nut (T15.9)."""
     if leg.screw is None:
         return []
     share, k = np.abs(thrust) / leg.screw.nut.linear_to, first_largest(np.abs(thrust))
-    return [("nut", share[k], nut_words(leg, float(abs(thrust[k])), when[k]))] if share[k] > 1 else []
+    limit = leg.screw.nut.linear_to
+    return [("nut", share[k], {"thrust": abs(thrust[k]), "when": when[k], "limit": limit})] if share[k] > 1 else []
 
 
-def nut_words(leg: Leg, thrust: float, when: str) -> str:
-    """That a thrust [N] unloads one half of a preloaded nut (T15.9)."""
-    limit = 0.0 if leg.screw is None else leg.screw.nut.linear_to
-    return (
-        f"the thrust reaches {thrust:.4g} N{when}, beyond {limit:.4g} N (2.83 times the preload of the nut). One half "
-        "of the nut then carries nothing, and it is softer than assumed"
-    )
+def buckling_numbers(share: float, force: float, when: str) -> dict[str, object]:
+    """An axial force [N] near the Euler load (T8.11), or above it, and when: for all that remark on it."""
+    does = "buckles" if share >= 1 else "is close to buckling"
+    return {"share": share, "force": force, "when": when, "does": does}
 
 
-def buckling_words(share: float, force: float, when: str) -> str:
-    """That an axial force [N] is near the Euler load (T8.11), or above it, and where: for all that remark on it."""
-    what = "buckles" if share >= 1 else "is close to buckling"
-    return f"the axial load reaches {share:.0%} of the Euler load ({force:.4g} N{when}): the leg {what}"
-
-
-def _slender(leg: Leg, basis: LateralBasis, free: Array, when: _When) -> list[_Remark]:
+def _slender(leg: Leg, basis: LateralBasis, free: Array, when: _When) -> list[_Found]:
     width, k = leg.piston.width, first_least(free)
     if free[k] >= SLENDERNESS * width or leg.piston.shear:
         return []
-    return [_slender_remark(free[k], width, piston_section(leg.piston), basis, when[k])]
+    return [_thick(free[k], width, piston_section(leg.piston), basis, when[k])]
 
 
-def _slender_remark(free: float, width: float, section: BendingSection, basis: LateralBasis, when: str) -> _Remark:
-    ratio = free / width
-    words = f"the free length is only {ratio:.3g} times the width{when}: "
-    return ("slenderness", SLENDERNESS / ratio, words + thick_words(section, free, solid=basis.name == SOLID))
+def _thick(free: float, width: float, section: BendingSection, basis: LateralBasis, when: str) -> _Found:
+    ratio, kind = free / width, "thick, solid" if basis.name == SOLID else "thick"
+    return (kind, SLENDERNESS / ratio, {"ratio": ratio, "when": when, **thick_numbers(section, free)})
 
 
-def thick_words(section: BendingSection, free: float, *, solid: bool) -> str:
-    """What a leg that is not slender has and the shapes of a beam, or those reduced from the solid, leave out."""
-    deflection, frequency, inertia = bending_errors(section, free)
-    if solid:
-        return (
-            f"rotary inertia counts. Below {SLENDERNESS:g} rotary inertia, which the solid's shapes leave out, is no "
-            f"longer small: its first frequency of bending is up to {100 * inertia:.2g} % too high (a pinned beam's)"
-        )
-    return (
-        f"shear counts. Below {SLENDERNESS:g} shear, which an Euler-Bernoulli beam leaves out, is no longer small: it "
-        f"deflects by about {100 * deflection:.2g} % too little under a force across its end, and its first bending "
-        f"frequency is up to {100 * frequency:.2g} % too high (Timoshenko's beam, clamped and pinned)"
-    )
+def thick_numbers(section: BendingSection, free: float) -> dict[str, object]:
+    """Errors [%] of shapes without shear or rotary inertia in a leg that is not slender."""
+    per_cent = (100 * error for error in bending_errors(section, free))
+    return {"limit": SLENDERNESS, **dict(zip(("deflection", "frequency", "inertia"), per_cent, strict=True))}
 
 
 def _bending(basis: LateralBasis, lateral: Array, free: Array) -> Array:
@@ -262,29 +244,15 @@ def _curvatures(basis: LateralBasis) -> Array:
 
 def _stress(
     leg: Leg, basis: LateralBasis, lateral: Array, free: Array, compression: Array, when: _When
-) -> list[_Remark]:
+) -> list[_Found]:
     stress = leg_stress(leg, basis, lateral, free, compression)
     if stress is None or leg.piston.yield_stress is None:
         return []
-    return _yield_words(stress, leg.piston.yield_stress, when)
+    return _yielding(stress, leg.piston.yield_stress, when)
 
 
-def _yield_words(stress: Array, limit: float, when: _When) -> list[_Remark]:
+def _yielding(stress: Array, limit: float, when: _When) -> list[_Found]:
     k = first_largest(stress)
     if stress[k] <= limit:
         return []
-    words = f"the stress reaches {stress[k] / 1e6:.4g} MPa{when[k]}, above the yield stress of {limit / 1e6:.4g} MPa"
-    return [("yield", stress[k] / limit, words)]
-
-
-def worst_of_each(found: list[tuple[int, str, float, str]]) -> list[str]:
-    """One sentence for each kind of remark: of the leg where it is worst, and which others share it."""
-    texts = []
-    for kind in dict.fromkeys(entry[1] for entry in found):
-        same = [entry for entry in found if entry[1] == kind]
-        worst = most(same, key=lambda entry: entry[2])
-        others = sorted(entry[0] + 1 for entry in same if entry is not worst)
-        also = f" (also legs {', '.join(map(str, others))})" if others else ""
-        first, rest = brief(worst[3])
-        texts.append(f"leg {worst[0] + 1}: {first}{also}" + (f". {rest}" if rest else ""))
-    return texts
+    return [("yield", stress[k] / limit, {"stress": stress[k] / 1e6, "when": when[k], "limit": limit / 1e6})]

@@ -1,4 +1,4 @@
-"""Which poses are reached, and why the others are not: codes and words, Eqs. (T2.24), (T2.37)-(T2.38)."""
+"""Reachability of poses: codes and reasons, as numbers and as text, Eqs. (T2.24), (T2.37)-(T2.38)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from flexapod import kinematics
 from flexapod.analysis.checks.checks import SINGULAR
-from flexapod.analysis.results.bodies import largest_turns, turns
+from flexapod.analysis.results.bodies import joint_angle_limits, joint_angles
 from flexapod.common.arrays import Array
 from flexapod.kinematics.inverse import BETA_LIMIT
 from flexapod.model import Robot
@@ -76,7 +76,7 @@ def leg_limits(robot: Robot) -> tuple[Array, Array, Array]:
     return np.array(limits), mouth, np.array(piston)
 
 
-def rigid_codes(robot: Robot, path: kinematics.Poses, *, from_home: bool) -> Codes:
+def rigid_codes(at: kinematics.RigidPoses, *, from_home: bool) -> Codes:
     """Codes (P,) of what strokes, pistons and joints say to P poses.
 
     Where several limits are left, the stroke counts before the piston, the piston before the joint, and of a leg too
@@ -84,23 +84,22 @@ def rigid_codes(robot: Robot, path: kinematics.Poses, *, from_home: bool) -> Cod
 
     Parameters
     ----------
-    robot : Robot
-    path : Poses
+    at : RigidPoses
     from_home : bool
         Whether a pose also counts as out of reach where the scaled Jacobian is singular (smallest singular value
         below 1e-8) or its determinant has not the sign that it has at home: every way there passes a singularity.
     """
-    found = kinematics.reach(robot, path)
+    robot, path, found = at.robot, at.poses, at.reach
     length = found.length
     limits, mouth, piston = leg_limits(robot)
     short, long = (limits[:, 0] - length).max(axis=1), (length - limits[:, 1]).max(axis=1)
     guided = np.where(mouth > 0, mouth + piston, np.inf)
     code = np.zeros(len(path), dtype=np.int8)
     marks = [  # later ones overrule earlier ones
-        ("singular", _cut_off(robot, path) if from_home else np.zeros(len(path), dtype=bool)),
+        ("singular", _cut_off(at) if from_home else np.zeros(len(path), dtype=bool)),
         ("out_of_reach", found.lost),
         ("joint_folds", np.any([(angle > BETA_LIMIT).any(axis=1) for angle in found.angles.values()], axis=0)),
-        ("joint_stops", _turned_too_far(robot, path)),
+        ("joint_stops", _turned_too_far(at)),
         ("carriage_stops", _stopped(robot, found.carriage)),
         ("pulled_out", (length > guided).any(axis=1)),
         ("no_free_length", (length <= mouth).any(axis=1)),
@@ -129,19 +128,19 @@ def _stopped(robot: Robot, place: Array) -> NDArray[np.bool_]:
     return np.any((place < limits[:, 0]) | (place > limits[:, 1]), axis=1)
 
 
-def _turned_too_far(robot: Robot, path: kinematics.Poses) -> NDArray[np.bool_]:
-    largest = largest_turns(robot)
+def _turned_too_far(at: kinematics.RigidPoses) -> NDArray[np.bool_]:
+    largest, path = joint_angle_limits(at.robot), at.poses
     if not np.isfinite(largest).any() or not len(path):
         return np.zeros(len(path), dtype=bool)
-    return np.any(turns(robot, kinematics.leg_axes(robot, path), path.rotation) > largest, axis=(1, 2))
+    return np.any(joint_angles(at.robot, at.directions, path.rotation) > largest, axis=(1, 2))
 
 
-def _cut_off(robot: Robot, path: kinematics.Poses) -> NDArray[np.bool_]:
-    if not len(path):
+def _cut_off(at: kinematics.RigidPoses) -> NDArray[np.bool_]:
+    if not len(at.poses):
         return np.zeros(0, dtype=bool)
     with np.errstate(invalid="ignore", divide="ignore"):  # a leg without length has no direction: another code is its
-        found = kinematics.singularity(robot, path)
-    return (found.smallest_singular_value < SINGULAR) | (np.sign(found.determinant) != _sign_at_home(robot))
+        found = at.singularity
+    return (found.smallest_singular_value < SINGULAR) | (np.sign(found.determinant) != _sign_at_home(at.robot))
 
 
 def _sign_at_home(robot: Robot) -> float:

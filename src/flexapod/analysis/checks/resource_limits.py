@@ -1,4 +1,4 @@
-"""Times that must fit each other, and room for results: what is kept of each instant, memory and disk."""
+"""Limits of a run: times that must fit each other, and room in memory and on disk for the stored instants."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ import shutil
 from contextlib import suppress
 from pathlib import Path
 
+from flexapod.analysis.results.remarks import remark
 from flexapod.common.errors import InputError
 from flexapod.model import ActuatorStudy, Study
 from flexapod.solve.statics.lost_motion import places_with_friction
 
 
 def check_outputs(study: Study | ActuatorStudy) -> list[str]:
-    """Refuse a study whose results could not be stored even once after the start; remark on what is left out.
+    """Refuse a study whose results could not be stored even once after the start; remark on omitted results.
 
     Raises
     ------
@@ -34,16 +35,10 @@ def check_outputs(study: Study | ActuatorStudy) -> list[str]:
             next_step=f"Give simulation.{name} a value below it, or a longer simulation.duration",
         )
     if name == "step":
-        remarks.append(
-            f"simulation.step = {stored:g} s is longer than output_step = {simulation.output_step:g} s: "
-            "results are stored at every step"
-        )
+        remarks.append(remark("long step", step=stored, output_step=simulation.output_step))
     end = outputs * stored
     if duration - end > 1e-6 * stored:
-        remarks.append(
-            f"the duration of {duration:g} s is not a multiple of simulation.{name} = {stored:g} s: "
-            f"results end at t = {end:g} s"
-        )
+        remarks.append(remark("cut duration", duration=duration, name=name, step=stored, end=end))
     return remarks
 
 
@@ -62,7 +57,7 @@ _CGROUPS = (
 
 
 def stored_instants(study: Study | ActuatorStudy) -> float:
-    """How many instants a simulation keeps; not a whole number where they are too many to be counted."""
+    """Number of instants that a simulation stores; not a whole number where they are too many to be counted."""
     return study.duration / study.simulation.stored_step + 1
 
 
@@ -100,11 +95,10 @@ def check_memory(study: Study | ActuatorStudy, runs: int = 1) -> list[str]:
     if needed > SMALL and needed > (free := available_memory()):
         at_once = f", {runs} of them at a time" if runs > 1 else ""
         raise _too_much(study, f"{gigabytes(needed)} of memory{at_once}", "is free", free, needed)
-    count, takes = stored_instants(study), f"take {gigabytes(size)}, and {PEAK} times as much while they are made"
+    count, takes = stored_instants(study), {"size": gigabytes(size), "times": PEAK}
     if count > MANY:
-        step = f"output_step = {study.duration / FEW:.1g} (s) keeps some {FEW}"
-        return [f"the results are of {count:.3g} instants: they {takes}, and most of the time goes into them; {step}"]
-    return [f"the results {takes}"] * (size > REMARKED)
+        return [remark("many instants", count=count, **takes, step=study.duration / FEW, few=FEW)]
+    return [remark("large results", **takes)] if size > REMARKED else []
 
 
 def check_disk(study: Study | ActuatorStudy, folder: Path) -> None:
@@ -173,12 +167,12 @@ def check_map(poses: int, frequencies: int, folder: Path | None = None) -> None:
 
 
 def gigabytes(size: float) -> str:
-    """A size in words."""
+    """Size as text in GB or MB."""
     return f"{size / 1e9:.3g} GB" if size >= 1e8 else f"{size / 1e6:.3g} MB"
 
 
 def free_disk(folder: Path) -> float:
-    """Free space [byte] where a folder is or will be; inf where that cannot be told."""
+    """Free space [byte] where a folder is or will be; inf where unknown."""
     existing = next(place for place in (folder.absolute(), *folder.absolute().parents) if place.exists())
     with suppress(OSError):
         return float(shutil.disk_usage(existing).free)
@@ -186,7 +180,7 @@ def free_disk(folder: Path) -> float:
 
 
 def available_memory() -> float:
-    """Memory [byte] that this process may still take: of the machine, of its control group; inf if not to be told."""
+    """Memory [byte] available to this process: of the machine, of its control group; inf where unknown."""
     found = [float("inf")]
     with suppress(OSError, ValueError, IndexError, StopIteration):
         lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()

@@ -1,6 +1,6 @@
-"""What catalogues ask of a screw: buckling, critical speed, torque, back-driving, life, Eqs. (T15.41)-(T15.49).
+"""Catalogue limits of screws: buckling, critical speed, torque, back-driving, life, Eqs. (T15.41)-(T15.49).
 
-Friction of drives that slide steadily, as catalogues have it.
+Friction of drives that slide steadily, as catalogues state it, is of Eq. (T19.19).
 """
 
 from __future__ import annotations

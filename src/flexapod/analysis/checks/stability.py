@@ -1,7 +1,4 @@
-"""Loops of drives that are unstable at poses, or on the way of a motion.
-
-Whether fixed steps follow what a motion leaves vibrating, Eq. (T8.24).
-"""
+"""Stability of drive loops at poses or along a motion, and fixed steps fine enough for vibration, Eq. (T8.24)."""
 
 from __future__ import annotations
 
@@ -11,56 +8,72 @@ import numpy as np
 
 from flexapod import kinematics, model
 from flexapod.analysis.checks.estimates import residual_vibration
-from flexapod.analysis.results.poses import coordinate_words, coordinates_of
+from flexapod.analysis.results.poses import coordinate_words, pose_coordinates
+from flexapod.analysis.results.remarks import remark
+from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.arrays import Array
 from flexapod.common.errors import FlexapodError
-from flexapod.common.quantities import number, text
 from flexapod.common.ranking import first_largest
 from flexapod.model import Study
-from flexapod.solve.modal.at_poses import locked_poses, robot_modes
-from flexapod.solve.modal.modal_loops import unstable_words
-from flexapod.solve.modal.modes import RobotModes, modes_of
+from flexapod.solve.modal.elastic_robot import ElasticRobot
+from flexapod.solve.modal.modes import RobotModes, modes_of, single_pose_modes
+from flexapod.solve.statics.locked_robot import LockedPoses
 
 INSTANTS = 11
 
 
-def loops(robot: model.Robot) -> bool:
-    """Whether a robot has loops that can be unstable."""
+def has_drive_loops(robot: model.Robot) -> bool:
+    """Test whether a robot has drive loops that can be unstable."""
     return any(leg.screw is not None and leg.screw.loops for leg in robot.legs)
 
 
-def loop_remarks(study: model.Study, poses: kinematics.Poses | None = None) -> list[str]:
-    """That they are, at poses or at some instants of the motion, of which the worst is named.
+def loop_remarks(path: RigidPath, elastic: ElasticRobot) -> list[str]:
+    """Remark on drive loops that are unstable at instants of the motion, with the worst of them.
 
     Nothing where they are not, or where there are no modes.
     """
-    if not loops(study.robot):
+    if not has_drive_loops(path.robot):
         return []
+    study = path.study
     t = np.linspace(0.0, min(study.duration, study.motion.end_time - study.motion.hold), INSTANTS)
-    poses = kinematics.poses(study.robot, study.motion, t) if (moving := poses is None) else poses
-    at_rest = kinematics.Poses.at_rest(poses.position, poses.rotation)
+    at_rest = RigidPath(study, t).resting()
     try:
-        locked = locked_poses(study.robot, study.simulation, at_rest, study.load)
+        locked = elastic.lock(at_rest)
         rates = modes_of(locked).growth
     except FlexapodError:
         return []
     if rates is None or not rates.any():
         return []
     worst, count = first_largest(rates), int((rates > 0).sum())
-    last = text(float(t[locked.at[worst]]), "s")
-    where = f" at {count} of {INSTANTS} instants, most at t = {last}" if moving else ""
-    return unstable_words(float(rates[worst]), where)
+    last = float(t[locked.at[worst]])
+    return [remark("unstable on the way", count=count, instants=INSTANTS, worst=last, time=1 / float(rates[worst]))]
 
 
-def unstable_at(robot: model.Robot, poses: kinematics.Poses, rates: Array) -> list[str]:
-    """At how many of P poses they are, and at which one most; ``rates`` (P,): growth there [1/s]."""
+def loop_remarks_at(locked: LockedPoses) -> list[str]:
+    """Remarks on loops that are unstable at the one pose of a locked robot; none where there are no modes."""
+    if not has_drive_loops(locked.robot):
+        return []
+    try:
+        rates = modes_of(locked).growth
+    except FlexapodError:
+        return []
+    return [] if rates is None else unstable(float(rates[0]))
+
+
+def unstable(rate: float) -> list[str]:
+    """Remark on unstable loops whose deviations grow at a rate [1/s]; none at 0."""
+    return [remark("unstable", time=1 / rate)] if rate else []
+
+
+def instability_remarks(robot: model.Robot, poses: kinematics.Poses, rates: Array) -> list[str]:
+    """Remark on the count of P poses with unstable loops, and on the worst; ``rates`` (P,): growth there [1/s]."""
     if not (count := int((rates > 0).sum())):
         return []
     worst = first_largest(rates)
-    at = coordinates_of(robot, poses.part(slice(worst, worst + 1)))[0]
+    at = pose_coordinates(robot, poses.part(slice(worst, worst + 1)))[0]
     moved = {name: x for name, x in zip(model.AXES, at.tolist(), strict=True) if abs(x) > 1e-9}
     where = f"at {coordinate_words(moved)} from home" if moved else "at home"
-    return unstable_words(float(rates[worst]), f" at {count} of {rates.size} poses, most {where}")
+    return [remark("unstable at poses", count=count, poses=rates.size, worst=where, time=1 / float(rates[worst]))]
 
 
 FEWEST = 20.0  # steps a period, whose length is then 0.8 % too long, Eq. (T6.16)
@@ -69,7 +82,7 @@ EXCITED = 1e-3  # of the largest deviation: smaller vibrations are not looked at
 PER_PERIOD, MOST = 12, 4000  # instants of the motion, of a period of the highest mode that is asked; of all
 
 
-def step_warnings(study: Study, step: float, deviation: Callable[[], Array]) -> list[str]:
+def step_warnings(study: Study, elastic: ElasticRobot, step: float, deviation: Callable[[], Array]) -> list[str]:
     """A remark where a mode that the motion leaves vibrating has too few of the fixed steps a period.
 
     How a mode vibrates is estimated as for `flexapod check`: it answers by itself to the inertia of the rigid path.
@@ -80,9 +93,8 @@ def step_warnings(study: Study, step: float, deviation: Callable[[], Array]) -> 
     if study.simulation.tolerance is not None or study.robot.platform_fixed or not ends:
         return []
     try:
-        at = kinematics.poses(study.robot, study.motion, np.array([end]))
-        rest = kinematics.Poses.at_rest(at.position, at.rotation)
-        modes = robot_modes(study.robot, study.simulation, rest, study.load, end)
+        rest = RigidPath(study, np.array([end])).resting()
+        modes = single_pose_modes(elastic.lock(rest, end))
     except FlexapodError:
         return []
     if modes.growth:
@@ -96,10 +108,14 @@ def step_warnings(study: Study, step: float, deviation: Callable[[], Array]) -> 
     finest = float((1 / (frequency * needed))[excited].min())
     digit = 10.0 ** np.floor(np.log10(finest))
     return [
-        f"the motion leaves the tool vibrating by some {number(1e6 * amplitude[worst], 2)} um at "
-        f"{number(frequency[worst], 3)} Hz: {number(1 / (frequency[worst] * step), 3)} steps a period are fewer than "
-        f"the {number(needed[worst], 2)} that follow it. Set simulation.tolerance = 1e-4 in place of step, or step = "
-        f"{np.floor(finest / digit * (1 + 1e-9)) * digit:.1g} s"
+        remark(
+            "few steps",
+            amplitude=1e6 * amplitude[worst],
+            frequency=frequency[worst],
+            steps=1 / (frequency[worst] * step),
+            needed=needed[worst],
+            step=np.floor(finest / digit * (1 + 1e-9)) * digit,
+        )
     ]
 
 

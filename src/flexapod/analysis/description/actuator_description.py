@@ -47,7 +47,7 @@ class BeamDescription:
 
 @dataclass(frozen=True, kw_only=True)
 class ActuatorDescription:
-    """What `describe` finds for a single actuator; `driven`: the coordinates that a load drives."""
+    """Description of a single actuator, as `describe` returns it; `driven`: the coordinates that a load drives."""
 
     kind: str = "actuator"
     file: str | None
@@ -66,12 +66,12 @@ class ActuatorDescription:
     remarks: tuple[str, ...]
 
     def as_dict(self) -> dict[str, object]:
-        """Everything as plain data."""
+        """Description as plain data."""
         return asdict(self)
 
 
 def describe_actuator(study: model.ActuatorStudy) -> ActuatorDescription:
-    """What a study asks of its actuator.
+    """Describe the study of a single actuator: ranges of its path, beam, displacements, rates, remarks.
 
     Raises
     ------

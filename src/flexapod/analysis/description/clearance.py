@@ -8,7 +8,7 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.analysis.description.leg_description import Extreme
-from flexapod.analysis.results.bodies import clearance, largest_turns, turns
+from flexapod.analysis.results.bodies import clearance, joint_angle_limits, joint_angles
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.errors import FlexapodError
 from flexapod.common.ranking import first_largest, first_least
@@ -17,7 +17,7 @@ from flexapod.model import Robot
 
 @dataclass(frozen=True, kw_only=True)
 class TurnedJoint:
-    """Of the joints at an `end` of the legs that which has least left of its `limit` [rad], or turns farthest.
+    """Joint at an `end` of the legs with the least margin to its `limit` [rad], or with the largest turn.
 
     `largest`: its largest turn since home [rad]; `limit` None: none of them has one.
     """
@@ -65,8 +65,8 @@ def stroke_ends(robot: Robot) -> tuple[StrokeEnd, ...]:
         except FlexapodError:
             continue
         axes = kinematics.leg_axes(robot, pose, legs)
-        turned = turns(robot, axes, pose.rotation)[0]
-        left = (largest_turns(robot) - turned).min()
+        turned = joint_angles(robot, axes, pose.rotation)[0]
+        left = (joint_angle_limits(robot) - turned).min()
         nearest = clearance(robot, pose.place(robot.platform_joints), axes, legs.length)
         found.append(
             StrokeEnd(
@@ -82,7 +82,7 @@ def stroke_ends(robot: Robot) -> tuple[StrokeEnd, ...]:
 
 def joint_turns(path: RigidPath) -> tuple[TurnedJoint, ...]:
     """Angles of the joints at base and platform on a path."""
-    found, limits = turns(path.robot, path.axes, path.poses.rotation), largest_turns(path.robot)
+    found, limits = joint_angles(path.robot, path.axes, path.poses.rotation), joint_angle_limits(path.robot)
     lines = []
     for end, name in enumerate(("base", "platform")):
         limited = np.isfinite(limits[:, end])

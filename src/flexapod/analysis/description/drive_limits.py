@@ -1,4 +1,4 @@
-"""What a simulation asks of its drives beyond what they are made for: in the words of the checks before it."""
+"""Remarks on drives that a simulation loads beyond their limits, in the words of the checks before it."""
 
 from __future__ import annotations
 

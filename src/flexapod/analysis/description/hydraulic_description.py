@@ -6,14 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod.analysis.checks.plausibility import worst_of_each
 from flexapod.analysis.checks.screws import steady_friction
-from flexapod.analysis.description.leg_description import Extreme, largest, least
+from flexapod.analysis.description.leg_description import Extreme, maximum, minimum
 from flexapod.analysis.pose_errors.sensitivity import sensitivity
+from flexapod.analysis.results.remarks import Doubt, worst_remarks
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.arrays import Array
-from flexapod.common.quantities import number
-from flexapod.common.ranking import most
 from flexapod.kinematics.leg_geometry import COORDINATES
 from flexapod.kinematics.rotations import matrix, quaternion
 from flexapod.mechanics.elements.springs import springs_along
@@ -59,10 +57,10 @@ def describe_hydraulic(i: int, leg: Leg, t: Array, length: Array, thrust: Array,
     k = 1 / oil.at_length(length)
     return HydraulicDescription(
         leg=i + 1,
-        thrust=largest(t, np.abs(thrust)),
-        pressure=largest(t, np.maximum(thrust / push, -thrust / pull)),  # (T23.7)
-        flow=largest(t, np.maximum(rate * push, -rate * pull)),
-        stiffness=least(t, k),
+        thrust=maximum(t, np.abs(thrust)),
+        pressure=maximum(t, np.maximum(thrust / push, -thrust / pull)),  # (T23.7)
+        flow=maximum(t, np.maximum(rate * push, -rate * pull)),
+        stiffness=minimum(t, k),
         creep=float((np.abs(thrust) * oil.creep(length)).max()),
     )
 
@@ -77,7 +75,7 @@ def oil_frequency(path: RigidPath) -> tuple[float, float] | None:
     if robot.payload is None or not all(drives) or robot.count > 6 or robot.plane:
         return None
     chosen = np.unique(np.linspace(0, len(path.time) - 1, INSTANTS).astype(int))
-    columns = sensitivity(robot, path.poses).coordinate[chosen][:, :, COORDINATES.index("l")]
+    columns = sensitivity(path).coordinate[chosen][:, :, COORDINATES.index("l")]
     R = matrix(quaternion(path.poses.rotation))[chosen]
     arm = R @ (robot.com - robot.tool)
     turn, moved = columns[..., 3:], columns[..., :3] + np.cross(columns[..., 3:], arm[:, None])
@@ -90,52 +88,17 @@ def oil_frequency(path: RigidPath) -> tuple[float, float] | None:
     return float(frequency.min()), float(frequency.max())
 
 
-def oil_words(path: RigidPath, found: tuple[HydraulicDescription, ...]) -> tuple[str, ...]:
-    """How fast the platform may vibrate on its oil, and how fast it sinks, without full stops."""
-    words, frequency = [], oil_frequency(path)
-    if frequency is not None:
-        low, high = (number(x, 3) for x in frequency)
-        words.append(
-            f"the platform on its oil alone vibrates at {low}" + (f" to {high}" if high != low else "") + " Hz at least"
-        )
-    worst = most(found, key=lambda x: x.creep)
-    if worst.creep:
-        words.append(
-            f"leakage lets leg {worst.leg} give way by up to {number(1e6 * worst.creep, 3)} um/s where nothing "
-            "corrects it; positions and frequencies are those of valves that do"
-        )
-    return tuple(words)
-
-
 def hydraulic_remarks(robot: Robot, found: tuple[HydraulicDescription, ...]) -> list[str]:
-    """What a motion asks beyond the supply: one sentence of a kind, of the leg that is worst."""
-    remarks = []
+    """Remarks on pressures and flows above the supply: one sentence of a kind, for the worst leg."""
+    doubts = []
     for one in found:
         limits = robot.legs[one.leg - 1].cylinder_of_oil.limits  # type: ignore[union-attr]
-        for kind, what, extreme, limit, unit, factor in (
-            ("pressure", "the thrust needs a pressure of", one.pressure, limits.pressure, "bar", BAR),
-            ("flow", "the motion needs a flow of", one.flow, limits.flow, "l/min", LITRES),
+        for kind, extreme, limit, factor in (
+            ("pressure", one.pressure, limits.pressure, BAR),
+            ("flow", one.flow, limits.flow, LITRES),
         ):
             if limit is not None and extreme.value > limit:
-                words = (
-                    f"{what} {number(factor * extreme.value, 4)} {unit} at t = {extreme.time:.6g} s, above the limit "
-                    f"of {number(factor * limit, 4)} {unit}"
-                )
-                remarks.append((one.leg - 1, kind, extreme.value / limit, words))
-    return worst_of_each(remarks)
-
-
-def hydraulic_table(found: tuple[HydraulicDescription, ...]) -> tuple[list[str], list[list[str]]]:
-    """Heads, and a row of texts for each cylinder, its leg first."""
-    head = ["thrust [N]", "pressure [bar]", "flow [l/min]", "least stiffness of the oil [N/um]", "creep [um/s]"]
-    return head, [
-        [
-            f"{x.leg}",
-            f"{x.thrust.value:.4g}",
-            f"{BAR * x.pressure.value:.3g}",
-            f"{LITRES * x.flow.value:.3g}",
-            f"{1e-6 * x.stiffness.value:.3g}",
-            f"{1e6 * x.creep:.3g}",
-        ]
-        for x in found
-    ]
+                numbers = {"value": factor * extreme.value, "time": extreme.time, "limit": factor * limit}
+                bad = extreme.value / limit
+                doubts.append(Doubt(leg=one.leg - 1, kind=kind, severity=bad, numbers=numbers))
+    return worst_remarks(doubts)

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod.analysis.checks.estimates import STATIONS, piston_section
-from flexapod.analysis.checks.plausibility import NEAR_BUCKLING, SLENDERNESS, buckling_words, nut_words, thick_words
+from flexapod.analysis.checks.plausibility import NEAR_BUCKLING, SLENDERNESS, buckling_numbers, thick_numbers
+from flexapod.analysis.results.remarks import Doubt, remark, worst_remarks
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.arrays import Array
-from flexapod.common.quantities import text
-from flexapod.common.ranking import first_largest, first_least, most
+from flexapod.common.ranking import first_largest, first_least, largest_item
 from flexapod.model import Leg, Robot
 from flexapod.model.study.simulation import SOLID
 
@@ -26,18 +26,18 @@ class Extreme:
     time: float
 
 
-def least(t: Array, values: Array) -> Extreme:
+def minimum(t: Array, values: Array) -> Extreme:
     """The least of values (T,) at instants `t`."""
     return Extreme(value=float(values.min()), time=float(t[first_least(values)]))
 
 
-def largest(t: Array, values: Array) -> Extreme:
+def maximum(t: Array, values: Array) -> Extreme:
     """The largest of values (T,) at instants `t`."""
     return Extreme(value=float(values.max()), time=float(t[first_largest(values)]))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Way:
+class CarriageTravel:
     """Least and largest position of a carriage [m, of a crank rad]; least distance from its limits, None without."""
 
     kind: str
@@ -77,7 +77,7 @@ class LegDescription:
     stroke_margin: Extreme | None
     guided: Extreme | None
     slenderness: float
-    carriage: Way | None
+    carriage: CarriageTravel | None
     drive: str
     force_min: Extreme
     force_max: Extreme
@@ -126,34 +126,34 @@ def describe_leg(number: int, leg: Leg, path: LegPath, home: float) -> LegDescri
         leg=number,
         chain=leg.chain,
         home=home,
-        shortest=least(t, length),
-        longest=largest(t, length),
+        shortest=minimum(t, length),
+        longest=maximum(t, length),
         stroke=None if leg.stroke is None else (leg.stroke.min, leg.stroke.max),
         stroke_margin=_margin(leg, t, length),
-        guided=None if leg.strut is not None else least(t, inside),
+        guided=None if leg.strut is not None else minimum(t, inside),
         slenderness=float(free.min() / leg.piston.width),
         carriage=_way(leg, t, path.carriage),
         drive=leg.carriage.kind if leg.carriage and leg.driven == "carriage" else leg.driven,
-        force_min=least(t, path.force),
-        force_max=largest(t, path.force),
+        force_min=minimum(t, path.force),
+        force_max=maximum(t, path.force),
         euler_share=Extreme(value=max(0.0, float(pushed[near] / euler[near])), time=float(t[near])),
         euler_load=float(euler[near]),
         stress=_stress(leg, t, np.maximum(np.abs(along), np.abs(path.thrust)), path.moment, free),
     )
 
 
-def _way(leg: Leg, t: Array, place: Array) -> Way | None:
+def _way(leg: Leg, t: Array, place: Array) -> CarriageTravel | None:
     if leg.carriage is None:
         return None
     travel = leg.carriage.stroke
-    margin = None if travel is None else least(t, np.minimum(place - travel.min, travel.max - place))
-    return Way(kind=leg.carriage.kind, low=least(t, place), high=largest(t, place), margin=margin)
+    margin = None if travel is None else minimum(t, np.minimum(place - travel.min, travel.max - place))
+    return CarriageTravel(kind=leg.carriage.kind, low=minimum(t, place), high=maximum(t, place), margin=margin)
 
 
 def _margin(leg: Leg, t: Array, length: Array) -> Extreme | None:
     if leg.stroke is None:
         return None
-    return least(t, np.minimum(length - leg.stroke.min, leg.stroke.max - length))
+    return minimum(t, np.minimum(length - leg.stroke.min, leg.stroke.max - length))
 
 
 def _stress(leg: Leg, t: Array, force: Array, moment: Array, free: Array) -> Stress | None:
@@ -173,7 +173,7 @@ def _stress(leg: Leg, t: Array, force: Array, moment: Array, free: Array) -> Str
     return Stress(
         axial=float(axial.max()),
         bending=float(bending.max()),
-        total=largest(t, axial + bending),
+        total=maximum(t, axial + bending),
         yield_stress=piston.yield_stress,
     )
 
@@ -181,19 +181,17 @@ def _stress(leg: Leg, t: Array, force: Array, moment: Array, free: Array) -> Str
 def load_remarks(legs: tuple[LegDescription, ...], robot: Robot, fidelity: str) -> list[str]:
     """Doubts about loads and about legs too thick for the `fidelity`, each of the leg where it is worst."""
     remarks = []
-    worst = most(legs, key=lambda leg: leg.euler_share.value)
+    worst = largest_item(legs, key=lambda leg: leg.euler_share.value)
     slim = [found for found, leg in zip(legs, robot.legs, strict=True) if not leg.piston.shear]
-    share, slender = worst.euler_share, most(slim, key=lambda leg: -leg.slenderness) if slim else None
+    share, slender = worst.euler_share, largest_item(slim, key=lambda leg: -leg.slenderness) if slim else None
     if share.value > NEAR_BUCKLING:
-        words = buckling_words(share.value, share.value * worst.euler_load, f" at t = {share.time:.6g} s")
-        remarks.append(f"leg {worst.leg}: {words}")
+        numbers = buckling_numbers(share.value, share.value * worst.euler_load, f" at t = {share.time:.6g} s")
+        remarks.append(Doubt(leg=worst.leg - 1, kind="buckling", severity=share.value, numbers=numbers))
     if slender is not None and slender.slenderness < SLENDERNESS:
-        remarks.append(
-            f"leg {slender.leg}: the free length falls to {slender.slenderness:.3g} times the width of the piston: "
-            + _thick(robot.legs[slender.leg - 1], slender.slenderness, solid=fidelity == SOLID)
-            + ("" if fidelity == SOLID else "; leg.piston.shear = true takes it in")
-        )
-    return remarks + _unloading(legs, robot) + _yielding(legs)
+        kind = "thick on the path, solid" if fidelity == SOLID else "thick on the path"
+        numbers = {"ratio": slender.slenderness, **_thick(robot.legs[slender.leg - 1], slender.slenderness)}
+        remarks.append(Doubt(leg=slender.leg - 1, kind=kind, severity=1 / slender.slenderness, numbers=numbers))
+    return [*worst_remarks([*remarks, *_unloading(legs, robot)]), *_yielding(legs)]
 
 
 def bearing_remarks(path: RigidPath) -> list[str]:
@@ -206,30 +204,29 @@ def bearing_remarks(path: RigidPath) -> list[str]:
                 given = joint.rolling.load + (joint.rolling.preload or 0.0)
                 here = float(at_start[i]) + (joint.rolling.preload or 0.0)
                 found.setdefault(end, []).append((max(here / given, given / max(here, 1e-300)), i + 1, at_start[i]))
-    return [
-        f"leg {leg}: its {end} joint bears {text(float(load), 'N', 4)} at the start, and its stiffness is taken about "
-        f"{text(getattr(path.robot.legs[leg - 1], f'{end}_joint').rolling.load, 'N', 4)}. It grows as load^0.16"
-        for end, joints in found.items()
-        for off, leg, load in [max(joints)]
-        if off > OFF_LOAD
-    ]
+    remarks = []
+    for end, joints in found.items():
+        off, leg, load = max(joints)
+        if off > OFF_LOAD:
+            known = getattr(path.robot.legs[leg - 1], f"{end}_joint").rolling.load
+            remarks.append(remark("bearing", leg=leg, end=end, load=float(load), known=known))
+    return remarks
 
 
-def _thick(leg: Leg, slenderness: float, *, solid: bool) -> str:
-    return thick_words(piston_section(leg.piston), slenderness * leg.piston.width, solid=solid)
+def _thick(leg: Leg, slenderness: float) -> dict[str, object]:
+    return thick_numbers(piston_section(leg.piston), slenderness * leg.piston.width)
 
 
-def _unloading(legs: tuple[LegDescription, ...], robot: Robot) -> list[str]:
+def _unloading(legs: tuple[LegDescription, ...], robot: Robot) -> list[Doubt]:
     """The leg whose thrust goes farthest beyond what the preload of its nut takes, if any does."""
     over = []
     for found, leg in zip(legs, robot.legs, strict=True):
-        force = most((found.force_min, found.force_max), key=lambda force: abs(force.value))
+        force = largest_item((found.force_min, found.force_max), key=lambda force: abs(force.value))
         if leg.screw is not None and abs(force.value) > leg.screw.nut.linear_to:
-            over.append((abs(force.value) / leg.screw.nut.linear_to, found.leg, force))
-    if not over:
-        return []
-    _, number, force = most(over, key=lambda entry: entry[0])
-    return [f"leg {number}: {nut_words(robot.legs[number - 1], abs(force.value), f' at t = {force.time:.6g} s')}"]
+            when, limit = f" at t = {force.time:.6g} s", leg.screw.nut.linear_to
+            numbers = {"thrust": abs(force.value), "when": when, "limit": limit}
+            over.append(Doubt(leg=found.leg - 1, kind="nut", severity=abs(force.value) / limit, numbers=numbers))
+    return [largest_item(over, key=lambda doubt: doubt.severity)] if over else []
 
 
 def _yielding(legs: tuple[LegDescription, ...]) -> list[str]:
@@ -239,10 +236,7 @@ def _yielding(legs: tuple[LegDescription, ...]) -> list[str]:
         for leg in legs
         if leg.stress is not None and leg.stress.yield_stress is not None
     ]
-    ratio, leg, stress = most(over, key=lambda entry: entry[0]) if over else (0.0, 0, None)
+    ratio, leg, stress = largest_item(over, key=lambda entry: entry[0]) if over else (0.0, 0, None)
     if stress is None or ratio <= 1:
         return []
-    return [
-        f"leg {leg} yields: a stress of {stress.total.value / 1e6:.4g} MPa at t = {stress.total.time:.6g} s, "
-        f"{ratio:.3g} times its yield stress"
-    ]
+    return [remark("yields", leg=leg, stress=stress.total.value / 1e6, time=stress.total.time, ratio=ratio)]

@@ -9,10 +9,11 @@ import numpy as np
 
 from flexapod import kinematics, model
 from flexapod.analysis.checks.estimates import residual_vibration
+from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.errors import FlexapodError
 from flexapod.common.ranking import EQUALS, first_largest
-from flexapod.solve.modal.at_poses import locked_poses
-from flexapod.solve.modal.modes import RobotModes, the_modes
+from flexapod.solve.modal.elastic_robot import ElasticRobot
+from flexapod.solve.modal.modes import RobotModes, single_pose_modes
 from flexapod.solve.statics.locked_robot import LockedPoses
 
 BAND = 1e-6  # amplitude at which the tool counts as settled [m]
@@ -25,27 +26,27 @@ class RestingRobot:
     """A study's robot at rest at an instant of its path, drives locked; computed once."""
 
     study: model.Study
+    elastic: ElasticRobot
     time: float
 
     @cached_property
-    def path(self) -> kinematics.Poses:
-        """The rigid pose, without rates."""
-        moving = kinematics.poses(self.study.robot, self.study.motion, np.array([self.time]))
-        return kinematics.Poses.at_rest(moving.position, moving.rotation)
+    def rigid(self) -> kinematics.RigidPoses:
+        """The rigid robot there."""
+        return RigidPath(self.study, np.array([self.time])).resting()
 
     @cached_property
-    def locked(self) -> LockedPoses:
-        """Equilibrium; raises as `locked_poses`."""
-        return locked_poses(self.study.robot, self.study.simulation, self.path, self.study.load, self.time)
+    def locked_robot(self) -> LockedPoses:
+        """Equilibrium; raises as `ElasticRobot.lock`."""
+        return self.elastic.lock(self.rigid, self.time)
 
     @cached_property
     def modes(self) -> RobotModes:
-        """Modes about it; raises as `the_modes`."""
-        return the_modes(self.locked)
+        """Modes about it; raises as `single_pose_modes`."""
+        return single_pose_modes(self.locked_robot)
 
 
 @dataclass(frozen=True, kw_only=True)
-class VibrationToExpect:
+class ExpectedVibration:
     """Residual vibration of the tool after the motion (T8.14)-(T8.18).
 
     `amplitude` [m]: all modes in phase; `frequency` [Hz] and `share` of the largest; `settling` [s] until the sum is
@@ -61,7 +62,7 @@ class VibrationToExpect:
     left_out: float | None
 
 
-def vibration_to_expect(rest: RestingRobot) -> VibrationToExpect | None:
+def expected_vibration(rest: RestingRobot) -> ExpectedVibration | None:
     """Residual vibration after the motion, which ends at `rest`; None where it cannot vibrate."""
     study, end = rest.study, rest.time
     robot = study.robot
@@ -81,7 +82,7 @@ def vibration_to_expect(rest: RestingRobot) -> VibrationToExpect | None:
     if not found.frequency.size:
         return None
     largest = first_largest(found.amplitude, EQUALS)
-    return VibrationToExpect(
+    return ExpectedVibration(
         amplitude=found.total,
         frequency=float(found.frequency[largest]),
         share=float(found.amplitude[largest] / found.total) if found.total > 0 else 0.0,

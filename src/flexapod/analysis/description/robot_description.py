@@ -10,7 +10,7 @@ import numpy as np
 from flexapod import kinematics, model
 from flexapod.analysis.checks.checks import check_path
 from flexapod.analysis.checks.estimates import bending_moments, buckling_loads
-from flexapod.analysis.checks.stability import loop_remarks
+from flexapod.analysis.checks.stability import loop_remarks, unstable
 from flexapod.analysis.description.actuator_description import ActuatorDescription, describe_actuator
 from flexapod.analysis.description.clearance import (
     LegClearance,
@@ -24,7 +24,7 @@ from flexapod.analysis.description.hydraulic_description import (
     HydraulicDescription,
     describe_hydraulics,
     hydraulic_remarks,
-    oil_words,
+    oil_frequency,
 )
 from flexapod.analysis.description.leg_description import (
     Extreme,
@@ -34,21 +34,29 @@ from flexapod.analysis.description.leg_description import (
     describe_leg,
     load_remarks,
 )
-from flexapod.analysis.description.residual_vibration import RestingRobot, VibrationToExpect, vibration_to_expect
-from flexapod.analysis.description.screw_description import ScrewDescription, back_words, describe_screws, screw_remarks
-from flexapod.analysis.pose_errors.accuracy_text import accuracy_words, rest_words
-from flexapod.analysis.pose_errors.disturbances import vibration_words
+from flexapod.analysis.description.residual_vibration import ExpectedVibration, RestingRobot, expected_vibration
+from flexapod.analysis.description.screw_description import (
+    BackDriving,
+    ScrewDescription,
+    back_driving,
+    describe_screws,
+    screw_remarks,
+)
+from flexapod.analysis.pose_errors.disturbances import Shaking, home_shaking
+from flexapod.analysis.pose_errors.home_accuracy import HomeAccuracy, RestOffset, home_accuracy, rest_offset
 from flexapod.analysis.results.elongations import guide_results
-from flexapod.analysis.results.idealizations import held, ideal_words
+from flexapod.analysis.results.idealizations import Idealization, idealization, soft_drives
 from flexapod.analysis.results.mode_shapes import mode_kinds
+from flexapod.analysis.results.remarks import remark
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.arrays import Array
 from flexapod.common.errors import FlexapodError, InputError
+from flexapod.common.quantities import sentence
 from flexapod.common.ranking import EQUALS, first_largest
 from flexapod.common.resources import one_thread
 from flexapod.mechanics.elements.springs import springs_along
-from flexapod.solve.modal.modal_loops import unstable_words
-from flexapod.solve.modal.structural_damping import loss_words
+from flexapod.solve.modal.elastic_robot import ElasticRobot
+from flexapod.solve.modal.structural_damping import ViscousLosses, viscous_losses
 from flexapod.solve.robot_system import refuse_massless
 from flexapod.solve.statics.lost_motion import lost_motion, places_with_friction
 from flexapod.solve.statics.parts import part_stiffness
@@ -60,7 +68,7 @@ ROUNDING = 1e-12  # of the largest compliance: below it a plane holds the platfo
 
 @dataclass(frozen=True, kw_only=True)
 class ModeLine:
-    """A mode of the locked robot: `frequency` [Hz] undamped, `damping_ratio`, `kind` in words."""
+    """A mode of the locked robot: `frequency` [Hz] undamped, `damping_ratio`, `kind` as text."""
 
     frequency: float
     damping_ratio: float
@@ -85,8 +93,8 @@ class StiffnessDescription:
 class PoseDescription:
     """The robot at one pose, drives locked, about its static equilibrium.
 
-    `sag` [m] of the centre of mass, `rest`: the same in words with signs, and what of it is by heat; `stiffness`,
-    `modes`: the lowest. None and empty where there is no such thing; `problem` then says why, or that loops are
+    `sag` [m] of the centre of mass, `rest`: the same with signs, and what of it is by heat; `stiffness`, `modes`: the
+    lowest. None and empty where there is no such thing; `problem` then says why, or that loops are
     unstable. `parts`: of legs with more than ideal parts, by name and leg [N/m], inf where it has none, or where its
     drive makes up for it. `lost_motion` [m] of each leg by friction of its drive, half of it to and fro. `bushings`
     [N]: what gland and head of each leg bear across it.
@@ -95,7 +103,7 @@ class PoseDescription:
     name: str
     time: float
     sag: float | None = None
-    rest: str = ""
+    rest: RestOffset | None = None
     stiffness: StiffnessDescription | None = None
     modes: tuple[ModeLine, ...] = ()
     problem: str | None = None
@@ -106,11 +114,11 @@ class PoseDescription:
 
 def describe_pose(name: str, rest: RestingRobot) -> PoseDescription:
     """The robot at rest at an instant of its path."""
-    study, path, time = rest.study, rest.path, rest.time
+    study, path, time = rest.study, rest.rigid.poses, rest.time
     robot = study.robot
-    parts, lost = _parts(robot, path), _lost_motion(robot, path)
+    parts, lost = _parts(rest.rigid), _lost_motion(rest.rigid)
     try:
-        locked, found = rest.locked, rest.modes
+        locked, found = rest.locked_robot, rest.modes
         stiffness = None if robot.platform_fixed else _stiffness(stiffness_of(robot, locked).total)
     except FlexapodError as error:
         return PoseDescription(name=name, time=time, problem=str(error), parts=parts, lost_motion=lost)
@@ -125,23 +133,24 @@ def describe_pose(name: str, rest: RestingRobot) -> PoseDescription:
         )
     sag = found.equilibrium.state.pose[:3] - path.point(robot.com)[0][0]
     return PoseDescription(
-        name=name, time=time, sag=float(np.linalg.norm(sag)), rest=rest_words(study, path, sag),
+        name=name, time=time, sag=float(np.linalg.norm(sag)), rest=rest_offset(study, path, sag),
         stiffness=stiffness, modes=modes[:SHOWN], parts=parts, lost_motion=lost, bushings=bushings,
-        problem=next((f"{x[0].upper()}{x[1:]}." for x in unstable_words(found.growth)), None),
+        problem=next(map(sentence, unstable(found.growth)), None),
     )  # fmt: skip
 
 
-def _parts(robot: model.Robot, path: kinematics.Poses) -> dict[str, tuple[float, ...]] | None:
+def _parts(at: kinematics.RigidPoses) -> dict[str, tuple[float, ...]] | None:
+    robot = at.robot
     if not any(springs_along(leg) for leg in robot.legs):
         return None
-    found = part_stiffness(robot, kinematics.inverse_kinematics(robot, path).length[0])
+    found = part_stiffness(robot, at.legs.length[0])
     return {name: tuple(values.tolist()) for name, values in found.items()}
 
 
-def _lost_motion(robot: model.Robot, path: kinematics.Poses) -> tuple[float, ...]:
-    if "drive" not in places_with_friction(robot):
+def _lost_motion(at: kinematics.RigidPoses) -> tuple[float, ...]:
+    if "drive" not in places_with_friction(at.robot):
         return ()
-    return tuple(lost_motion(robot, kinematics.inverse_kinematics(robot, path).length[0]).tolist())
+    return tuple(lost_motion(at.robot, at.legs.length[0]).tolist())
 
 
 def _stiffness(total: Array) -> StiffnessDescription:
@@ -181,11 +190,12 @@ class JointAngle:
 
 @dataclass(frozen=True, kw_only=True)
 class RobotDescription:
-    """What `describe` finds for a robot; times in s.
+    """Description of a robot, as `describe` returns it; times in s.
 
-    In words: what poses `held` still, `motions` that the mechanism has, `back` what happens with the motors of screws
-    off, `oil` how hydraulic legs give way, `accuracy` of the machine as built, what `disturbances` do to it, what is
-    `ideal`, `remarks` of doubt.
+    `held`: kinds of drives that give way, of which poses hold the commands; `losses` as dampers; `back`: with motors
+    of screws off; `oil`: lowest frequencies on it [Hz], least and largest; `accuracy` of the machine as built and what
+    `disturbances` do to it at home, or in words why that cannot be said; what is `ideal`. In words: `motions` that the
+    mechanism has, `remarks` of doubt.
     """
 
     kind: str = "robot"
@@ -193,34 +203,34 @@ class RobotDescription:
     duration: float
     motion_end: float
     fidelity: str
-    held: str
+    held: tuple[str, ...]
     motions: tuple[str, ...]
-    losses: tuple[str, ...]
+    losses: ViscousLosses | None
     legs: tuple[LegDescription, ...]
     screws: tuple[ScrewDescription, ...]
-    back: str
+    back: BackDriving | None
     hydraulics: tuple[HydraulicDescription, ...]
-    oil: tuple[str, ...]
+    oil: tuple[float, float] | None
     angles: tuple[JointAngle, ...]
     turns: tuple[TurnedJoint, ...]
     stroke_ends: tuple[StrokeEnd, ...]
     clearance: LegClearance | None  # None where no two legs could meet but at a joint
     singularity: Singularity | None  # None of a platform that is fixed
     poses: tuple[PoseDescription, ...]
-    vibration: VibrationToExpect | None
-    accuracy: tuple[str, ...]
-    disturbances: tuple[str, ...]
-    ideal: str | None
+    vibration: ExpectedVibration | None
+    accuracy: HomeAccuracy | str | None
+    disturbances: Shaking | str | None
+    ideal: Idealization | None
     remarks: tuple[str, ...]
 
     def as_dict(self) -> dict[str, object]:
-        """Everything as plain data."""
+        """Description as plain data."""
         return asdict(self)
 
 
 @one_thread()
 def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | ActuatorDescription:
-    """What a study will ask of its robot or actuator, estimated without a simulation.
+    """Describe the study of a robot or an actuator by estimates, without a simulation.
 
     Parameters
     ----------
@@ -233,44 +243,44 @@ def describe(study: model.Study | model.ActuatorStudy) -> RobotDescription | Act
     """
     if isinstance(study, model.ActuatorStudy):
         return describe_actuator(study)
-    path = RigidPath(study)
+    path, elastic = RigidPath(study), ElasticRobot(study.robot, study.simulation, study.load)
     remarks = [*check_path(study, path), *_in_time(study)]
     legs, singularity = describe_legs(path), _singularity(path)
     screws, hydraulics = describe_screws(path), describe_hydraulics(path)
     end = min(study.motion.end_time - study.motion.hold, study.duration)
-    rests = {"start": RestingRobot(study, 0.0), "end of the motion": RestingRobot(study, end)}
+    rests = {"start": RestingRobot(study, elastic, 0.0), "end of the motion": RestingRobot(study, elastic, end)}
     worst = singularity.time if singularity else end
     if min(worst, abs(worst - end)) > 0.02 * end and worst < end:
-        rests["nearest to a singularity"] = RestingRobot(study, worst)
+        rests["nearest to a singularity"] = RestingRobot(study, elastic, worst)
     return RobotDescription(
         file=study.path,
         duration=study.duration,
         motion_end=end,
         fidelity=study.simulation.fidelity,
-        held=held(study.robot),
+        held=soft_drives(study.robot),
         motions=tuple(kinematics.mobility_words(kinematics.rigid_limbs(study.robot))),
-        losses=tuple(loss_words(study.robot, study.simulation)),
+        losses=viscous_losses(study.robot, study.simulation),
         legs=legs,
         screws=screws,
-        back=back_words(path, screws) if screws else "",
+        back=back_driving(path, screws),
         hydraulics=hydraulics,
-        oil=oil_words(path, hydraulics) if hydraulics else (),
+        oil=oil_frequency(path) if hydraulics else None,
         angles=_angles(path),
         turns=joint_turns(path),
         clearance=leg_clearance(path),
         stroke_ends=stroke_ends(study.robot),
         singularity=singularity,
         poses=tuple(describe_pose(name, rest) for name, rest in rests.items()),
-        vibration=vibration_to_expect(rests["end of the motion"]),
-        accuracy=accuracy_words(study),
-        disturbances=vibration_words(study),
-        ideal=ideal_words(study.robot),
+        vibration=expected_vibration(rests["end of the motion"]),
+        accuracy=home_accuracy(study),
+        disturbances=home_shaking(study),
+        ideal=idealization(study.robot),
         remarks=tuple(
             dict.fromkeys(
                 [
                     *study.warnings,
                     *remarks,
-                    *loop_remarks(study),
+                    *loop_remarks(path, elastic),
                     *bearing_remarks(path),
                     *load_remarks(legs, study.robot, study.simulation.fidelity),
                     *screw_remarks(study.robot, screws),
@@ -295,7 +305,7 @@ def _in_time(study: model.Study) -> list[str]:
     try:
         refuse_massless(study)
     except InputError as error:
-        return [f"a simulation is not possible: {error.key} = {error.value} {error.what}"]
+        return [remark("not in time", key=error.key, value=error.value, what=error.what)]
     return []
 
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod.analysis.checks.plausibility import worst_of_each
 from flexapod.analysis.checks.screws import (
     back_efficiency,
     buckling_thrust,
@@ -18,11 +17,11 @@ from flexapod.analysis.checks.screws import (
     motor_torque,
     turns_of_life,
 )
-from flexapod.analysis.description.leg_description import Extreme, largest
+from flexapod.analysis.description.leg_description import Extreme, maximum
+from flexapod.analysis.results.remarks import Doubt, worst_remarks
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.arrays import Array
-from flexapod.common.quantities import number, text
-from flexapod.common.ranking import first_largest, most
+from flexapod.common.ranking import first_largest, largest_item
 from flexapod.model import Leg, Robot, ScrewDrive
 
 SAFE = 1.0  # static load rating over load
@@ -57,6 +56,19 @@ class ScrewDescription:
     rms_current: float | None
 
 
+@dataclass(frozen=True, kw_only=True)
+class BackDriving:
+    """The screw that its thrust turns back hardest, of `leg`, with the motors off.
+
+    `torque` at its motor [N m]; `efficiency` backwards, not positive where friction holds; torque of its `brake` [N m].
+    """
+
+    leg: int
+    torque: float
+    efficiency: float
+    brake: float | None
+
+
 def describe_screws(path: RigidPath) -> tuple[ScrewDescription, ...]:
     """The screws of a robot on the rigid path of its study."""
     legs, thrust = path.legs, path.forces.drive_force
@@ -78,19 +90,19 @@ def describe_screw(
     along = length - leg.begins
     allowed = buckling_thrust(screw, along)
     pushed = np.abs(thrust) if screw.mounting == "fixed-fixed" else np.maximum(thrust, 0.0)
-    buckling = largest(t, pushed / allowed)
+    buckling = maximum(t, pushed / allowed)
     speed, torque = np.abs(rate) / screw.per_turn, motor_torque(screw, thrust, rate, accel)
     rms, constant = float(np.sqrt(np.trapezoid(torque**2, t) / (t[-1] - t[0]))), screw.motor.torque_constant
     load, rating = half_loads(screw.nut, thrust), screw.nut.static_load
     life, hours = _life(screw, load, t, rate)
     return ScrewDescription(
         leg=i + 1,
-        thrust=largest(t, np.abs(thrust)),
+        thrust=maximum(t, np.abs(thrust)),
         buckling=buckling,
         buckling_thrust=float(allowed[first_largest(pushed / allowed)]),
-        speed=largest(t, speed * screw.rotor.ratio),
+        speed=maximum(t, speed * screw.rotor.ratio),
         critical=float(speed.max() / critical_speed(screw)),
-        torque=largest(t, np.abs(torque)),
+        torque=maximum(t, np.abs(torque)),
         rms_torque=rms,
         current=None if constant is None else float(np.abs(torque).max()) / constant,
         rms_current=None if constant is None else rms / constant,
@@ -110,111 +122,49 @@ def _life(screw: ScrewDrive, load: Array, t: Array, rate: Array) -> tuple[float 
 
 
 def screw_remarks(robot: Robot, screws: tuple[ScrewDescription, ...]) -> list[str]:
-    """What a motion asks of screws beyond their catalogue: one sentence of a kind, of the leg that is worst."""
-    return worst_of_each(
-        [
-            (found.leg - 1, *excess)
-            for found in screws
-            if (screw := robot.legs[found.leg - 1].screw) is not None
-            for excess in _excesses(screw, found)
-            if excess[1] > 1
-        ]
+    """Remarks on screws beyond their catalogue limits: one sentence of a kind, for the worst leg."""
+    return worst_remarks(
+        Doubt(leg=found.leg - 1, kind=kind, severity=excess, numbers=numbers)
+        for found in screws
+        if (screw := robot.legs[found.leg - 1].screw) is not None
+        for kind, excess, numbers in _excesses(screw, found)
+        if excess > 1
     )
 
 
-def _excesses(screw: ScrewDrive, found: ScrewDescription) -> Iterator[tuple[str, float, str]]:
-    """Kind, value over limit, words."""
+def _excesses(screw: ScrewDrive, found: ScrewDescription) -> Iterator[tuple[str, float, Mapping[str, object]]]:
+    """Kind, value over limit, numbers of a remark."""
     limits = screw.limits
-    for kind, what, extreme, limit, unit, factor in (
-        ("force", "the thrust", found.thrust, limits.force, "N", 1.0),
-        ("speed", "the motor's speed", found.speed, limits.speed, "rpm", RPM),
-        ("torque", "the motor's torque", found.torque, limits.torque, "N m", 1.0),
+    for kind, extreme, limit, factor in (
+        ("force", found.thrust, limits.force, 1.0),
+        ("speed", found.speed, limits.speed, RPM),
+        ("torque", found.torque, limits.torque, 1.0),
     ):
         if limit is not None:
-            yield (
-                kind,
-                extreme.value / limit,
-                (
-                    f"{what} reaches {number(factor * extreme.value, 4)} {unit} at t = {extreme.time:.6g} s, above the "
-                    f"limit of {number(factor * limit, 4)} {unit}"
-                ),
-            )
+            numbers = {"value": factor * extreme.value, "time": extreme.time, "limit": factor * limit}
+            yield kind, extreme.value / limit, numbers
     if limits.rms_torque is not None:
-        yield (
-            "rms",
-            found.rms_torque / limits.rms_torque,
-            (
-                f"the motor's torque is {number(found.rms_torque, 4)} N m (root mean square), above the limit of "
-                f"{number(limits.rms_torque, 4)} N m. It gets too hot"
-            ),
-        )
-    yield (
-        "buckling",
-        found.buckling.value,
-        (
-            f"the screw is pushed with {number(found.buckling.value, 3)} times the {text(found.buckling_thrust, 'N')} "
-            f"that its shaft may bear at t = {found.buckling.time:.6g} s (half the Euler load). A thicker shaft would "
-            "do, or both ends held"
-        ),
-    )
-    yield (
-        "critical",
-        found.critical,
-        (
-            f"the screw turns {number(found.critical, 3)} times as fast as its shaft may (0.8 of the first bending "
-            "frequency). A thicker or shorter shaft would do, a longer lead, or its far end held"
-        ),
-    )
+        numbers = {"value": found.rms_torque, "limit": limits.rms_torque}
+        yield "rms torque", found.rms_torque / limits.rms_torque, numbers
+    numbers = {"share": found.buckling.value, "thrust": found.buckling_thrust, "time": found.buckling.time}
+    yield "buckling shaft", found.buckling.value, numbers
+    yield "critical speed", found.critical, {"share": found.critical}
     if found.safety is not None:
-        yield (
-            "static",
-            SAFE / found.safety,
-            (f"the nut bears {number(SAFE / found.safety, 3)} times its static load rating: its grooves keep dents"),
-        )
+        yield "static load", SAFE / found.safety, {"share": SAFE / found.safety}
     if screw.brake is not None:
-        yield (
-            "brake",
-            found.back_torque / screw.brake.torque,
-            (
-                f"the brake holds {text(screw.brake.torque, 'N m')}, and the largest thrust turns the motor back with "
-                f"{text(found.back_torque, 'N m')}"
-            ),
-        )
+        numbers = {"brake": screw.brake.torque, "torque": found.back_torque}
+        yield "brake", found.back_torque / screw.brake.torque, numbers
 
 
-def back_words(path: RigidPath, screws: tuple[ScrewDescription, ...]) -> str:
-    """What happens with the motors off."""
-    worst = most(screws, key=lambda found: found.back_torque)
-    screw = path.robot.legs[worst.leg - 1].screw
-    if screw is None or back_efficiency(screw) <= 0:
-        return "with the motors off the screws stay where they are: at efficiencies up to 0.5 no thrust turns them back"
-    if worst.back_torque == 0:
-        return "with the motors off nothing turns the screws: no leg bears a thrust"
-    brake = "no brake is given" if screw.brake is None else f"its brake holds {text(screw.brake.torque, 'N m')}"
-    return (
-        f"with the motors off the legs give way: the thrust turns the motor of leg {worst.leg} back with up to "
-        f"{text(worst.back_torque, 'N m')} (efficiency {number(back_efficiency(screw), 2)} backwards); {brake}"
+def back_driving(path: RigidPath, screws: tuple[ScrewDescription, ...]) -> BackDriving | None:
+    """Back-driving of a robot with its motors off; None without screws."""
+    if not screws:
+        return None
+    worst = largest_item(screws, key=lambda found: found.back_torque)
+    screw: ScrewDrive = path.robot.legs[worst.leg - 1].screw  # type: ignore[assignment]
+    return BackDriving(
+        leg=worst.leg,
+        torque=worst.back_torque,
+        efficiency=back_efficiency(screw),
+        brake=None if screw.brake is None else screw.brake.torque,
     )
-
-
-def screw_table(screws: tuple[ScrewDescription, ...]) -> tuple[list[str], list[list[str]]]:
-    """Heads, and a row of texts for each screw, its leg first."""
-    head = ["thrust [N]", "of buckling [%]", "motor [rpm]", "of critical speed [%]", "motor [N m]", "rms [N m]",
-            "static safety", "life [h]"]  # fmt: skip
-    known = any(s.current is not None for s in screws)
-    head += ["current [A]", "rms [A]"] if known else []
-    return head, [
-        [
-            f"{s.leg}",
-            f"{s.thrust.value:.4g}",
-            f"{100 * s.buckling.value:.3g}",
-            f"{RPM * s.speed.value:.4g}",
-            f"{100 * s.critical:.3g}",
-            f"{s.torque.value:.3g}",
-            f"{s.rms_torque:.3g}",
-            "-" if s.safety is None else f"{s.safety:.3g}",
-            "-" if s.hours is None else f"{s.hours:.3g}",
-            *("-" if x is None else f"{x:.3g}" for x in (s.current, s.rms_current) if known),
-        ]
-        for s in screws
-    ]

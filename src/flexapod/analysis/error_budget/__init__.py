@@ -1,4 +1,4 @@
-"""The error budget: what every part adds to the error of the tool, and how it adds up."""
+"""The error budget: contributions of all parts to the error of the tool, and their sums."""
 
 from flexapod.analysis.error_budget.budget_dataset import budget
 

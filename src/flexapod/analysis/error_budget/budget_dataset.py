@@ -6,20 +6,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.analysis.checks.checks import path_remarks
-from flexapod.analysis.checks.stability import loop_remarks
+from flexapod.analysis.checks.checks import pose_remarks
+from flexapod.analysis.checks.stability import loop_remarks_at
 from flexapod.analysis.error_budget.along_motion import along_motion
-from flexapod.analysis.error_budget.rows import rows
+from flexapod.analysis.error_budget.rows import budget_rows
 from flexapod.analysis.error_budget.rules import Budget
 from flexapod.analysis.error_budget.text import sentences
-from flexapod.analysis.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, as_study, at_pose
+from flexapod.analysis.results.arguments import LoadLike, PoseLike, RigidPose, RobotLike, as_study, study_at_pose
 from flexapod.analysis.results.attributes import attributes
+from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.analysis.results.time_history import Progress
 from flexapod.analysis.results.variables import dataset
 from flexapod.common.arguments import flag
 from flexapod.common.errors import InputError
 from flexapod.common.resources import one_thread
 from flexapod.model import Study
+from flexapod.solve.modal.elastic_robot import ElasticRobot
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -34,7 +36,7 @@ def budget(
     load: LoadLike = None,
     progress: Progress | None = None,
 ) -> Dataset:
-    """What every part adds to the error of the tool, at a pose or along the motion, and how it adds up.
+    """Error budget of the tool, at a pose or along the motion: contributions of all parts, and their sums.
 
     Parameters
     ----------
@@ -75,23 +77,28 @@ def budget(
     flag(motion, "motion")
     if motion and pose is not None:
         raise InputError("is given together with a motion", key="pose", next_step="Choose either of the two")
-    study = as_study(robot, load=load) if motion else at_pose(robot, load)
+    study = as_study(robot, load=load) if motion else study_at_pose(robot, load)
     if study.robot.platform_fixed:
         raise InputError("has a platform that is fixed: its tool does not move", key="robot")
+    elastic = ElasticRobot(study.robot, study.simulation, study.load)
     if motion:
-        found = along_motion(study, progress)
+        path = RigidPath(study)
+        found = along_motion(path, elastic, progress)
         remarks, times = found.remarks, {"worst_time": found.time, "peak_time": found.peaks}
         table, where = found.budget, f"at the pose of t = {found.time:.4g} s, the worst of the motion,"
     else:
-        path, times = as_pose(study.robot, pose), {}
-        remarks = [*study.warnings, *path_remarks(study.robot, np.zeros(1), path)]
-        table, whole, missing = rows(study, path)
-        remarks += [*missing, *loop_remarks(study, path)]
+        at, times = RigidPose(study.robot, pose), {}
+        remarks = [*study.warnings, *pose_remarks(at)]
+        locked = elastic.lock(at)
+        table, whole, missing = budget_rows(study, locked)
+        remarks += [*missing, *loop_remarks_at(locked)]
         table, where = Budget(rows=table, whole={"systematic": whole}), "at home" if pose is None else "at the pose"
-    return _named(study, table, times, {"where": where, "summary": "\n".join(sentences(table, where))}, remarks)
+    return _budget_dataset(
+        study, table, times, {"where": where, "summary": "\n".join(sentences(table, where))}, remarks
+    )
 
 
-def _named(study: Study, found: Budget, times: dict, words: dict[str, str], remarks: list[str]) -> Dataset:
+def _budget_dataset(study: Study, found: Budget, times: dict, words: dict[str, str], remarks: list[str]) -> Dataset:
     parts, kinds, n = found.parts, found.kinds, study.robot.count
     by_leg = np.zeros((len(parts), len(kinds), n, 6))
     how = np.full((len(parts), len(kinds)), "", dtype=object)
@@ -100,7 +107,9 @@ def _named(study: Study, found: Budget, times: dict, words: dict[str, str], rema
         how[parts.index(row.part), kinds.index(row.kind)] = row.how
     nature = {row.part: row.nature for row in reversed(found.rows) if row.nature}
     values = {
-        "budget": np.array([[found.of(part, kind) for kind in kinds] for part in parts]).reshape(-1, len(kinds), 6),
+        "budget": np.array([[found.part_error(part, kind) for kind in kinds] for part in parts]).reshape(
+            -1, len(kinds), 6
+        ),
         "budget_by_leg": by_leg,
         "budget_total": np.array([found.total(kind) for kind in kinds]),
         "budget_residual": np.array([found.residual(kind) for kind in kinds]),

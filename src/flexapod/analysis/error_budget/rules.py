@@ -1,4 +1,4 @@
-"""How the rows of an error budget add up, Eqs. (T17.3)-(T17.11)."""
+"""Sums of the rows of an error budget, by their kinds, Eqs. (T17.3)-(T17.11)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from flexapod.analysis.pose_errors.error_sources import ErrorRow
 from flexapod.common.arrays import Array
-from flexapod.common.ranking import most
+from flexapod.common.ranking import largest_item
 
 KINDS = ("systematic", "hysteretic", "random", "dynamic_peak", "dynamic_rms")
 SIGMAS = 3.0  # of random rows, in the worst case and in accuracies
@@ -18,7 +18,7 @@ RP = np.sqrt(2 / np.pi) + 3 * np.sqrt(1 - 2 / np.pi)  # mean and 3 standard devi
 PLACE = slice(3)
 
 
-def combined(kind: str, parts: Array) -> Array:
+def combine_by_kind(kind: str, parts: Array) -> Array:
     """Sum over the first axis by the rule of a kind: with signs, of sizes, of squares, Eqs. (T17.3)-(T17.5)."""
     if kind == "hysteretic":
         return np.add.reduce(np.abs(parts))
@@ -42,7 +42,7 @@ class Budget:
         """The rows of each kind with what they add up to over the legs by its rule, (6,)."""
         found: dict[str, list[tuple[ErrorRow, Array]]] = {kind: [] for kind in KINDS}
         for row in self.rows:
-            found[row.kind].append((row, combined(row.kind, row.by_leg)))
+            found[row.kind].append((row, combine_by_kind(row.kind, row.by_leg)))
         return found
 
     @cached_property
@@ -52,42 +52,42 @@ class Budget:
 
     @cached_property
     def _by_part(self) -> dict[str, Array]:
-        """What each part adds to each of all kinds, (parts, 6)."""
+        """Error of each part by kind, (parts, 6)."""
         found = {kind: np.zeros((len(self._numbers), 6)) for kind in KINDS}
         for kind, rows in self._sums.items():
             parts: dict[str, list[Array]] = {}
             for row, x in rows:
                 parts.setdefault(row.part, [np.zeros(6)]).append(x)
             for part, of_rows in parts.items():
-                found[kind][self._numbers[part]] = combined(kind, np.array(of_rows))
+                found[kind][self._numbers[part]] = combine_by_kind(kind, np.array(of_rows))
         return found
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """At a resting pose nothing is dynamic."""
+        """Kinds of error in the budget; dynamic ones along a motion only."""
         return KINDS if "dynamic_peak" in self.whole else KINDS[:3]
 
-    def rule(self, kind: str, chosen: Callable[[ErrorRow], bool] = lambda row: True) -> Array:
+    def sum_of_rows(self, kind: str, chosen: Callable[[ErrorRow], bool] = lambda row: True) -> Array:
         """Sum (6,) of the rows of a kind, or of some of them, by its rule; without what is left out of first order."""
         found = [x for row, x in self._sums[kind] if chosen(row)]
-        return combined(kind, np.array([np.zeros(6), *found]))
+        return combine_by_kind(kind, np.array([np.zeros(6), *found]))
 
-    def of(self, part: str, kind: str) -> Array:
-        """What a part adds to a kind, (6,)."""
+    def part_error(self, part: str, kind: str) -> Array:
+        """Error of a part of one kind, (6,)."""
         return self._by_part[kind][self._numbers[part]]
 
     def total(self, kind: str) -> Array:
         """The whole of a kind, (6,)."""
-        return self.whole[kind] if kind in self.whole else self.rule(kind)
+        return self.whole[kind] if kind in self.whole else self.sum_of_rows(kind)
 
     def residual(self, kind: str) -> Array:
-        """What the rows of a kind leave of its whole, (6,), Eq. (T17.2)."""
-        return self.total(kind) - self.rule(kind)
+        """Whole of a kind less the sum of its rows, (6,), Eq. (T17.2)."""
+        return self.total(kind) - self.sum_of_rows(kind)
 
     @property
     def worst(self) -> Array:
         """Largest size of each component if all kinds are at their worst at once, (6,), Eq. (T17.6)."""
-        return self._worst(self.total, self.rule)
+        return self._worst(self.total, self.sum_of_rows)
 
     def _worst(self, total: Callable[[str], Array], rule: Callable[[str], Array]) -> Array:
         most = np.abs(total("systematic")) + rule("hysteretic") + SIGMAS * rule("random")
@@ -114,29 +114,29 @@ class Budget:
     @property
     def largest(self) -> str:
         """The part with the largest share."""
-        return most(self.parts, key=lambda part: self.sizes[part])
+        return largest_item(self.parts, key=lambda part: self.sizes[part])
 
     @property
-    def calibrated(self) -> Budget:
+    def calibrated_budget(self) -> Budget:
         """The budget of a machine whose constant errors are known and taken out, at rest."""
         return Budget(rows=[row for row in self.rows if row.nature != "calibratable" and not row.stands], whole={})
 
     def with_half(self, part: str) -> Budget:
         """The budget if every error of a part were half as large."""
         rows = [row._replace(by_leg=0.5 * row.by_leg) if row.part == part else row for row in self.rows]
-        return replace(self, rows=rows, whole={k: x - 0.5 * self.of(part, k) for k, x in self.whole.items()})
+        return replace(self, rows=rows, whole={k: x - 0.5 * self.part_error(part, k) for k, x in self.whole.items()})
 
     def accuracy(self, *, calibrated: bool) -> Array:
         """Systematic error and 3 standard deviations of what is fixed in a machine but unknown, (6,), Eq. (T17.9)."""
-        known = self.rule("systematic", lambda row: row.nature == "calibratable")
-        fixed = self.rule("random", lambda row: row.stands)
+        known = self.sum_of_rows("systematic", lambda row: row.nature == "calibratable")
+        fixed = self.sum_of_rows("random", lambda row: row.stands)
         whole = self.total("systematic")
         return np.abs(whole - known) if calibrated else np.abs(whole) + SIGMAS * fixed
 
     @property
     def cycles(self) -> Array:
         """Standard deviation from one approach to the next, (6,)."""
-        return self.rule("random", lambda row: not row.stands)
+        return self.sum_of_rows("random", lambda row: not row.stands)
 
     @property
     def unidirectional(self) -> Array:
@@ -145,8 +145,8 @@ class Budget:
 
     @property
     def bidirectional(self) -> Array:
-        """The same with the reversal value, twice the bound of play and friction, (6,), Eq. (T17.11)."""
-        return self.unidirectional + 2 * self.rule("hysteretic")
+        """Repeatability with the reversal value, twice the bound of play and friction, (6,), Eq. (T17.11)."""
+        return self.unidirectional + 2 * self.sum_of_rows("hysteretic")
 
     @property
     def repeatability(self) -> float:

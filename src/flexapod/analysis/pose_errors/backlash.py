@@ -1,7 +1,4 @@
-"""Play of joints and drives: which way the forces press it, where it jumps, Eqs. (T16.13)-(T16.15).
-
-Play along a motion as a Dataset.
-"""
+"""Play of joints and drives, at poses and along a motion: direction by forces, jumps, Eqs. (T16.13)-(T16.15)."""
 
 from __future__ import annotations
 
@@ -52,7 +49,7 @@ class Play:
 
 @dataclass(frozen=True, kw_only=True)
 class Jumps:
-    """Where forces change their sign: instants [s], place, leg (numbers from 0) and jump of the tool (j, 6)."""
+    """Jumps where forces change their sign: instants [s], place, leg (numbers from 0), jump of the tool (j, 6)."""
 
     time: Array
     place: NDArray[np.intp]
@@ -73,7 +70,7 @@ def half_play(robot: Robot) -> Array:
 def play_along(path: RigidPath, at: Sensitivity | None = None) -> Play:
     """Play at the instants of a rigid path, pressed by the forces of the rigid robot."""
     robot, forces, axes = path.robot, path.forces, path.axes
-    at = sensitivity(robot, path.poses) if at is None else at
+    at = sensitivity(path) if at is None else at
     carried = np.array([leg.driven == "carriage" for leg in robot.legs])
     stroked = np.array([leg.driven == "stroke" for leg in robot.legs])
     end = np.sum(forces.joint_force * axes, axis=-1)
@@ -88,7 +85,7 @@ def play_along(path: RigidPath, at: Sensitivity | None = None) -> Play:
 
 
 def jumps(found: Play, t: Array) -> Jumps:
-    """Where forces change sign between instants (T,), and by how much the tool jumps there, Eq. (T16.15)."""
+    """Find the sign changes of forces between instants (T,), and the jumps of the tool there, Eq. (T16.15)."""
     sign = np.sign(found.force)
     for k in range(1, len(sign)):  # what presses nowhere stays where it was
         sign[k] = np.where(sign[k] == 0, sign[k - 1], sign[k])

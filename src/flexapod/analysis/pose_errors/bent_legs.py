@@ -1,4 +1,4 @@
-"""Legs that are not straight: how thrust bends them further, and how much shorter they get, (T16.16)-(T16.19)."""
+"""Legs that are not straight: bending and shortening under thrust, (T16.16)-(T16.19)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ L = COORDINATES.index("l")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Bent:
+class BentLegs:
     """Legs under thrust, (n,).
 
     `deflection` [m]: largest distance of the bent axis from the line of the joints; `shorter` [m]: than without thrust;
@@ -42,7 +42,7 @@ def thrust(found: Play) -> Array:
     return 0.5 * (found.force[0, 1] + found.force[0, 2])
 
 
-def bent(robot: Robot, at: Sensitivity, push: Array) -> Bent | None:
+def bent_legs(robot: Robot, at: Sensitivity, push: Array) -> BentLegs | None:
     """Legs with a bow or eccentric joints under the thrusts `push` (n,) [N]; None where all are straight.
 
     Raises
@@ -50,15 +50,15 @@ def bent(robot: Robot, at: Sensitivity, push: Array) -> Bent | None:
     ComputationError
         A thrust reaches the Euler load.
     """
-    if not is_crooked(robot):
+    if not has_bent_legs(robot):
         return None
-    at_rest = _under(robot, at, push)
+    at_rest = _loaded_legs(robot, at, push)
     beside = at_rest.start + (0.5 - 2 / np.pi) * _eccentricities(robot)
     shorter = 0.5 * at_rest.slopes * ((at_rest.start * at_rest.grown) ** 2 - at_rest.cold**2)  # (T16.18)
-    return Bent(deflection=beside + at_rest.start * (at_rest.grown - 1), shorter=shorter, share=at_rest.share)
+    return BentLegs(deflection=beside + at_rest.start * (at_rest.grown - 1), shorter=shorter, share=at_rest.share)
 
 
-class _Under(NamedTuple):
+class _LoadedLegs(NamedTuple):
     """Legs under thrust, (n,): amplitudes without it, cold and as they are; share, growth, and slopes of the shape."""
 
     cold: Array
@@ -68,7 +68,7 @@ class _Under(NamedTuple):
     slopes: Array
 
 
-def _under(robot: Robot, at: Sensitivity, push: Array) -> _Under:
+def _loaded_legs(robot: Robot, at: Sensitivity, push: Array) -> _LoadedLegs:
     cold = crookedness(robot)
     free = at.q[0, :, L] - np.array([leg.cylinder.mouth for leg in robot.legs])
     euler = buckling_loads(robot, at.q[:1, :, L])[0]
@@ -81,39 +81,39 @@ def _under(robot: Robot, at: Sensitivity, push: Array) -> _Under:
         )
     slopes = np.array([_slopes(leg, s) for leg, s in zip(robot.legs, free, strict=True)])
     slopes *= [leg.measured != "joint-to-joint" for leg in robot.legs]  # what shortens a leg is seen there
-    return _Under(cold, cold + _by_heat(robot, free), share, 1 / (1 - share), slopes)  # (T16.17)
+    return _LoadedLegs(cold, cold + _by_heat(robot, free), share, 1 / (1 - share), slopes)  # (T16.17)
 
 
-def by_bow(robot: Robot, at: Sensitivity, push: Array) -> tuple[Array, Array]:
-    """How much longer a further bow x makes legs under thrust, c1 x + c2 x^2: c1 [1], c2 [1/m], (n,), Eq. (T16.21)."""
-    x = _under(robot, at, push)
+def bow_sensitivity(robot: Robot, at: Sensitivity, push: Array) -> tuple[Array, Array]:
+    """Elongation of legs under thrust by a further bow x, c1 x + c2 x^2: c1 [1], c2 [1/m], (n,), Eq. (T16.21)."""
+    x = _loaded_legs(robot, at, push)
     return -x.slopes * (x.grown**2 * x.start - x.cold), -0.5 * x.slopes * (x.grown**2 - 1)
 
 
-def by_bending_stiffness(robot: Robot, at: Sensitivity, push: Array) -> Array:
-    """How much longer more EI, relative to it, makes crooked legs under thrust, (n,) [m], Eq. (T16.22)."""
-    x = _under(robot, at, push)
+def bending_sensitivity(robot: Robot, at: Sensitivity, push: Array) -> Array:
+    """Elongation of crooked legs under thrust per relative increase of EI, (n,) [m], Eq. (T16.22)."""
+    x = _loaded_legs(robot, at, push)
     return x.slopes * x.start**2 * x.grown**3 * x.share
 
 
-def is_crooked(robot: Robot) -> bool:
-    """Whether any leg is not straight."""
+def has_bent_legs(robot: Robot) -> bool:
+    """Test whether any leg is not straight."""
     return bool(crookedness(robot).any() or _curvatures(robot).any())
 
 
 def crookedness(robot: Robot) -> Array:
-    """Amplitudes of the legs' axes beside the lines of their joints without thrust, (n,) [m], Eq. (T16.16)."""
+    """Amplitudes of the legs' axes off the lines of their joints without thrust, (n,) [m], Eq. (T16.16)."""
     return np.array([leg.piston.bow or 0.0 for leg in robot.legs]) + 2 / np.pi * _eccentricities(robot)
 
 
 def _eccentricities(robot: Robot) -> Array:
-    """Of both ends of each leg together, (n,) [m]."""
+    """Sum of the eccentricities of both joints of each leg, (n,) [m]."""
     ends = ((leg.base_joint.eccentricity, leg.platform_joint.eccentricity) for leg in robot.legs)
     return np.array([(base or 0.0) + (platform or 0.0) for base, platform in ends])
 
 
 def _curvatures(robot: Robot) -> Array:
-    """Curvatures of pistons that are warmer on one side, (n,) [1/m]."""
+    """Curvatures of pistons with a temperature difference across them, (n,) [1/m]."""
     gradient = None if robot.heat is None else robot.heat.gradient
     if robot.heat is None or gradient is None or gradient.piston is None:
         return np.zeros(robot.count)
@@ -136,6 +136,6 @@ def _slopes(leg: Leg, free: float) -> float:
     return float(rigid + k**2 * (free / 2 + np.sin(2 * k * free) / (4 * k)))
 
 
-def softness(robot: Robot, push: Array) -> Array:
-    """By how much more of EA, relative to it, lengthens the pistons under thrust, (n,) [m], Eq. (T16.19)."""
+def axial_sensitivity(robot: Robot, push: Array) -> Array:
+    """Elongation of the pistons under thrust per relative increase of EA, (n,) [m], Eq. (T16.19)."""
     return push * np.array([leg.piston.length / leg.piston.EA for leg in robot.legs])

@@ -1,28 +1,29 @@
-"""Vibration of a robot at rest by its disturbances: a Dataset, rows of an error budget, and words."""
+"""Vibration of a robot at rest by its disturbances: a Dataset, rows of an error budget, and what matters of it."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.analysis.checks.checks import path_remarks
+from flexapod.analysis.checks.checks import pose_remarks
 from flexapod.analysis.pose_errors.error_sources import ErrorRow
-from flexapod.analysis.results.arguments import PoseLike, RobotLike, as_pose, at_pose
+from flexapod.analysis.results.arguments import PoseLike, RigidPose, RobotLike, study_at_pose
 from flexapod.analysis.results.attributes import attributes
 from flexapod.analysis.results.mode_shapes import mode_values
+from flexapod.analysis.results.remarks import FLOOR_ENDS, remark
 from flexapod.analysis.results.variables import dataset
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError, InputError
-from flexapod.common.quantities import along_axes, cleared
 from flexapod.common.ranking import EQUALS, first_largest
 from flexapod.common.resources import one_thread
-from flexapod.kinematics import Poses
+from flexapod.kinematics import RigidPoses
 from flexapod.model import Disturbance, Study
-from flexapod.solve.linear.random_vibration import Source, random_vibration, sources_of, with_error
-from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.linear.random_vibration import Source, random_vibration, sources_of, vibration_with_error
 from flexapod.solve.modal.eigenproblem import count_real
-from flexapod.solve.modal.modes import the_modes
+from flexapod.solve.modal.elastic_robot import ElasticRobot
+from flexapod.solve.modal.modes import single_pose_modes
 from flexapod.solve.statics.locked_robot import LockedPoses
 
 if TYPE_CHECKING:
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 
     from flexapod.solve.linear.random_vibration import LinearRobot
 
-BEYOND = "the floor's spectrum ends at"
 HOW = "spectra through the linear model about the static equilibrium"
 
 
@@ -73,13 +73,13 @@ def vibration(robot: RobotLike, pose: PoseLike = None) -> Dataset:
     >>> data.vibration_rms.dims, data.vibration_psd.dims
     (('component',), ('spectrum_frequency', 'component'))
     """
-    study = at_pose(robot)
-    path = as_pose(study.robot, pose)
-    locked = _locked(study, path)
+    study = study_at_pose(robot)
+    at = RigidPose(study.robot, pose)
+    locked = _locked(study, at)
     model, sources = _linear(study, locked)
-    found, error = with_error(model, sources)
+    found, error = vibration_with_error(model, sources)
     count = count_real(model.omega[None])
-    modes = mode_values(study.robot, the_modes(locked, loops=False), path)
+    modes = mode_values(study.robot, single_pose_modes(locked, loops=False), at.poses)
     values = {
         "vibration_rms": found.rms,
         "vibration_covariance": found.covariance,
@@ -90,11 +90,11 @@ def vibration(robot: RobotLike, pose: PoseLike = None) -> Dataset:
         **{name: modes[name] for name in ("frequency", "damping_ratio", "kind")},
     }
     labels = {"spectrum_frequency": found.frequency, "source": list(found.sources), "mode": np.arange(1, count + 1)}
-    remarks = [*study.warnings, *path_remarks(study.robot, np.zeros(1), path), *_beyond(study, modes["frequency"])]
+    remarks = [*study.warnings, *pose_remarks(at), *_beyond(study, modes["frequency"])]
     return dataset(values, labels, attributes(study, remarks) | {"estimated_error": error})
 
 
-def _locked(study: Study, path: Poses) -> LockedPoses:
+def _locked(study: Study, at: RigidPoses) -> LockedPoses:
     if study.disturbance is None:
         raise InputError(
             "is missing: nothing shakes the robot",
@@ -104,7 +104,7 @@ def _locked(study: Study, path: Poses) -> LockedPoses:
         )
     if study.robot.platform_fixed:
         raise InputError("has no tool that moves: the platform is fixed", key="robot.platform.fixed", value=True)
-    return locked_poses(study.robot, study.simulation, path, study.load)
+    return ElasticRobot(study.robot, study.simulation, study.load).lock(at)
 
 
 def _linear(study: Study, locked: LockedPoses) -> tuple[LinearRobot, list[Source]]:
@@ -119,10 +119,7 @@ def _beyond(study: Study, frequency: Array) -> list[str]:
     floor = None if study.disturbance is None else study.disturbance.floor
     if floor is None or frequency[0] <= floor.frequency[-1]:
         return []
-    return [
-        f"the lowest mode lies at {frequency[0]:.4g} Hz, but {BEYOND} {floor.frequency[-1]:.4g} Hz: "
-        "no resonance is in its vibration"
-    ]
+    return [remark("floor", frequency=frequency[0], end=floor.frequency[-1])]
 
 
 def vibration_rows(study: Study, locked: LockedPoses) -> list[ErrorRow]:
@@ -137,31 +134,49 @@ def vibration_rows(study: Study, locked: LockedPoses) -> list[ErrorRow]:
     ]
 
 
-def vibration_words(study: Study) -> tuple[str, ...]:
-    """Vibration of the tool at home in sentences; none without disturbances."""
+@dataclass(frozen=True, kw_only=True)
+class Shaking:
+    """Vibration of the tool: `rms` (3,) [m], that along the `axis` with `most`, and what does it.
+
+    `source`: the disturbance that does most of it along that axis; `frequency` [Hz] and `kind` of the mode with most
+    of it, `per_cent` of the rms; `doubts` about it in words.
+    """
+
+    rms: tuple[float, ...]
+    axis: str
+    most: float
+    source: str
+    frequency: float
+    kind: str
+    per_cent: float
+    doubts: tuple[str, ...]
+
+
+def home_shaking(study: Study) -> Shaking | str | None:
+    """Vibration of the tool at home, or why that cannot be said; None without disturbances."""
     if study.disturbance is None:
-        return ()
+        return None
     try:
-        return words_of(vibration(study), "at home")
+        return shaking(vibration(study))
     except (InputError, ComputationError) as error:
-        return (f"the vibration at home by disturbances cannot be said: {error}",)
+        return str(error)
 
 
-def words_of(data: Dataset, where: str) -> tuple[str, ...]:
-    """How much the tool shakes, along which axis most, by what and in which mode; doubts."""
+def shaking(data: Dataset) -> Shaking:
+    """Vibration of the tool, from the result of `vibration`: size, axis, source and mode of most of it."""
     rms = data.vibration_rms.values
-    shown = [cleared(size, rms[:3].max()) for size in rms[:3]]
-    sizes = along_axes(shown)
     most = int((rms[:3] > (1 - 1e-6) * rms[:3].max()).argmax())
-    if not rms[most] > 0:
-        return (f"disturbances do not move the tool {where}",)
     sources, f = data.vibration_by_source.values[:, most], data.frequency.values
     alike = np.abs(f - f[:, None]) < 1e-3 * f
     modes = alike @ data.vibration_by_mode.values[:, most]
     culprit = first_largest(modes, EQUALS)
-    return (
-        f"disturbances shake the tool {where} by {sizes} (rms, relative to the base), along {'xyz'[most]} most by the "
-        f"{data.source.values[first_largest(sources, EQUALS)]}, {100 * modes[culprit] / rms[most]:.0f} % of it in "
-        f"the mode at {f[culprit]:.4g} Hz ({data.kind.values[culprit]})",
-        *(line for line in data.attrs["warnings"].splitlines() if BEYOND in line),
+    return Shaking(
+        rms=tuple(rms[:3].tolist()),
+        axis="xyz"[most],
+        most=float(rms[most]),
+        source=str(data.source.values[first_largest(sources, EQUALS)]),
+        frequency=float(f[culprit]),
+        kind=str(data.kind.values[culprit]),
+        per_cent=float(100 * modes[culprit] / rms[most]) if rms[most] > 0 else 0.0,
+        doubts=tuple(line for line in data.attrs["warnings"].splitlines() if FLOOR_ENDS in line),
     )

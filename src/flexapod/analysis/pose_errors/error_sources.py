@@ -1,7 +1,4 @@
-"""What is known of the accuracy of a robot at one pose, each part computed when it is asked for.
-
-What the accuracy of a pose adds to an error budget: a row for each part.
-"""
+"""Error sources of a robot at one pose, each computed on request, and their rows of an error budget."""
 
 from __future__ import annotations
 
@@ -12,21 +9,21 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.analysis.pose_errors.backlash import PLACES, Play, half_play, play_along
-from flexapod.analysis.pose_errors.bent_legs import Bent, bent, is_crooked, thrust
+from flexapod.analysis.pose_errors.bent_legs import BentLegs, bent_legs, has_bent_legs, thrust
 from flexapod.analysis.pose_errors.sensitivity import Sensitivity, sensitivity, systematic
-from flexapod.analysis.pose_errors.tolerances import Spreading, by_density, spreading
+from flexapod.analysis.pose_errors.tolerances import ToleranceEffect, density_effect, tolerance_effects
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.kinematics.leg_geometry import COORDINATES
-from flexapod.kinematics.robot import once
+from flexapod.kinematics.robot import cache_per_robot
 from flexapod.mechanics.elements.element import Contribution
 from flexapod.mechanics.elements.registry import kinds_of
-from flexapod.mechanics.elements.trial import asking
+from flexapod.mechanics.elements.trial import wrap_hook_errors
 from flexapod.model import Robot, Study
 
 
-class AtPose:
+class PoseErrors:
     """A study's robot at rest at a pose, under gravity and the load at t = 0; `known`: its sensitivity there.
 
     Raises
@@ -53,8 +50,8 @@ class AtPose:
 
     @cached_property
     def sensitivity(self) -> Sensitivity:
-        """What errors do to the tool."""
-        return self._known or sensitivity(self.robot, self.pose)
+        """Sensitivity of the tool to errors at the pose."""
+        return self._known or sensitivity(self.path)
 
     @cached_property
     def play(self) -> Play:
@@ -62,8 +59,8 @@ class AtPose:
         return play_along(self.path, self.sensitivity)
 
     @property
-    def is_loose(self) -> bool:
-        """Whether any joint or drive has play."""
+    def has_backlash(self) -> bool:
+        """Test whether any joint or drive has play."""
         return bool(half_play(self.robot).any())
 
     @cached_property
@@ -72,31 +69,33 @@ class AtPose:
         return thrust(self.play)
 
     @cached_property
-    def bent(self) -> Bent | None:
+    def bent_legs(self) -> BentLegs | None:
         """Legs that are not straight, if any."""
-        return bent(self.robot, self.sensitivity, self.thrust) if is_crooked(self.robot) else None
+        return bent_legs(self.robot, self.sensitivity, self.thrust) if has_bent_legs(self.robot) else None
 
     @cached_property
     def parts(self) -> dict[str, Array]:
-        """Errors of the machine as built and warm, and of legs that are not straight, (n, 6) by part."""
+        """Errors of the machine as built, with heat, and of legs that are not straight, (n, 6) by part."""
         found = systematic(self.robot, self.sensitivity)
-        crooked = {} if self.bent is None else {"bent_legs": self.bent.effect(self.path.axes[0], self.sensitivity)}
+        crooked = (
+            {} if self.bent_legs is None else {"bent_legs": self.bent_legs.effect(self.path.axes[0], self.sensitivity)}
+        )
         return found | crooked
 
     @cached_property
-    def spreading(self) -> list[Spreading]:
-        """Its tolerances."""
+    def tolerance_effects(self) -> list[ToleranceEffect]:
+        """Effects of the tolerances on the tool."""
         push = self.thrust if self._by_thrust else np.zeros(self.robot.count)
-        return spreading(self.robot, self.sensitivity, push, lambda: self.weight)
+        return tolerance_effects(self.robot, self.sensitivity, push, lambda: self.density_effect)
 
     @property
     def _by_thrust(self) -> bool:
         return any(getattr(self.robot.tolerances, name, None) is not None for name in ("EA", "EI", "bow"))
 
     @cached_property
-    def weight(self) -> Array:
-        """What more density of the piston of each leg, relative to it, does to the tool at rest, (n, 6)."""
-        return by_density(self.study, self.pose)
+    def density_effect(self) -> Array:
+        """Motion of the tool at rest per relative increase of piston density of each leg, (n, 6)."""
+        return density_effect(self.study, self.pose)
 
 
 class ErrorRow(NamedTuple):
@@ -117,19 +116,19 @@ class ErrorRow(NamedTuple):
     stands: bool = False
 
 
-def rows(study: Study, pose: kinematics.Poses, known: Sensitivity | None = None) -> list[ErrorRow]:
+def accuracy_rows(study: Study, pose: kinematics.Poses, known: Sensitivity | None = None) -> list[ErrorRow]:
     """Rows of geometry, heat, bent legs, tolerances and play at one pose; of what the study does not name none.
 
     `known`: the sensitivity there, where it is.
     """
-    at = AtPose(study, pose, known)
+    at = PoseErrors(study, pose, known)
     found = [ErrorRow(name, "systematic", _nature(name), by_leg, "first order") for name, by_leg in at.parts.items()]
     found += [
         ErrorRow(f"{one.name} tolerance", "random", "", one.sigma, "first order, errors independent", stands=True)
-        for one in at.spreading
+        for one in at.tolerance_effects
     ]
     found += _of_elements(study, at)
-    if at.is_loose:
+    if at.has_backlash:
         effect = np.abs(at.play.effect[0])
         how = "first order, whichever way the play is pressed"
         table = zip(PLACES, effect, strict=True)
@@ -137,8 +136,8 @@ def rows(study: Study, pose: kinematics.Poses, known: Sensitivity | None = None)
     return found
 
 
-def _of_elements(study: Study, at: AtPose) -> list[ErrorRow]:
-    """Rows of what elements make the strokes err by; alike ones of all legs are a row."""
+def _of_elements(study: Study, at: PoseErrors) -> list[ErrorRow]:
+    """Rows of the errors of strokes by elements; equal ones of all legs are one row."""
     lengths, found = at.sensitivity.q[0, :, COORDINATES.index("l")], {}
     for i, error in _errors(study.robot):
         sizes = found.setdefault(error._replace(size=0.0), np.zeros(len(lengths)))
@@ -152,13 +151,13 @@ def _of_elements(study: Study, at: AtPose) -> list[ErrorRow]:
     ]
 
 
-@once
+@cache_per_robot
 def _errors(robot: Robot) -> list[tuple[int, Contribution]]:
     """The errors that elements of the legs make, each with the index of its leg."""
     found = []
     for i, leg in enumerate(robot.legs):
         for kind in kinds_of(robot.legs):
-            with asking(kind, "errors"):
+            with wrap_hook_errors(kind, "errors"):
                 found += [(i, error) for own in kind.all_of(leg) for error in own.errors(leg)]
     return found
 

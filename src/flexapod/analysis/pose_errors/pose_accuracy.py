@@ -9,10 +9,11 @@ from numpy.typing import ArrayLike
 
 from flexapod import kinematics
 from flexapod.analysis.pose_errors.backlash import PLACES
-from flexapod.analysis.pose_errors.error_sources import AtPose
-from flexapod.analysis.pose_errors.tolerances import drift, samples, tool_displacement
-from flexapod.analysis.results.arguments import PoseLike, RobotLike, as_pose, at_pose
+from flexapod.analysis.pose_errors.error_sources import PoseErrors
+from flexapod.analysis.pose_errors.tolerances import sample_displacements, thermal_drift, tool_displacement
+from flexapod.analysis.results.arguments import PoseLike, RobotLike, as_pose, study_at_pose
 from flexapod.analysis.results.attributes import attributes
+from flexapod.analysis.results.remarks import remark
 from flexapod.analysis.results.variables import AT_A_POSE, dataset
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError, InputError
@@ -26,7 +27,7 @@ MOST_DRAWS = 10_000_000
 
 @one_thread()
 def accuracy(robot: RobotLike, pose: PoseLike = None, *, draws: int = 0, seed: int = 0) -> Dataset:
-    """How far the tool is from a pose by errors of geometry, by heat, and how far it may be by tolerances.
+    """Error of the tool at a pose by geometry and heat, and its possible error by tolerances.
 
     Parameters
     ----------
@@ -66,8 +67,8 @@ def accuracy(robot: RobotLike, pose: PoseLike = None, *, draws: int = 0, seed: i
     """
     if isinstance(draws, bool) or not isinstance(draws, int) or not 0 <= draws <= MOST_DRAWS:
         raise InputError("is not a number of draws", key="draws", value=draws, allowed=f"0 to {MOST_DRAWS}")
-    study = at_pose(robot)
-    at = AtPose(study, as_pose(study.robot, pose))
+    study = study_at_pose(robot)
+    at = PoseErrors(study, as_pose(study.robot, pose))
     values, labels, remarks = _errors(at)
     for part in (_tolerances(at), _forces(at), _samples(at, draws, seed)):
         values, labels = values | part[0], labels | part[1]
@@ -77,7 +78,7 @@ def accuracy(robot: RobotLike, pose: PoseLike = None, *, draws: int = 0, seed: i
 _Named = dict[str, ArrayLike]
 
 
-def _errors(at: AtPose) -> tuple[_Named, _Named, list[str]]:
+def _errors(at: PoseErrors) -> tuple[_Named, _Named, list[str]]:
     robot, remarks, parts = at.robot, [], at.parts
     first = np.sum([*parts.values(), np.zeros((robot.count, 6))], axis=(0, 1))
     values: _Named = {"pose_error": first, "pose_error_first_order": first}
@@ -85,18 +86,21 @@ def _errors(at: AtPose) -> tuple[_Named, _Named, list[str]]:
     if not parts:
         return values, labels, remarks
     values["pose_error_by_part"], labels["error"] = np.array(list(parts.values())), list(parts)
-    bent = 0.0 if at.bent is None else parts["bent_legs"].sum(axis=0)
+    bent = 0.0 if at.bent_legs is None else parts["bent_legs"].sum(axis=0)
     try:
         values["pose_error"] = tool_displacement(robot, at.pose, kinematics.built_poses(robot, at.pose))[0] + bent
         if robot.heat is not None and robot.heat.time is not None:
-            values["pose_drift"], labels["drift_time"] = drift(robot, at.pose, robot.heat.time) + bent, robot.heat.time
+            values["pose_drift"], labels["drift_time"] = (
+                thermal_drift(robot, at.pose, robot.heat.time) + bent,
+                robot.heat.time,
+            )
     except ComputationError as error:
-        remarks.append(f"pose_error is of first order, shared by the compliance of the legs: {error.what}")
+        remarks.append(remark("first order", why=error.what))
     return values, labels, remarks
 
 
-def _tolerances(at: AtPose) -> tuple[_Named, _Named]:
-    found = at.spreading
+def _tolerances(at: PoseErrors) -> tuple[_Named, _Named]:
+    found = at.tolerance_effects
     covariance = np.sum([*(one.covariance for one in found), np.zeros((6, 6))], axis=0)
     worst = np.sum([*(one.worst for one in found), np.zeros((at.robot.count, 6))], axis=(0, 1))
     values: _Named = {
@@ -109,25 +113,27 @@ def _tolerances(at: AtPose) -> tuple[_Named, _Named]:
     return values, {"tolerance": [one.name for one in found]}
 
 
-def _forces(at: AtPose) -> tuple[_Named, _Named]:
-    """What the forces do: to play, to legs that are not straight."""
+def _forces(at: PoseErrors) -> tuple[_Named, _Named]:
+    """Values and labels of errors that depend on forces: play, and legs that are not straight."""
     values: _Named = {}
-    if at.is_loose:
+    if at.has_backlash:
         found = at.play
         values = {
             "play_error": found.error[0],
             "play_worst": found.worst[0],
             "play_by_place": np.sign(found.force[0])[..., None] * found.effect[0],
         }
-    if at.bent is not None:
-        values |= {"leg_bow": at.bent.deflection, "euler_share": at.bent.share}
+    if at.bent_legs is not None:
+        values |= {"leg_bow": at.bent_legs.deflection, "euler_share": at.bent_legs.share}
     return (values | {"pressing_force": at.play.force[0]}, {"place": list(PLACES)}) if values else ({}, {})
 
 
-def _samples(at: AtPose, draws: int, seed: int) -> tuple[_Named, _Named]:
+def _samples(at: PoseErrors, draws: int, seed: int) -> tuple[_Named, _Named]:
     if not draws:
         return {}, {}
-    found: Array = samples(at.robot, at.pose, at.sensitivity, at.thrust, lambda: at.weight, count=draws, seed=seed)
+    found: Array = sample_displacements(
+        at.robot, at.pose, at.sensitivity, at.thrust, lambda: at.density_effect, count=draws, seed=seed
+    )
     fits = np.isfinite(found).all(axis=1)
     if not fits.any():
         raise ComputationError(

@@ -1,4 +1,4 @@
-"""What small errors of legs and joints do to the tool, to first order, Eqs. (T16.8)-(T16.9)."""
+"""Sensitivity of the tool to small errors of legs and joints, to first order, Eqs. (T16.8)-(T16.9)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.analysis.results.causes import closing
+from flexapod.analysis.results.causes import closure_coordinates
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError
 from flexapod.kinematics.leg_geometry import COORDINATES
@@ -32,24 +32,22 @@ class Sensitivity:
     q: Array
 
     def part(self, which: slice) -> Sensitivity:
-        """That at some of the poses."""
+        """Sensitivity at some of the poses."""
         return Sensitivity(
             coordinate=self.coordinate[which], base=self.base[which], platform=self.platform[which], q=self.q[which]
         )
 
 
-def sensitivity(robot: Robot, path: kinematics.Poses) -> Sensitivity:
-    """First-order effect of errors at the poses of a path.
+def sensitivity(at: kinematics.RigidPoses) -> Sensitivity:
+    """First-order effect of errors at poses.
 
     Raises
     ------
     ComputationError
         A pose is singular.
     """
-    legs = kinematics.rigid_limbs(robot)
-    q = coordinates_of(kinematics.inverse_kinematics(robot, kinematics.Poses.at_rest(path.position, path.rotation)))
-    by = _by_coordinate(robot, path)
-    columns, takes = screws(legs, q).columns, closing(legs)
+    legs, q, by = kinematics.rigid_limbs(at.robot), coordinates_of(at.legs), _by_coordinate(at)
+    columns, takes = screws(legs, q).columns, closure_coordinates(legs)
     held = legs.given
     base = np.zeros((*q.shape[:2], 3, 6))
     kinds = np.column_stack([legs.pose_closure, takes, held])
@@ -60,23 +58,24 @@ def sensitivity(robot: Robot, path: kinematics.Poses) -> Sensitivity:
         change = np.linalg.solve(columns[:, alike, :rows][..., takes[i]], np.eye(rows, 3))
         given = by[:, alike][:, :, takes[i] & held[i]]
         base[:, alike] = np.einsum("pikj,pikx->pijx", change[:, :, held[i, takes[i]]], given)
-    platform = -np.einsum("pji,pnjx->pnix", path.rotation, base)
+    platform = -np.einsum("pji,pnjx->pnix", at.poses.rotation, base)
     return Sensitivity(coordinate=by, base=base, platform=platform, q=q)
 
 
-def _by_coordinate(robot: Robot, path: kinematics.Poses) -> Array:
-    """Of unit errors of held and driven coordinates, (P, n, 8, 6), Eq. (T16.8)."""
+def _by_coordinate(at: kinematics.RigidPoses) -> Array:
+    """Displacement of the tool by unit errors of held and driven coordinates, (P, n, 8, 6), Eq. (T16.8)."""
+    robot, path = at.robot, at.poses
     if is_hexapod(robot):
         found = np.zeros((len(path), robot.count, len(COORDINATES), 6))
         try:
-            inverse = np.linalg.inv(kinematics.drive_jacobian(robot, path, robot.tool))
+            inverse = np.linalg.inv(at.drive_jacobian(robot.tool))
         except np.linalg.LinAlgError:
             raise ComputationError(
                 "a pose is singular: lengths do not determine it", next_step="See `flexapod check`."
             ) from None
         found[:, :, COORDINATES.index("l")] = inverse.swapaxes(1, 2)
         return found
-    found = rigid_errors(robot, path)
+    found = rigid_errors(at)
     R, arm = path.rotation[:, None, None], path.rotation @ (robot.tool - robot.com)
     turn = (R @ found[..., 3:, None])[..., 0]
     shift = found[..., :3] + np.cross(turn, arm[:, None, None])
@@ -84,7 +83,7 @@ def _by_coordinate(robot: Robot, path: kinematics.Poses) -> Array:
 
 
 def systematic(robot: Robot, at: Sensitivity) -> dict[str, Array]:
-    """Displacement and rotation of the tool by part as built and warm, and leg, (n, 6), at the first pose at t = 0."""
+    """Displacement and rotation of the tool by part, as built and with heat, (n, 6) by leg, at the first pose."""
     found, still, start = {}, np.zeros_like(at.q[:1]), np.zeros(1)
     for part in kinematics.built_parts(robot):
         size = part.size(start).position[0, :, None]

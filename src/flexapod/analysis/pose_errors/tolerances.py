@@ -1,6 +1,6 @@
-"""Tolerances at the tool: covariance, worst case over a box, samples with exact kinematics, (T16.10)-(T16.12).
+"""Tolerances at the tool: covariance, worst case over a box, exact samples, (T16.10)-(T16.12).
 
-What pistons that are heavier than drawn do to the tool at rest, Eq. (T16.23).
+The density of pistons acts by their weight at rest, Eq. (T16.23).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.analysis.pose_errors.bent_legs import by_bending_stiffness, by_bow, softness
+from flexapod.analysis.pose_errors.bent_legs import axial_sensitivity, bending_sensitivity, bow_sensitivity
 from flexapod.analysis.pose_errors.sensitivity import Sensitivity
 from flexapod.common.arrays import Array
 from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN
@@ -20,7 +20,7 @@ from flexapod.mechanics.leg.layout import columns, leg_parameters
 from flexapod.model import Robot, Study
 from flexapod.solve.batch import residual
 from flexapod.solve.modal.at_poses import locked_poses
-from flexapod.solve.statics.locked_robot import LockedPoses, the_equilibrium
+from flexapod.solve.statics.locked_robot import LockedPoses, single_equilibrium
 from flexapod.solve.statics.stiffness import displacement, tool_motion
 from flexapod.solve.system import System
 
@@ -29,7 +29,7 @@ BLOCK = 2000  # machines whose poses are sought side by side
 
 
 @dataclass(frozen=True, kw_only=True)
-class Spreading:
+class ToleranceEffect:
     """One tolerance at one pose.
 
     ``effect`` (n, m, 6): what an error of one standard deviation, or at the edge of the box, of each of m numbers of
@@ -64,7 +64,7 @@ class Spreading:
         return (np.abs(self.effect).sum(axis=1) + np.abs(self.square)) * self.boxed
 
 
-def spreading(robot: Robot, at: Sensitivity, push: Array, weigh: Callable[[], Array]) -> list[Spreading]:
+def tolerance_effects(robot: Robot, at: Sensitivity, push: Array, weigh: Callable[[], Array]) -> list[ToleranceEffect]:
     """The tolerances of a robot at the first pose of its sensitivity, its pistons under thrusts `push` (n,) [N].
 
     `weigh`: what more density of the pistons of each leg, relative to it, does to the tool, (n, 6).
@@ -75,7 +75,7 @@ def spreading(robot: Robot, at: Sensitivity, push: Array, weigh: Callable[[], Ar
         effect = weigh()[:, None] if name == "density" else _effect(robot, at, name, push)
         if name == "bow":
             square = size**2 * _longer(robot, at, name, push)[1][:, None] * at.coordinate[0, :, L]
-        found.append(Spreading(name=name, effect=size * effect, boxed=boxed, square=square))
+        found.append(ToleranceEffect(name=name, effect=size * effect, boxed=boxed, square=square))
     return found
 
 
@@ -91,7 +91,7 @@ def _given(robot: Robot) -> list[tuple[str, float, bool]]:
 
 
 def _effect(robot: Robot, at: Sensitivity, name: str, push: Array) -> Array:
-    """What unit errors do to the tool, (n, m, 6)."""
+    """Displacement of the tool by unit errors of one tolerance, (n, m, 6)."""
     if name in ("base_joints", "platform_joints"):
         return getattr(at, name.removesuffix("_joints"))[0]
     weights = _weights(robot, name, at, push)[0]
@@ -99,7 +99,7 @@ def _effect(robot: Robot, at: Sensitivity, name: str, push: Array) -> Array:
 
 
 def _weights(robot: Robot, name: str, at: Sensitivity, push: Array) -> Array:
-    """What a unit error adds to held and driven coordinates, (1, n, 8)."""
+    """Change of held and driven coordinates by a unit error, (1, n, 8)."""
     legs, q = kinematics.rigid_limbs(robot), at.q[:1]
     found = np.zeros_like(q)
     if name != "lead":
@@ -113,17 +113,17 @@ def _weights(robot: Robot, name: str, at: Sensitivity, push: Array) -> Array:
 
 
 def _longer(robot: Robot, at: Sensitivity, name: str, push: Array) -> tuple[Array, Array]:
-    """By how much an error x makes the legs longer, c1 x + c2 x^2: c1, c2, (n,)."""
+    """Elongation of the legs by an error x, c1 x + c2 x^2: c1, c2, (n,)."""
     outside, none = np.array([leg.measured != "joint-to-joint" for leg in robot.legs]), np.zeros(robot.count)
     if name == "leg_offset":
         return np.ones(robot.count), none
     if name == "bow":
-        first, second = by_bow(robot, at, push)
+        first, second = bow_sensitivity(robot, at, push)
         return outside * first, outside * second
-    return outside * (softness(robot, push) if name == "EA" else by_bending_stiffness(robot, at, push)), none
+    return outside * (axial_sensitivity(robot, push) if name == "EA" else bending_sensitivity(robot, at, push)), none
 
 
-def samples(
+def sample_displacements(
     robot: Robot,
     path: kinematics.Poses,
     at: Sensitivity,
@@ -133,9 +133,9 @@ def samples(
     count: int,
     seed: int,
 ) -> Array:
-    """Displacements of the tool of machines drawn within the tolerances, exact kinematics, (count, 6).
+    """Displacements of the tool of machines sampled within the tolerances, exact kinematics, (count, 6).
 
-    Of EA, EI, bow and density as of `spreading`. NaN where legs do not fit together without strain.
+    Of EA, EI, bow and density as of `tolerance_effects`. NaN where legs do not fit together without strain.
     """
     rng, legs = np.random.default_rng(seed), kinematics.rigid_limbs(robot)
     parts = []
@@ -167,13 +167,13 @@ def tool_displacement(robot: Robot, before: kinematics.Poses, after: kinematics.
     return np.concatenate([after.place(robot.tool) - before.place(robot.tool), turn], axis=1)
 
 
-def drift(robot: Robot, pose: kinematics.Poses, times: Array) -> Array:
+def thermal_drift(robot: Robot, pose: kinematics.Poses, times: Array) -> Array:
     """Displacement of the tool at a pose by errors and by the temperatures of instants, (t, 6)."""
     many = pose.part(np.zeros(len(times), dtype=int))
     return tool_displacement(robot, many, kinematics.built_poses(robot, many, times))
 
 
-def by_density(study: Study, pose: kinematics.Poses) -> Array:
+def density_effect(study: Study, pose: kinematics.Poses) -> Array:
     """Displacement and rotation of the tool by more density of the piston of each leg, relative to it, (n, 6).
 
     Raises
@@ -182,7 +182,7 @@ def by_density(study: Study, pose: kinematics.Poses) -> Array:
         There is no equilibrium.
     """
     locked = locked_poses(study.robot, study.simulation, pose, study.load)
-    pose_there = the_equilibrium(locked).state.pose
+    pose_there = single_equilibrium(locked).state.pose
     heavier = _balance(locked, locked.system) - _balance(locked, _twice_as_heavy(locked.system))
     count = len(heavier)
     loads = np.zeros((1, *heavier.shape, count))

@@ -1,1 +1,1 @@
-"""From what was recorded to named results, causes, remarks and the summary."""
+"""Named results of recordings: deviations by cause, remarks and the summary."""

@@ -1,4 +1,4 @@
-"""From the arguments of a Python call to a study."""
+"""Studies, robots and poses from the arguments of a Python call."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from flexapod import kinematics, model
 from flexapod.common.arrays import floats
-from flexapod.common.errors import InputError, closest
+from flexapod.common.errors import InputError, suggest_word
 from flexapod.common.units import quantities, quantity
 
 POSE_KEYS = model.AXES
@@ -24,7 +24,7 @@ LoadLike = model.Load | model.Wrench | ArrayLike | None
 T = TypeVar("T")
 
 
-def read(subject: T | FileLike) -> T | model.Study | model.ActuatorStudy:
+def read_subject(subject: T | FileLike) -> T | model.Study | model.ActuatorStudy:
     """The study in a file, where `subject` is its path; anything else as it is."""
     return model.load(subject) if isinstance(subject, str | Path) else subject
 
@@ -42,7 +42,7 @@ def as_study(
     InputError
         A robot without a motion, or something that is neither robot nor study.
     """
-    found = read(subject)
+    found = read_subject(subject)
     changes: dict[str, object] = {}
     if load is not None:
         changes["load"] = _load(load)
@@ -79,7 +79,7 @@ def _load(load: LoadLike) -> model.Load:
         raise InputError(error.what, key="load", value=error.value, allowed=words) from None
 
 
-def at_pose(subject: RobotLike, load: LoadLike = None) -> model.Study:
+def study_at_pose(subject: RobotLike, load: LoadLike = None) -> model.Study:
     """A study for calls that look at one pose: a bare robot is given a motion that stays at home."""
     still = (
         None if not isinstance(subject, model.Robot) else model.AxisMotion(type="heave", amplitude=0.0, duration=1.0)
@@ -105,7 +105,7 @@ def as_pose(robot: model.Robot, pose: PoseLike, *, check: bool = True) -> kinema
         Unknown names, another shape, or a pose that the legs cannot reach.
     """
     if isinstance(pose, str):
-        pose = pose_in_words(pose)
+        pose = pose_from_text(pose)
     if isinstance(pose, kinematics.Poses):
         if len(pose) != 1:
             raise InputError("has several samples", key="pose", value=len(pose), allowed="one sample")
@@ -115,11 +115,19 @@ def as_pose(robot: model.Robot, pose: PoseLike, *, check: bool = True) -> kinema
         named = np.isin(POSE_KEYS, list(pose)) if isinstance(pose, Mapping) else None
         found = kinematics.poses_from_home(robot, values[None], named)
     if check:
-        _check_reachable(robot, found)
+        _check_reachable(kinematics.RigidPoses(robot, found))
     return found
 
 
-def pose_in_words(text: str, key: str = "pose") -> dict[str, float] | None:
+class RigidPose(kinematics.RigidPoses):
+    """A rigid robot at one pose, at rest, that its legs reach; parameters and refusals as of `as_pose`."""
+
+    def __init__(self, robot: model.Robot, pose: PoseLike) -> None:
+        super().__init__(robot, as_pose(robot, pose, check=False))
+        _check_reachable(self)
+
+
+def pose_from_text(text: str, key: str = "pose") -> dict[str, float] | None:
     """Surge, sway, heave [m], roll, pitch, yaw [rad] from ``"roll=20deg,heave=10mm"``; None, which is home, of nothing.
 
     Raises
@@ -134,7 +142,7 @@ def pose_in_words(text: str, key: str = "pose") -> dict[str, float] | None:
         name, equals, value = (piece.strip() for piece in part.partition("="))
         if not equals or name not in POSE_KEYS or name in pose:
             what = "is given twice" if name in pose else "is not an axis with its value"
-            hint = closest(name, POSE_KEYS) or f'Write {key} "roll=20deg,heave=10mm"'
+            hint = suggest_word(name, POSE_KEYS) or f'Write {key} "roll=20deg,heave=10mm"'
             raise InputError(what, key=key, value=part.strip(), allowed=", ".join(POSE_KEYS), next_step=hint)
         pose[name] = coordinate(name, value, f"{key} {name}")
     return pose
@@ -145,7 +153,7 @@ def coordinate(name: str, value: object, key: str) -> float:
     return quantity(value, "length" if name in POSE_KEYS[:3] else "angle", key=key)
 
 
-def with_numbers(pose: Any) -> Any:
+def pose_numbers(pose: Any) -> Any:
     """A pose, or several, by name or in a row, with numbers in place of texts."""
     if isinstance(pose, Mapping):
         return {name: _of_axis(name, value) for name, value in pose.items()}
@@ -166,7 +174,7 @@ def _coordinates(pose: Mapping[str, float | str] | ArrayLike | None) -> np.ndarr
         unknown = [name for name in pose if name not in POSE_KEYS]
         if unknown:
             raise InputError("is not an axis", key=f"pose.{unknown[0]}", allowed=", ".join(POSE_KEYS))
-    pose = with_numbers(pose)
+    pose = pose_numbers(pose)
     if isinstance(pose, Mapping):
         pose = [pose.get(name, 0.0) for name in POSE_KEYS]
     try:
@@ -181,8 +189,8 @@ def _coordinates(pose: Mapping[str, float | str] | ArrayLike | None) -> np.ndarr
     return values
 
 
-def _check_reachable(robot: model.Robot, pose: kinematics.Poses) -> None:
-    found, at = kinematics.reach(robot, pose), np.zeros(1)
+def _check_reachable(at: kinematics.RigidPoses) -> None:
+    robot, found, now = at.robot, at.reach, np.zeros(1)
     if found.lost.any():
         raise InputError(
             kinematics.lost_words(kinematics.rigid_limbs(robot), found.gap[0]),
@@ -191,10 +199,10 @@ def _check_reachable(robot: model.Robot, pose: kinematics.Poses) -> None:
         )
     excess = [
         e
-        for e in (*kinematics.strokes(robot, at, found.length), *kinematics.pull_out(robot, at, found.length))
+        for e in (*kinematics.strokes(robot, now, found.length), *kinematics.pull_out(robot, now, found.length))
         if e.fatal
     ]
-    excess += kinematics.carriages(robot, at, found.carriage)
+    excess += kinematics.carriages(robot, now, found.carriage)
     if excess:
         e = excess[0]
         raise InputError(
@@ -203,4 +211,4 @@ def _check_reachable(robot: model.Robot, pose: kinematics.Poses) -> None:
             allowed="poses within the strokes",
             next_step="Choose another pose, or widen leg.stroke",
         )
-    kinematics.refuse_folded(robot, pose, found)
+    at.refuse_folded()

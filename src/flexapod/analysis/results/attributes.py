@@ -1,4 +1,4 @@
-"""Attributes of Datasets: version, the whole study, solver settings, what it cost, warnings; and the study back."""
+"""Attributes of Datasets: version, the whole study, solver settings, cost, warnings; and the study read back."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flexapod.common import version
 from flexapod.common.errors import FlexapodError, InputError
 from flexapod.common.tables.named_files import NamedFiles
 from flexapod.model.file.files import loads_among
-from flexapod.model.stored import stored_tables
+from flexapod.model.stored_tables import stored_tables
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -75,7 +75,7 @@ def _remember(digest: str, study: model.Study | model.ActuatorStudy) -> None:
         _known.popitem(last=False)
 
 
-def study_of(data: Dataset) -> model.Study | model.ActuatorStudy:
+def result_study(data: Dataset) -> model.Study | model.ActuatorStudy:
     """The study that a result carries: the one it was computed of while that is known, else read from its text.
 
     Raises
@@ -85,23 +85,23 @@ def study_of(data: Dataset) -> model.Study | model.ActuatorStudy:
     """
     known = _recalled(data)
     if known is None:
-        known = study_in(data.attrs)
+        known = study_from_attributes(data.attrs)
         _remember(str(data.attrs.get("study_hash")), known)
     return known
 
 
-def study_in(attrs: Mapping[Any, Any], file: str | None = None) -> model.Study | model.ActuatorStudy:
+def study_from_attributes(attrs: Mapping[Any, Any], file: str | None = None) -> model.Study | model.ActuatorStudy:
     """The study in the attributes of a result, with the tables that they hold; `file`: that of the result.
 
     Raises
     ------
     InputError
-        As of `study_of`, or they hold none.
+        As of `result_study`, or they hold none.
     """
     text, path = attrs.get("study"), attrs.get("study_file", "")
     if not isinstance(text, str) or not isinstance(path, str):
         raise InputError("holds no study", file=file, key="study", allowed="a result of flexapod")
-    study = loads_among(text, path or file, files_in(attrs))
+    study = loads_among(text, path or file, stored_files(attrs))
     if TABLES in attrs:
         return study.hold_tables()
     _check_former(study, str(attrs.get("study_hash")))
@@ -121,8 +121,8 @@ def _check_former(study: model.Study | model.ActuatorStudy, digest: str) -> None
         )
 
 
-def files_in(attrs: Mapping[Any, Any]) -> NamedFiles | None:
-    """What the text of a result may name: the tables that it holds; None of a former one, which holds none."""
+def stored_files(attrs: Mapping[Any, Any]) -> NamedFiles | None:
+    """Tables stored in a result, as the files that its study names; None of a former result, which has none."""
     if TABLES not in attrs:
         return None
     folder = Path(str(attrs.get("study_file") or "")).parent
@@ -142,7 +142,7 @@ def robot_of(data: Dataset) -> model.Robot:
     if isinstance(known, model.Study):
         return known.robot
     path = data.attrs.get("study_file") or None
-    return model.loads_robot(data.attrs["study"], path=path, files=files_in(data.attrs))
+    return model.loads_robot(data.attrs["study"], path=path, files=stored_files(data.attrs))
 
 
 def march_attributes(
@@ -194,7 +194,7 @@ def _ending(record: Record, duration: float) -> dict[str, object]:
 
 def robot_study(data: Dataset) -> model.Study:
     """The study of a robot that a result carries as text; InputError for that of a single actuator."""
-    study = study_of(data)
+    study = result_study(data)
     if not isinstance(study, model.Study):
         raise InputError("is the result of a single actuator", key="data", allowed="results of a robot")
     return study
@@ -203,7 +203,7 @@ def robot_study(data: Dataset) -> model.Study:
 def carried_study(data: Dataset) -> model.Study | model.ActuatorStudy | None:
     """The study that a result carries; None where it cannot be read any more, as when a table is gone."""
     try:
-        return study_of(data)
+        return result_study(data)
     except FlexapodError:
         return None
 
@@ -222,10 +222,10 @@ def motion_end(data: Dataset) -> float | None:
 
 def motion_coordinates(data: Dataset) -> Dataset:
     """Commanded surge, sway, heave [m], roll, pitch, yaw [rad], their rates and accelerations (time, coordinate)."""
-    from flexapod.common.datasets import composed
+    from flexapod.common.datasets import build_dataset
 
     dims, parts = ("time", "coordinate"), {}
     for name, ending in (("position", ""), ("rate", "_rate"), ("acceleration", "_acceleration")):
         both = [data[f"{kind}_command{ending}"].values for kind in ("translation", "rotation")]
         parts[name] = (dims, np.concatenate(both, axis=1))
-    return composed(parts, {"time": data.time, "coordinate": list(model.AXES)})
+    return build_dataset(parts, {"time": data.time, "coordinate": list(model.AXES)})

@@ -10,19 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.analysis.results.elongations import bushing_words
-from flexapod.analysis.results.lazy_arrays import Made
+from flexapod.analysis.results.lazy_arrays import ArraySource
 from flexapod.analysis.results.legs import base_points
 from flexapod.common.arrays import Array
-from flexapod.common.quantities import text
-from flexapod.common.ranking import EQUALS, first_least
-from flexapod.kinematics.robot import once, rigid_limbs
+from flexapod.kinematics.robot import cache_per_robot, rigid_limbs
 from flexapod.model import Robot
-from flexapod.solve.frames import as_drawn, in_world
+from flexapod.solve.frames import rigid_pose, to_world
 
 if TYPE_CHECKING:
-    from xarray import Dataset
-
     from flexapod.analysis.results.time_history import Record
     from flexapod.solve.batch import RestStates
     from flexapod.solve.system import System
@@ -31,14 +26,14 @@ Pairs = list[tuple[int, int]]
 CYLINDER = 1.6  # radius of a cylinder over that of its piston, where it is not known
 
 
-def largest_turns(robot: Robot) -> Array:
-    """How far the legs may turn at base and platform joint, (n, 2) [rad]; inf without a limit."""
+def joint_angle_limits(robot: Robot) -> Array:
+    """Largest angles that base and platform joint of the legs allow, (n, 2) [rad]; inf without a limit."""
     ends = ((leg.base_joint.max_angle, leg.platform_joint.max_angle) for leg in robot.legs)
     return np.array([[np.inf if angle is None else angle for angle in pair] for pair in ends])
 
 
-def turns(robot: Robot, axes: Array, rotation: Array) -> Array:
-    """How far legs along `axes` (T, n, 3) under a platform of `rotation` (T, 3, 3) have turned, (T, n, 2) [rad]."""
+def joint_angles(robot: Robot, axes: Array, rotation: Array) -> Array:
+    """Turns since home of legs along `axes` (T, n, 3), platform `rotation` (T, 3, 3): (T, n, 2) [rad]."""
     return kinematics.turned_by(axes, rotation, robot.home_vectors / robot.home_lengths[:, None], robot.home_rotation)
 
 
@@ -56,7 +51,7 @@ def _nearest(robot: Robot, pairs: Pairs, tips: Array, axes: Array, length: Array
     return kinematics.nearest_legs(tips - length[..., None] * axes, tips, mouth, _radii(robot), np.array(pairs))
 
 
-@once
+@cache_per_robot
 def pairs_of_legs(robot: Robot) -> Pairs:
     """Pairs of legs that do not meet at a joint, numbers from 0; none in a plane, where legs lie in layers.
 
@@ -82,17 +77,17 @@ def _radii(robot: Robot) -> Array:
 
 def body_results(
     robot: Robot, drawn: Callable[[], tuple[Array, Array, Array]], length: Callable[[], Array]
-) -> dict[str, Made]:
-    """Turns of joints and least distance of legs over time, when they are asked for.
+) -> dict[str, ArraySource]:
+    """Turns of joints and least distance of legs over time, computed on request.
 
     ``drawn``: the payload's centre (T, 3) and attitude (T, 3, 3), the legs' axes (T, n, 3); ``length``: theirs (T, n).
     """
-    drawn, largest, pairs = cache(drawn), largest_turns(robot), pairs_of_legs(robot)
+    drawn, largest, pairs = cache(drawn), joint_angle_limits(robot), pairs_of_legs(robot)
 
     @cache
-    def turned() -> Array:
+    def turn_angles() -> Array:
         _, R, axes = drawn()
-        return turns(robot, axes, R)
+        return joint_angles(robot, axes, R)
 
     @cache
     def nearest() -> kinematics.Nearest:
@@ -100,55 +95,26 @@ def body_results(
         tips = place[:, None] + (robot.platform_joints - robot.com) @ R.swapaxes(1, 2)
         return _nearest(robot, pairs, tips, axes, length())
 
-    found: dict[str, Made] = {"joint_turn": turned}
+    found: dict[str, ArraySource] = {"joint_turn": turn_angles}
     if np.isfinite(largest).any():
-        found["joint_margin"] = lambda: largest - turned()
+        found["joint_margin"] = lambda: largest - turn_angles()
     if pairs:
         found |= {"leg_clearance": lambda: nearest().gap, "nearest_legs": lambda: nearest().legs + 1}
     return found
 
 
-def bodies_words(data: Dataset) -> list[str]:
-    """Sentences on a result: the joint with the least angle left, the least distance of legs, what bushings bear."""
-    said = []
-    if "joint_margin" in data:
-        left = data.joint_margin.values
-        k, leg, end = np.unravel_index(first_least(left), left.shape)
-        said.append(left_words(float(left[k, leg, end]), int(leg) + 1, data.end.values[end], float(data.time[k])))
-    if "leg_clearance" in data:
-        k = first_least(data.leg_clearance.values, EQUALS)
-        said.append(gap_words(float(data.leg_clearance[k]), data.nearest_legs.values[k], float(data.time[k])))
-    if "guide_force" in data:
-        said.append(bushing_words(np.linalg.norm(data.guide_force.values, axis=-1), data.time.values))
-    return said
-
-
-def left_words(left: float, leg: int, end: str, time: float) -> str:
-    """The joint with the least angle left."""
-    what = "are left of" if left >= 0 else "are missing to"
-    return (
-        f"{np.rad2deg(abs(left)):.3g} deg {what} the angle of the {end} joint of leg {leg} at t = {time:.4g} s, "
-        "the least of all joints."
-    )
-
-
-def gap_words(gap: float, legs: Array, time: float) -> str:
-    """The two legs nearest to each other."""
-    one, other = legs
-    at = f"at t = {time:.4g} s"
-    if gap < 0:
-        return f"Legs {one} and {other} run into each other: they overlap by {text(-gap, 'm', 3)} {at}."
-    return f"Legs {one} and {other} come nearest to each other {at}: {text(gap, 'm', 3)} are between them."
-
-
 def flexible_axes(robot: Robot, system: System, record: Record | RestStates) -> Array:
     """Unit vectors from base to platform joint, world axes, (T, legs, 3)."""
-    return in_world(system, robot, record.q, axes_as_drawn(robot, system, record))
+    return to_world(system, robot, record.q, axes_as_drawn(robot, system, record))
 
 
 def axes_as_drawn(robot: Robot, system: System, record: Record | RestStates) -> Array:
     """Unit vectors from base to platform joint in the axes of the base, (T, legs, 3)."""
-    (place, R), legs, shapes = as_drawn(system, robot, record.q, record.pose), rigid_limbs(robot), system.kernel.shapes
+    (place, R), legs, shapes = (
+        rigid_pose(system, robot, record.q, record.pose),
+        rigid_limbs(robot),
+        system.kernel.shapes,
+    )
     tips = place[:, None] + (robot.platform_joints - robot.com) @ R.swapaxes(1, 2)
     vectors = tips - base_points(legs, record.q[..., shapes.index("chi")] if shapes.has("chi") else None)
     return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)

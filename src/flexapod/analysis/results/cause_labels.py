@@ -1,4 +1,4 @@
-"""What causes of deviation are called in words."""
+"""Labels of the causes of deviation."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ CAUSE_WORDS = {
 }
 
 
-def cause_in_words(cause: str, bodies: str = "pistons") -> str:
-    """What a cause stands for; one without words of its own is a spring of that name."""
+def cause_label(cause: str, bodies: str = "pistons") -> str:
+    """Label of a cause; a cause without a label of its own is a spring of that name."""
     return CAUSE_WORDS.get(cause, f"give of {cause}").replace("pistons", bodies)
 
 
-def cause_words(data: Dataset) -> dict[str, str]:
-    """Causes of deviation in words; what bends in legs without stroke is a strut."""
+def cause_labels(data: Dataset) -> dict[str, str]:
+    """Labels of the causes of deviation; parts that bend in legs without stroke are struts."""
     causes = map(str, data.cause.values) if "cause" in data.coords else CAUSES
-    return {cause: cause_in_words(cause, "pistons" if "leg_length" in data else "struts") for cause in causes}
+    return {cause: cause_label(cause, "pistons" if "leg_length" in data else "struts") for cause in causes}

@@ -10,21 +10,27 @@ from numpy.typing import NDArray
 
 from flexapod import kinematics
 from flexapod.analysis.results.cause_labels import CAUSES
-from flexapod.analysis.results.elongations import elongations, frame_names, in_gap, part_names, tip_moves
+from flexapod.analysis.results.elongations import (
+    elongations,
+    frame_names,
+    gap_elongations,
+    part_names,
+    tip_displacements,
+)
 from flexapod.analysis.results.legs import stretch
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.analysis.results.time_history import Record
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError
-from flexapod.kinematics.closures import Task, close
+from flexapod.kinematics.closures import Task, solve_closures
 from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN, FREE, Limbs
-from flexapod.kinematics.robot import once
+from flexapod.kinematics.robot import cache_per_robot
 from flexapod.kinematics.screws import screws
 from flexapod.mechanics.elements.flexure import Flexures
 from flexapod.mechanics.elements.springs import Place
 from flexapod.model import Robot
 from flexapod.solve.batch import RestStates
-from flexapod.solve.frames import on_plates
+from flexapod.solve.frames import plate_frames
 from flexapod.solve.statics.ideal_robot import is_hexapod, rigid_errors
 from flexapod.solve.statics.lost_motion import before_friction, places_with_friction
 from flexapod.solve.system import System
@@ -48,29 +54,30 @@ class Errors:
         return np.sum(list(self.by_cause.values()), axis=0)
 
     @property
-    def stacked(self) -> Array:
+    def cause_array(self) -> Array:
         """The causes in their order, (T, causes, legs, 8)."""
         return np.stack(list(self.by_cause.values()), axis=1)
 
 
-@once
+@cache_per_robot
 def cause_names(robot: Robot) -> tuple[str, ...]:
-    """What may be to blame in a robot: its pistons and drives, every part that gives way, what is not as drawn."""
+    """Names of all causes of deviation in a robot: pistons, drives, compliant parts, differences from nominal."""
     rubs = ("friction",) * ("drive" in places_with_friction(robot))
     built = dict.fromkeys(part.cause for part in kinematics.built_parts(robot))
     return (*CAUSES, *part_names(robot), *rubs, *frame_names(robot), *built)
 
 
-def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | RestStates) -> Errors:
+def errors_of(system: System, path: RigidPath, record: Record | RestStates) -> Errors:
     """Errors by cause along a recorded path, or at rest at its instants, Eqs. (T8.2)-(T8.4), (T15.14)."""
-    found, shapes = kinematics.rigid_limbs(robot), system.kernel.shapes
+    robot, shapes = path.robot, system.kernel.shapes
+    found = kinematics.rigid_limbs(robot)
     q = np.zeros((*record.q.shape[:2], len(COORDINATES)))
     for k, name in enumerate(COORDINATES):
         if shapes.has(name):
             q[..., k] = record.q[..., shapes.index(name)]
     command = np.stack([path.legs.coordinate(name)[0] for name in COORDINATES], axis=-1)
-    (_, *at), *frames = on_plates(system, robot, record.q, record.pose)
-    before, built = _straight(robot, found, at, q), _built(robot, path, command)
+    (_, *at), *frames = plate_frames(system, robot, record.q, record.pose)
+    before, built = _straight(robot, found, at, q), _built(path, command)
     more, done = {}, ()
     for name, *at in frames:  # frame after frame to where the legs have it
         after = _straight(robot, found, at, q)
@@ -92,7 +99,7 @@ def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | Re
         place: np.array([leg.closed_about == place for leg in robot.legs]) for place in ("stroke", "joint-to-joint")
     }
     ends = inside["joint-to-joint"]  # (T23.56)
-    played = in_gap(system, record.q)
+    played = gap_elongations(system, record.q)
     drive[..., L] += axial[..., L] * ends
     axial[..., L] *= ~ends
     for places, whole in behind:  # (T15.14)
@@ -111,7 +118,7 @@ def errors_of(robot: Robot, system: System, path: RigidPath, record: Record | Re
 
 
 def _of_friction(robot: Robot, system: System, record: Record | RestStates, causes: dict[str, Array]) -> None:
-    """Take what the friction of drives makes the parts before it give from their causes to its own, Eq. (T19.17)."""
+    """Move elongations by friction of the drives from the parts before it to a cause of its own, Eq. (T19.17)."""
     causes["friction"] = np.zeros_like(causes["drive"])
     if isinstance(record, RestStates):  # bristles are straight
         return
@@ -123,9 +130,10 @@ def _of_friction(robot: Robot, system: System, record: Record | RestStates, caus
             causes["friction"][:, i, L] -= lag
 
 
-def _built(robot: Robot, path: RigidPath, command: Array) -> dict[str, tuple[tuple[kinematics.BuiltPart, ...], Array]]:
-    """What differs from the drawing, by cause, and what it adds to the commanded coordinates, (T, legs, 8)."""
-    parts, still, t = kinematics.built_parts(robot), np.zeros_like(command), path.time
+def _built(path: RigidPath, command: Array) -> dict[str, tuple[tuple[kinematics.BuiltPart, ...], Array]]:
+    """Differences from nominal by cause, and their change of the commanded coordinates, (T, legs, 8)."""
+    robot, still, t = path.robot, np.zeros_like(command), path.time
+    parts = kinematics.built_parts(robot)
     found = {}
     for cause in dict.fromkeys(part.cause for part in parts):
         own = tuple(part for part in parts if part.cause == cause)
@@ -139,19 +147,19 @@ def _built(robot: Robot, path: RigidPath, command: Array) -> dict[str, tuple[tup
 
 
 def _across(robot: Robot, found: Limbs, system: System, record: Record | RestStates, q: Array) -> dict[str, Array]:
-    """What parts that give way across the legs do to held coordinates, (T, legs, 8) by part, Eqs. (T15.15), (T25.15).
+    """Errors of held coordinates by compliance across the legs, (T, legs, 8) by part, Eqs. (T15.15), (T25.15).
 
     Of legs UPS that is of second order, and left to bending.
     """
     shapes, errors = system.kernel.shapes, {}
-    moves = tip_moves(robot, system, record.q)
+    moves = tip_displacements(robot, system, record.q)
     for name, end in (("base_joint", "u"), ("platform_joint", "e")):
         if shapes.has(f"{end}1") and not shapes.holds(Flexures):
             at = shapes.index(f"{end}1")
             moves[name] = record.q[..., at : at + 2], np.zeros((*record.q.shape[:-1], 2))
     if found.plain or not moves:
         return errors
-    chain, taken = screws(found, q).columns, closing(found)
+    chain, taken = screws(found, q).columns, closure_coordinates(found)
     z, y = chain[..., :3, L], chain[..., 3:, COORDINATES.index("beta")]
     x, spin = np.cross(y, z), q[..., COORDINATES.index("spin"), None]
     x, y = np.cos(spin) * x + np.sin(spin) * y, np.cos(spin) * y - np.sin(spin) * x
@@ -174,12 +182,12 @@ def _straight(robot: Robot, found: Limbs, platform: Sequence[Array], q: Array) -
         q = q.copy()
         q[..., L] = kinematics.leg_lengths(found.base, found.platform, at.position, at.rotation)
         return q
-    needed = close(found, Task(closing(found), np.zeros(6, dtype=bool), np.zeros(3)), q, at).q
+    needed = solve_closures(found, Task(closure_coordinates(found), np.zeros(6, dtype=bool), np.zeros(3)), q, at).q
     needed[..., CHI] = q[..., CHI]
     return needed
 
 
-def closing(found: Limbs) -> NDArray[np.bool_]:
+def closure_coordinates(found: Limbs) -> NDArray[np.bool_]:
     """The coordinates that a closure determines, (legs, 8), whether or not something holds them."""
     taken = np.zeros(found.state.shape, dtype=bool)
     taken[:, [COORDINATES.index(name) for name in ("alpha", "beta", "l")]] = True
@@ -189,7 +197,7 @@ def closing(found: Limbs) -> NDArray[np.bool_]:
     return taken
 
 
-def deviation_by_cause(robot: Robot, path: RigidPath, errors: Errors) -> Array:
+def deviation_by_cause(path: RigidPath, errors: Errors) -> Array:
     """Displacement of the payload's centre of mass by cause and leg, to first order, Eqs. (T8.6)-(T8.7).
 
     Returns
@@ -202,16 +210,17 @@ def deviation_by_cause(robot: Robot, path: RigidPath, errors: Errors) -> Array:
     ComputationError
         If a pose is exactly singular.
     """
-    return np.einsum("tclk,tlkx->tclx", errors.stacked, _by_error(robot, path))  # (T8.7)
+    return np.einsum("tclk,tlkx->tclx", errors.cause_array, _by_error(path))  # (T8.7)
 
 
-def _by_error(robot: Robot, path: RigidPath) -> Array:
+def _by_error(path: RigidPath) -> Array:
     """Displacement of the centre of mass for unit errors of what is held, (T, legs, 8, 3), Eq. (T8.6)."""
-    found, poses = kinematics.rigid_limbs(robot), path.poses
+    robot, poses = path.robot, path.poses
+    found = kinematics.rigid_limbs(robot)
     if not is_hexapod(robot):
-        return rigid_errors(robot, poses)[..., :3]
+        return rigid_errors(path)[..., :3]
     moves = np.zeros((len(poses), *found.state.shape, 3))
-    jacobian = kinematics.drive_jacobian(robot, poses, robot.com)
+    jacobian = path.drive_jacobian(robot.com)
     try:
         inverse = np.linalg.solve(jacobian.swapaxes(1, 2), np.eye(6, 3))
     except np.linalg.LinAlgError:

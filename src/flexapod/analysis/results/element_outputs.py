@@ -10,7 +10,7 @@ import numpy as np
 from flexapod.analysis.results.variables import VARIABLES, Variable
 from flexapod.common.arrays import Array
 from flexapod.mechanics.elements.registry import kinds_of, slots_of
-from flexapod.mechanics.elements.trial import asking
+from flexapod.mechanics.elements.trial import wrap_hook_errors
 from flexapod.mechanics.leg.layout import leg_parameters
 from flexapod.model import Robot
 from flexapod.solve.system import System
@@ -30,26 +30,26 @@ def element_forms(robot: Robot) -> dict[str, Variable]:
 
 
 def element_results(robot: Robot, system: System, q: Array) -> dict[str, Array]:
-    """These results from recorded coordinates (T, legs, n), each (T, legs); NaN in legs without the element."""
+    """Results of the elements from recorded coordinates (T, legs, n), each (T, legs); NaN in legs without one."""
     shapes, found = system.kernel.shapes, {}
     if not any(slot.kind.outputs for slot in shapes.elements):
         return found
-    p, coordinates = by_name(system.leg_p, leg_parameters(shapes)), by_name(q, shapes.layout)
+    p, coordinates = columns_by_name(system.leg_p, leg_parameters(shapes)), columns_by_name(q, shapes.layout)
     for slot in shapes.elements:
         has = np.array([slot.of(leg) is not None for leg in robot.legs])
         for output in slot.kind.outputs:
-            with asking(slot.kind, f"outputs.{output.name}"):
-                values = np.broadcast_to(output.of(slot.seen(p), slot.seen(coordinates)), q.shape[:-1])
+            with wrap_hook_errors(slot.kind, f"outputs.{output.name}"):
+                values = np.broadcast_to(output.of(slot.strip_prefix(p), slot.strip_prefix(coordinates)), q.shape[:-1])
             found[f"{slot.prefix}{output.name}"] = np.where(has, values, np.nan)
     return found
 
 
-def of_elements(data: Dataset) -> tuple[str, ...]:
+def element_names(data: Dataset) -> tuple[str, ...]:
     """Names of the results that elements of the legs have, see `flexapod.Element`."""
     return tuple(str(name) for name in data.data_vars if name not in VARIABLES and data[name].dims == ("time", "leg"))
 
 
-def by_name(rows: Array, layout: tuple[tuple[str, int], ...]) -> SimpleNamespace:
+def columns_by_name(rows: Array, layout: tuple[tuple[str, int], ...]) -> SimpleNamespace:
     """Columns of rows by name; of more than one number the first axis counts them."""
     found, start = {}, 0
     for name, size in layout:

@@ -1,6 +1,6 @@
-"""How far the parts between the ends of a leg give way, by name, Eqs. (T15.3) and (T15.14).
+"""Elongations of the legs by part, Eqs. (T15.3) and (T15.14), and deflections of guides and cylinders.
 
-Pistons in two bushings and cylinders that bend: what they do to the tips of the legs, and forces of the bushings.
+Guides and cylinders that bend move the tips of the legs; forces of the bushings follow.
 """
 
 from __future__ import annotations
@@ -10,14 +10,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from flexapod.analysis.results.element_outputs import by_name
+from flexapod.analysis.results.element_outputs import columns_by_name
 from flexapod.common.arrays import Array
-from flexapod.common.quantities import text
-from flexapod.common.ranking import first_largest
 from flexapod.mechanics.elements.element import SeriesSprings
 from flexapod.mechanics.elements.flexure import Flexures
 from flexapod.mechanics.elements.kink import LEAST, kink
-from flexapod.mechanics.elements.springs import Place, Spring, of_servo, springs_along
+from flexapod.mechanics.elements.springs import Place, Spring, servo_spring, springs_along
 from flexapod.mechanics.leg.layout import columns, leg_parameters
 from flexapod.model import Robot, ServoDrive
 from flexapod.solve.system import System
@@ -27,14 +25,14 @@ GUIDED = ("guide_force", "guide_overlap")
 """Variables of guided legs."""
 
 
-def part_names_inside(robot: Robot) -> tuple[str, ...]:
-    """Which of `PARTS` give way in any leg of a robot."""
+def guide_part_names(robot: Robot) -> tuple[str, ...]:
+    """Names of those of `PARTS` that are compliant in any leg of a robot."""
     there = (any(leg.cylinder.section is not None for leg in robot.legs), is_guided(robot))
     return tuple(name for name, given in zip(PARTS, there, strict=True) if given)
 
 
 def is_guided(robot: Robot) -> bool:
-    """Whether any piston stands in bushings."""
+    """Test whether any leg guides its piston by bushings."""
     return any(leg.guide is not None for leg in robot.legs)
 
 
@@ -50,7 +48,7 @@ def _mouths(robot: Robot) -> Array:
 
 
 def _lengths(robot: Robot) -> Array:
-    """Of the cylinders that bend, and 1."""
+    """Lengths of the cylinders that bend, 1 for the others, (legs,) [m]."""
     return np.where([leg.cylinder.section is not None for leg in robot.legs], _mouths(robot), 1.0)
 
 
@@ -65,7 +63,7 @@ def _tube(robot: Robot, system: System, q: Array, at: Array, derivative: int = 0
     return np.einsum("...k,...dk->...d", np.broadcast_to(values, (*q.shape[:-1], basis.count)), smooth)
 
 
-def _bent(robot: Robot, system: System, q: Array, at: Array) -> Array:
+def _cylinder_deflection(robot: Robot, system: System, q: Array, at: Array) -> Array:
     """Displacement of the cylinders, with the kink that the heads make, Eq. (T25.19)."""
     found, basis = _tube(robot, system, q, np.maximum(at, 0.0)), system.kernel.shapes.beam.cylinder
     if basis is None or system.kernel.shapes.beam.guide is None:
@@ -78,7 +76,7 @@ def _bent(robot: Robot, system: System, q: Array, at: Array) -> Array:
     return found + shape[..., None] * amplitude
 
 
-def tip_moves(robot: Robot, system: System, q: Array) -> dict[str, tuple[Array, Array]]:
+def tip_displacements(robot: Robot, system: System, q: Array) -> dict[str, tuple[Array, Array]]:
     """Displacement and slope of the legs' tips by each of `PARTS`, (..., legs, 2) each, Eq. (T25.15).
 
     A cylinder that bends carries a straight piston through the places of its bushings, or a clamped one along its
@@ -90,7 +88,7 @@ def tip_moves(robot: Robot, system: System, q: Array) -> dict[str, tuple[Array, 
     slope = tangent
     if shapes.beam.guide is not None:
         overlap = _overlaps(robot, system, q)
-        through = (place - _bent(robot, system, q, mouth - overlap)) / overlap[..., None]
+        through = (place - _cylinder_deflection(robot, system, q, mouth - overlap)) / overlap[..., None]
         slope = np.where(np.array([leg.guide is not None for leg in robot.legs])[:, None], through, tangent)
         lean = _pair(system, q, "g")
         own = tangent + lean[..., 1] - slope
@@ -106,7 +104,7 @@ def _overlaps(robot: Robot, system: System, q: Array) -> Array:
     return ends - q[..., system.kernel.shapes.l_index]
 
 
-def off_axis(robot: Robot, system: System, q: Array, length: Array, stations: Array) -> Array:
+def axis_deflections(robot: Robot, system: System, q: Array, length: Array, stations: Array) -> Array:
     """Displacement of cylinders up to their mouths and of the line of the pistons beyond, (..., legs, 2, stations).
 
     ``length`` (legs,) of the legs, ``stations`` as shares of it; q (..., legs, n).
@@ -121,7 +119,7 @@ def off_axis(robot: Robot, system: System, q: Array, length: Array, stations: Ar
         place, slope = place + lean[..., 0], slope + lean[..., 1]
     for k, station in enumerate(stations):
         beyond = (station * length - mouth)[:, None]
-        inside = _bent(robot, system, q, np.minimum(station * length, mouth))
+        inside = _cylinder_deflection(robot, system, q, np.minimum(station * length, mouth))
         found[..., k] = np.where(beyond > 0, place + beyond * slope, inside)
     return found
 
@@ -135,7 +133,7 @@ def guide_results(robot: Robot, system: System, q: Array) -> dict[str, Array]:
     overlap = _overlaps(robot, system, q)
     lean = _pair(system, q, "g")
     place, slope = lean[..., 0] + _tube(robot, system, q, mouth), lean[..., 1] + _tube(robot, system, q, mouth, 1)
-    end = place - overlap[..., None] * slope - _bent(robot, system, q, mouth - overlap)  # (T25.1)
+    end = place - overlap[..., None] * slope - _cylinder_deflection(robot, system, q, mouth - overlap)  # (T25.1)
     if inner.count:
         end = end + _pair(system, q, "h") @ inner.tip
     stiffness = system.leg_p[:, columns(leg_parameters(shapes), "guide_stiffness")]
@@ -143,21 +141,11 @@ def guide_results(robot: Robot, system: System, q: Array) -> dict[str, Array]:
     return dict(zip(GUIDED, (force, np.where(guided, overlap, np.nan)), strict=True))
 
 
-def bushing_words(force: Array, time: Array | None = None) -> str:
-    """What glands and heads bear most, of forces (T, legs, 2) [N]; without ``time`` [s] of a single pose."""
-    parts = []
-    for k, name in enumerate(("glands", "heads")):
-        at, leg = np.unravel_index(first_largest(force[..., k]), force.shape[:-1])
-        when = "" if time is None else f" at t = {time[at]:.4g} s"
-        parts.append(f"{name} bear up to {text(float(force[at, leg, k]), 'N')} across (leg {leg + 1}{when})")
-    return f"The {', '.join(parts)}."
-
-
 def part_names(robot: Robot) -> tuple[str, ...]:
-    """Names of what gives way in any leg, in their order: springs along it, cylinder and guide; and turning nuts."""
+    """Names of the compliant parts of any leg, in their order: springs along it, cylinder, guide, turning nuts."""
     springs = dict.fromkeys(spring.name for leg in robot.legs for spring in springs_along(leg))
     turning = ("unkeyed",) if any(leg.turning for leg in robot.legs) else ()
-    return tuple(dict.fromkeys([*springs, *part_names_inside(robot), *turning]))
+    return tuple(dict.fromkeys([*springs, *guide_part_names(robot), *turning]))
 
 
 def frame_names(robot: Robot) -> tuple[str, ...]:
@@ -172,18 +160,18 @@ def elongations(
     places: Sequence[Place] = ("base", "nut", "platform"),
     played: Array | None = None,
 ) -> dict[str, Array]:
-    """What each spring along the legs at some places adds to their lengths, (..., legs) [m], by name.
+    """Elongation of the legs by each spring along them at some places, (..., legs) [m], by name.
 
     Springs in series, a servo's among them, share the elongation of their coordinate by their compliances at the leg's
-    length. `played`: `in_gap`, where it is known.
+    length. `played`: `gap_elongations`, where it is known.
     """
     shapes = system.kernel.shapes
     found = {name: np.zeros(q.shape[:-1]) for name in part_names(robot)}
-    length, played = q[..., shapes.l_index], in_gap(system, q) if played is None else played
+    length, played = q[..., shapes.l_index], gap_elongations(system, q) if played is None else played
     for i, leg in enumerate(robot.legs):
         springs = springs_along(leg)
         if leg.gives and isinstance(leg.drive, ServoDrive):
-            springs.append(of_servo(leg.drive.stiffness, leg.drive.damping))
+            springs.append(servo_spring(leg.drive.stiffness, leg.drive.damping))
         gives = _gives(system, q[..., i, :])
         if leg.turning and "nut" in places:  # (T23.41)
             found["unkeyed"][..., i] = leg.turning * q[..., i, shapes.index("spin")]
@@ -200,23 +188,23 @@ def elongations(
     return found
 
 
-def in_gap(system: System, q: Array) -> Array:
-    """How far the play of legs that is a gap has let them go, (..., legs) [m], at most half of it; Eq. (T16.26)."""
+def gap_elongations(system: System, q: Array) -> Array:
+    """Elongation of legs by their play where it is a gap, at most half of it, (..., legs) [m], Eq. (T16.26)."""
     shapes = system.kernel.shapes
     if not shapes.has("r"):
         return np.zeros(q.shape[:-1])
-    p, now = by_name(system.leg_p, leg_parameters(shapes)), by_name(q, shapes.layout)
-    still, springs = by_name(np.zeros_like(q), shapes.layout), SeriesSprings(1.0, now.l, 0.0)
+    p, now = columns_by_name(system.leg_p, leg_parameters(shapes)), columns_by_name(q, shapes.layout)
+    still, springs = columns_by_name(np.zeros_like(q), shapes.layout), SeriesSprings(1.0, now.l, 0.0)
     for element in shapes.elements:
         springs = element.in_series(springs, p, now, still)
     apart = past = now.r - springs.nut
     for element in shapes.elements:
-        past, _ = element.past(past, still.r, p)
+        past, _ = element.gap_deflection(past, still.r, p)
     return past - apart
 
 
 def _gives(system: System, q: Array) -> dict[Place, Array]:
-    """What the springs at the three places add to a leg's length, (...,) [m], by place."""
+    """Elongation of a leg by the springs at each of the three places, (...,) [m], by place."""
     shapes = system.kernel.shapes
     places: dict[Place, str] = {} if shapes.holds(Flexures) else {"base": "u3", "platform": "e3"}
     found: dict[Place, Array] = {at: q[..., shapes.index(name)] for at, name in places.items() if shapes.has(name)}

@@ -1,8 +1,9 @@
-"""What of a robot is ideal, what such parts are in machines of its size, and what modes and stiffness hold still."""
+"""Idealizations of a robot: parts without compliance, their usual values, and drives with compliance."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 from flexapod.model import Robot
 
@@ -14,8 +15,17 @@ MACHINES = {
 }
 
 
-def ideal_words(robot: Robot) -> str | None:
-    """Which parts do not give way, and how much they do in a machine of this size; None where joints and drives do."""
+@dataclass(frozen=True, kw_only=True)
+class Idealization:
+    """Kinds of `parts` that do not give way; their `share` [%] in the compliance of a leg of a `machine` as large."""
+
+    parts: tuple[str, ...]
+    machine: str
+    share: int
+
+
+def idealization(robot: Robot) -> Idealization | None:
+    """Sentence on ideal parts and their compliance in such machines; None where joints and drives are compliant."""
     if robot.platform_fixed:
         return None
     parts = _ideal(robot)
@@ -23,16 +33,11 @@ def ideal_words(robot: Robot) -> str | None:
         return None
     size = math.log(float(robot.home_lengths.mean()))
     name, (_, shares) = min(MACHINES.items(), key=lambda item: abs(math.log(item[1][0]) - size))
-    share = sum(shares[part] for part in parts)
-    miss = " and most of its miss" if share > 50 else ""
-    return (
-        f"Ideal, without give: {', '.join(parts)}; in {name}, a machine of this size, they make {share} % of a leg's "
-        f"compliance{miss} (docs/real-machines.md)."
-    )
+    return Idealization(parts=tuple(parts), machine=name, share=sum(shares[part] for part in parts))
 
 
 def _ideal(robot: Robot) -> list[str]:
-    """Kinds of parts that do not give way in any leg."""
+    """Kinds of parts that are rigid in every leg."""
     joints = any(x.stiffness is not None for leg in robot.legs for x in (leg.base_joint, leg.platform_joint))
     drives = any(leg.drive.type != "prescribed" for leg in robot.legs if leg.driven)
     mounts = robot.base_mount is not None or robot.platform_mount is not None
@@ -40,14 +45,7 @@ def _ideal(robot: Robot) -> list[str]:
     return [name for name, real in (("joints", joints), ("drives", drives), ("plates", plates)) if not real]
 
 
-def held(robot: Robot) -> str:
-    """What modes and stiffness hold still: the drives, or their commands where drives give way."""
+def soft_drives(robot: Robot) -> tuple[str, ...]:
+    """Kinds of drives that give way; of these modes and stiffness hold the commands still."""
     soft = {leg.drive.type for leg in robot.legs if not leg.drive.holds and getattr(leg.drive, "feedback", True)}
-    if not soft:
-        return "Drives locked"
-    parts = {
-        "servo": "springs and dampers of the servo drives",
-        "force": "feedback of the force drives",
-        "screw": "loops of the screw drives",
-    }
-    return f"Commands of the drives held, with the {' and the '.join(parts[kind] for kind in sorted(soft))}"
+    return tuple(sorted(soft))

@@ -1,4 +1,4 @@
-"""Results that are made when they are asked for, each once."""
+"""Arrays of results that are computed on request, each once."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from flexapod.common.arrays import Array
 from flexapod.common.resources import one_thread
 
 #: An array, or what makes it.
-Made = Array | Callable[[], NDArray[Any]]
+ArraySource = Array | Callable[[], NDArray[Any]]
 
 
-class Asked(Mapping[str, Array]):
-    """Arrays by name, each made when it is first asked for; what makes it is dropped then, with all that it holds."""
+class LazyArrays(Mapping[str, Array]):
+    """Arrays by name, each computed when first requested; its source is released then, with all that it holds."""
 
-    def __init__(self, values: Mapping[str, Made]) -> None:
+    def __init__(self, values: Mapping[str, ArraySource]) -> None:
         self._values, self._lock = dict(values), RLock()
 
     def __getitem__(self, name: str) -> Array:
@@ -38,10 +38,10 @@ class Asked(Mapping[str, Array]):
         return iter(self._values)
 
     def __len__(self) -> int:
-        """How many arrays there are."""
+        """Number of arrays."""
         return len(self._values)
 
-    def there(self, name: str) -> Array | None:
-        """The array, unless nobody has asked for it yet."""
+    def peek(self, name: str) -> Array | None:
+        """The array, or None before it was first requested."""
         value = self._values[name]
         return None if callable(value) else value

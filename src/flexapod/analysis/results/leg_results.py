@@ -1,6 +1,6 @@
-"""Results of the legs by name: lengths, angles, deflections, forces and moments, whatever their kind.
+"""Results of the legs by name: lengths, angles, deflections, forces and moments, for legs of any kind.
 
-How exact the forces of a run within a tolerance are: estimate over peak, Eq. (T6.34), and remarks on it.
+Accuracy of forces of a run within a tolerance: estimate over peak, Eq. (T6.34), and a remark on it.
 """
 
 from __future__ import annotations
@@ -12,11 +12,25 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.analysis.results import legs as by_name
-from flexapod.analysis.results.bodies import axes_as_drawn, body_results, flexible_axes, largest_turns, pairs_of_legs
+from flexapod.analysis.results.bodies import (
+    axes_as_drawn,
+    body_results,
+    flexible_axes,
+    joint_angle_limits,
+    pairs_of_legs,
+)
 from flexapod.analysis.results.causes import cause_names
 from flexapod.analysis.results.element_outputs import element_results
-from flexapod.analysis.results.elongations import GUIDED, elongations, guide_results, in_gap, is_guided, tip_moves
-from flexapod.analysis.results.lazy_arrays import Made
+from flexapod.analysis.results.elongations import (
+    GUIDED,
+    elongations,
+    gap_elongations,
+    guide_results,
+    is_guided,
+    tip_displacements,
+)
+from flexapod.analysis.results.lazy_arrays import ArraySource
+from flexapod.analysis.results.remarks import remark
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.analysis.results.time_history import Record
 from flexapod.analysis.results.variables import DRIVES, Variable
@@ -29,9 +43,9 @@ from flexapod.mechanics.elements.springs import twist_share
 from flexapod.mechanics.leg.layout import columns, leg_parameters
 from flexapod.model import Robot, Study
 from flexapod.solve.batch import RestStates
-from flexapod.solve.frames import as_drawn, in_world
-from flexapod.solve.friction import sliding
-from flexapod.solve.statics.ideal_robot import RobotForces, released, rigid_system
+from flexapod.solve.frames import rigid_pose, to_world
+from flexapod.solve.friction import sliding_jacobian
+from flexapod.solve.statics.ideal_robot import RobotForces, idealize_robot, rigid_system
 from flexapod.solve.statics.lost_motion import places_with_friction
 from flexapod.solve.system import System
 
@@ -40,12 +54,13 @@ STROKES = ("leg_length_command", "leg_length", "leg_stroke", "actuator_force")
 _BASE_ANGLES = ("alpha", "beta", "spin")
 
 
-def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -> dict[str, Made]:
+def leg_results(system: System, path: RigidPath, record: Record) -> dict[str, ArraySource]:
     """Lengths, angles, deflections and forces of the legs."""
-    shapes, q, found = system.kernel.shapes, record.q, robot_limbs(robot)
+    robot, shapes, q = path.robot, system.kernel.shapes, record.q
+    found = robot_limbs(robot)
     forces, length = cache(lambda: _port_forces(system, record)), cache(lambda: flexible_lengths(robot, system, record))
-    zero, turns = _zero(found), by_name.per_turn(robot)
-    results: dict[str, Made] = {
+    zero, turns = _zero(found), by_name.screw_travel(robot)
+    results: dict[str, ArraySource] = {
         "leg_angle": lambda: np.stack([q[..., shapes.index(x)] for x in by_name.angle_names(found).values()], axis=-1),
         "drive_position": lambda: _drive_positions(robot, system, record) / turns + zero,
         "drive_command": lambda: _commands(found, path) / turns + zero,
@@ -72,7 +87,7 @@ def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -
     if shapes.bristles:
         results["friction"] = record.friction * _by_angle(robot, system)
     if by_name.bending_basis(shapes).count:
-        results["lateral_amplitude"] = lambda: by_name.lateral(shapes, q)
+        results["lateral_amplitude"] = lambda: by_name.lateral_amplitudes(shapes, q)
     results |= element_results(robot, system, q)
     if shapes.beam.axial.count:
         results["axial_amplitude"] = q[..., shapes.index("c") :][..., : shapes.beam.axial.count]
@@ -81,12 +96,12 @@ def leg_results(robot: Robot, system: System, path: RigidPath, record: Record) -
 
 def _as_drawn(robot: Robot, system: System, record: Record) -> tuple[Array, Array, Array]:
     """Centre of mass (T, 3) and attitude (T, 3, 3) of the payload, axes of the legs (T, legs, 3)."""
-    return *as_drawn(system, robot, record.q, record.pose), axes_as_drawn(robot, system, record)
+    return *rigid_pose(system, robot, record.q, record.pose), axes_as_drawn(robot, system, record)
 
 
 def _tip_deflections(robot: Robot, system: System, q: Array) -> Array:
-    shapes, moves = system.kernel.shapes, tip_moves(robot, system, q)
-    bent = by_name.lateral(shapes, q) @ by_name.bending_basis(shapes).tip
+    shapes, moves = system.kernel.shapes, tip_displacements(robot, system, q)
+    bent = by_name.lateral_amplitudes(shapes, q) @ by_name.bending_basis(shapes).tip
     return bent + sum(place for place, _ in moves.values())
 
 
@@ -97,7 +112,7 @@ def rigid_leg_results(path: RigidPath) -> dict[str, Array]:
     angles = [state.coordinate(name)[0] for name in by_name.angle_names(found).values()]
     values = {
         "leg_angle_rigid": np.stack(angles, axis=-1),
-        "drive_command": _commands(found, path) / by_name.per_turn(robot) + _zero(found),
+        "drive_command": _commands(found, path) / by_name.screw_travel(robot) + _zero(found),
     }
     if by_name.has_strokes(robot):
         names = ("leg_length_command", "leg_length_rate", "leg_length_acceleration")
@@ -106,20 +121,20 @@ def rigid_leg_results(path: RigidPath) -> dict[str, Array]:
 
 
 def rigid_reactions(robot: Robot, forces: RobotForces) -> dict[str, Array]:
-    """Reactions of the rigid robot's joints beside forces on the platform."""
+    """Reactions of the rigid robot's joints, other than forces on the platform."""
     if forces.states is None or forces.held is None or forces.closure is None:
         return {"base_force_rigid": forces.base_force, "base_moment_rigid": forces.base_moment}  # type: ignore[dict-item]
-    system, found, values = rigid_system(robot), robot_limbs(released(robot)), {}
+    system, found, values = rigid_system(robot), robot_limbs(idealize_robot(robot)), {}
     if held := by_name.held_names(found):
         values["held_force_rigid"] = _held_forces(found, system, forces.held, held)
     if _bears_moments(found):
         states = replace(forces.states, lam=forces.closure)
-        values["joint_moment_rigid"] = _joint_moments(released(robot), found, system, states, forces.held)
+        values["joint_moment_rigid"] = _joint_moments(idealize_robot(robot), found, system, states, forces.held)
     return values
 
 
 def _zero(found: Limbs) -> Array:
-    """What the study file calls the places of the drives where their coordinates are zero, (legs,)."""
+    """Places of the drives, as the study file measures them, at zero of their coordinates, (legs,)."""
     return found.carriage_zero * [name == "chi" for name in by_name.drive_names(found)]
 
 
@@ -131,19 +146,19 @@ def _port_forces(system: System, record: Record) -> Array:
 
 
 def _drive_positions(robot: Robot, system: System, record: Record) -> Array:
-    """Where the drives are, (T, legs): strokes, carriages, rotors by their travel; of a servo what its spring holds."""
+    """Positions of the drives, (T, legs): strokes, carriages, travel of rotors; of a servo its end of the spring."""
     shapes, q = system.kernel.shapes, record.q
-    found = by_name.of_drives(robot_limbs(robot), shapes, q)
+    found = by_name.drive_values(robot_limbs(robot), shapes, q)
     gives = elongations(robot, system, q, ("nut",))
     give = np.sum(list(gives.values()), axis=0)
-    give = give + in_gap(system, q)
+    give = give + gap_elongations(system, q)
     return found - give if shapes.has("r") else found
 
 
 def _motor_forces(robot: Robot, system: System, forces: Array) -> Array:
     """Forces of the drives on what they move, (T, legs): of rotors by their travel."""
     shapes = system.kernel.shapes
-    found = by_name.of_drives(robot_limbs(robot), shapes, forces)
+    found = by_name.drive_values(robot_limbs(robot), shapes, forces)
     if not shapes.has("r"):
         return found
     rotor = forces[..., shapes.index("r")]
@@ -151,23 +166,23 @@ def _motor_forces(robot: Robot, system: System, forces: Array) -> Array:
     return np.where([leg.gives for leg in robot.legs], rotor + np.where(held, found, 0.0), found)
 
 
-def slides(system: System) -> list[str]:
-    """What slides in a leg, in words: joints about their angles or, balls, axes; the drive."""
+def sliding_words(system: System) -> list[str]:
+    """Labels of the sliding contacts in a leg: joints with their angles or, of balls, axes; the drive."""
     shapes, found = system.kernel.shapes, []
-    for slot, _ in shapes.rubbing:
-        found += [f"{slot.rubs_at} {way}".strip() for way in slot.kind.ways(shapes.has)]
+    for slot, _ in shapes.friction_elements:
+        found += [f"{slot.rubs_at} {way}".strip() for way in slot.kind.friction_directions(shapes.has)]
     return found
 
 
 def _by_angle(robot: Robot, system: System) -> Array:
     """Factors (legs, bristles) by which friction is that of the study file: of screws by their angle."""
-    kinds = [slot.kind for slot, count in system.kernel.shapes.rubbing for _ in range(count)]
+    kinds = [slot.kind for slot, count in system.kernel.shapes.friction_elements for _ in range(count)]
     return np.array([[kind.friction_unit(leg) for kind in kinds] for leg in robot.legs])
 
 
 def drive_forces(robot: Robot, system: System, record: Record) -> Array:
     """Force of every drive on carriage or piston, (T, legs) [N, of cranks N m]; 0 of passive legs."""
-    found = by_name.of_drives(robot_limbs(robot), system.kernel.shapes, _port_forces(system, record))
+    found = by_name.drive_values(robot_limbs(robot), system.kernel.shapes, _port_forces(system, record))
     rubbing = [i for i, leg in enumerate(robot.legs) if leg.screw is not None and leg.screw.friction is not None]
     length = record.q[..., system.kernel.shapes.l_index]
     for i in rubbing:  # what a screw's friction takes of the springs' force before it reaches the piston, Eq. (T19.12)
@@ -197,12 +212,12 @@ def leg_labels(robot: Robot, *, rigid: bool = False) -> dict[str, ArrayLike]:
     return {**labels, "coordinate": held} if held else labels
 
 
-def absent(robot: Robot) -> set[str]:
+def absent_variables(robot: Robot) -> set[str]:
     """Variables of legs and frames that a simulation of this robot does not have."""
     found = robot_limbs(robot)
     none = set() if by_name.has_strokes(robot) else {*STROKES, "actuator_force_rigid"}
     none |= set() if by_name.held_names(found) else {"held_force"}
-    none |= set() if np.isfinite(largest_turns(robot)).any() else {"joint_margin"}
+    none |= set() if np.isfinite(joint_angle_limits(robot)).any() else {"joint_margin"}
     none |= set() if is_guided(robot) else {"guide_force", "guide_overlap"}
     none |= set() if pairs_of_legs(robot) else {"leg_clearance", "nearest_legs"}
     none |= set() if places_with_friction(robot) else {"friction"}
@@ -231,7 +246,7 @@ def drive_forms(robot: Robot) -> dict[str, Variable]:
 
 def flexible_lengths(robot: Robot, system: System, record: Record) -> Array:
     """Joint-to-joint lengths of the flexible robot, (T, legs) [m], Eq. (T8.1)."""
-    (place, R), built = as_drawn(system, robot, record.q, record.pose), built_limbs(robot, robot_limbs(robot))
+    (place, R), built = rigid_pose(system, robot, record.q, record.pose), built_limbs(robot, robot_limbs(robot))
     tips = place[:, None] + (built.platform - robot.com) @ R.swapaxes(1, 2)
     return np.linalg.norm(tips - by_name.base_points(built, _carriages(system, record.q)), axis=-1)
 
@@ -256,7 +271,7 @@ def _joint_moments(robot: Robot, found: Limbs, system: System, record: Record | 
         rates = dict(zip(damped_angles(system), np.moveaxis(record.rate, -1, 0), strict=True))
     rubs = record.friction if isinstance(record, Record) else None
     base = _base_moments(found, system, record.q, rates, forces, rubs)
-    base = in_world(system, robot, record.q, base)
+    base = to_world(system, robot, record.q, base)
     if system.rows < 6:
         return np.stack([base, np.zeros_like(base)], axis=2)
     turn = matrix(record.pose[:, 3:])[:, None] @ found.platform_frames
@@ -295,7 +310,7 @@ def _base_moments(
 def _on_coordinates(system: System, q: Array, rubs: Array) -> Array:
     """Friction (T, legs, bristles) on the coordinates of the legs, (T, legs, n)."""
     parts = [
-        (sliding(system, part).swapaxes(-1, -2) @ force[..., None])[..., 0]
+        (sliding_jacobian(system, part).swapaxes(-1, -2) @ force[..., None])[..., 0]
         for part, force in zip(*(np.array_split(x, len(x) // 500 + 1) for x in (q, rubs)), strict=True)
     ]
     return np.concatenate(parts)
@@ -348,9 +363,5 @@ def force_warnings(study: Study, error: float | None) -> list[str]:
     finer = tolerance * (BEYOND * tolerance / error) ** 2
     digit = 10.0 ** np.floor(np.log10(max(finer, FINEST)))
     advised = np.floor(max(finer, FINEST) / digit * (1 + 1e-9)) * digit
-    number = f"{advised:.0e}".replace("e-0", "e-")
-    return [
-        f"forces of the legs may be off by {100 * error:.2g} % of their peak, {error / tolerance:.0f} times the "
-        "tolerance: steps pass over vibrations that hardly move the payload. Where forces matter set "
-        f"simulation.tolerance = {number}"
-    ]
+    finest = f"{advised:.0e}".replace("e-0", "e-")
+    return [remark("inexact forces", error=100 * error, times=error / tolerance, tolerance=finest)]

@@ -20,7 +20,7 @@ def bending_basis(shapes: Shapes) -> LateralBasis:
     return shapes.beam.a if shapes.beam.a.count else shapes.beam.b
 
 
-def lateral(shapes: Shapes, q: Array) -> Array:
+def lateral_amplitudes(shapes: Shapes, q: Array) -> Array:
     """Lateral amplitudes (..., 2, k) [m] out of coordinates (..., n); zero across an axis about which none bends."""
     k = bending_basis(shapes).count
     found = np.zeros((*q.shape[:-1], 2, k))
@@ -31,9 +31,9 @@ def lateral(shapes: Shapes, q: Array) -> Array:
     return found
 
 
-def bending(leg: Leg, shapes: Shapes, q: Array) -> Array:
+def bending_amplitudes_of_leg(leg: Leg, shapes: Shapes, q: Array) -> Array:
     """Lateral amplitudes of a leg, (T, 2, k) [m], out of its coordinates (T, n): those of bending without shear."""
-    return bending_amplitudes(leg, shapes, q) if shapes.beam.shear else lateral(shapes, q)
+    return bending_amplitudes(leg, shapes, q) if shapes.beam.shear else lateral_amplitudes(shapes, q)
 
 
 def stretch(shapes: Shapes, q: Array) -> Array:
@@ -49,7 +49,7 @@ def angle_names(limbs: Limbs) -> dict[str, str]:
 
 
 def drive_names(limbs: Limbs) -> list[str]:
-    """What is driven in each leg, "l" or "chi"; of a passive leg its length, or its carriage if it has one."""
+    """Driven coordinate of each leg, "l" or "chi"; of a passive leg its length, or its carriage if it has one."""
     of_passive = np.where(limbs.state[:, COORDINATES.index("chi")] == ABSENT, "l", "chi")
     driven = limbs.state == DRIVEN
     return [
@@ -57,13 +57,13 @@ def drive_names(limbs: Limbs) -> list[str]:
     ]
 
 
-def of_drives(limbs: Limbs, shapes: Shapes, values: Array) -> Array:
-    """Of each leg the value that belongs to its drive, (..., legs), out of all (..., legs, n)."""
+def drive_values(limbs: Limbs, shapes: Shapes, values: Array) -> Array:
+    """Value of each leg that belongs to its drive, (..., legs), out of all (..., legs, n)."""
     at = [shapes.index(name) for name in drive_names(limbs)]
     return values[..., np.arange(len(at)), at]
 
 
-def per_turn(robot: Robot) -> Array:
+def screw_travel(robot: Robot) -> Array:
     """Travel by an angle of each leg's screw, (legs,) [m/rad]; 1 of other drives, whose numbers stay as they are."""
     return np.array([1.0 if leg.screw is None else leg.screw.per_turn for leg in robot.legs])
 
@@ -79,7 +79,7 @@ def held_names(limbs: Limbs) -> list[str]:
 
 
 def has_strokes(robot: Robot) -> bool:
-    """Whether any leg of a robot has a stroke."""
+    """Test whether any leg of a robot has a stroke."""
     return any(leg.strut is None for leg in robot.legs)
 
 

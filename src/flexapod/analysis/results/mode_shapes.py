@@ -1,6 +1,6 @@
-"""Modes in words, from their energies, and their results at one pose: shapes of platform and legs, where it rests.
+"""Names, shapes and results of modes at one pose, and local fits of a vibration whose frequency drifts.
 
-Frequency, envelope and sag of a vibration whose frequency drifts, in windows that move along it.
+Names follow from energies. Frequency, envelope and sag of a vibration are fitted in windows that move along it.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from typing import NamedTuple
 import numpy as np
 
 from flexapod import kinematics, model
-from flexapod.analysis.results.elongations import off_axis
-from flexapod.analysis.results.lazy_arrays import Asked
-from flexapod.analysis.results.legs import base_points, bending_basis, lateral
+from flexapod.analysis.results.elongations import axis_deflections
+from flexapod.analysis.results.lazy_arrays import LazyArrays
+from flexapod.analysis.results.legs import base_points, bending_basis, lateral_amplitudes
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
-from flexapod.common.ranking import EQUALS, alike
+from flexapod.common.ranking import EQUALS, is_largest
 from flexapod.kinematics.rotations import matrix, quaternion
 from flexapod.mechanics.leg.layout import Shapes, columns, leg_parameters
 from flexapod.solve.modal.modes import RobotModes
@@ -36,10 +36,10 @@ def mode_kinds(found: RobotModes) -> list[str]:
     ----------
     found : RobotModes
     """
-    return _named(found)[0]
+    return _mode_names(found)[0]
 
 
-def _named(found: RobotModes) -> tuple[list[str], Array, Array]:
+def _mode_names(found: RobotModes) -> tuple[list[str], Array, Array]:
     """Names of the modes, and the shares of the payload (m,) and of the legs (m, legs) in their kinetic energy."""
     system, n = found.system, found.system.n
     M, K, legs = found.m.M[0], found.m.K[0], found.shapes[:, :-6].reshape(len(found.shapes), -1, n)
@@ -97,7 +97,7 @@ _FORM = "mli,lij,mlj->ml"
 
 @lru_cache(maxsize=64)
 def _order(part: tuple[int, ...], between: tuple[int, ...]) -> list[object]:
-    """In which order factors of such shapes are multiplied."""
+    """Order in which factors of such shapes are multiplied."""
     some = np.zeros(part)
     return np.einsum_path(_FORM, some, np.zeros(between), some, optimize=True)[0]
 
@@ -105,10 +105,10 @@ def _order(part: tuple[int, ...], between: tuple[int, ...]) -> list[object]:
 def _kinds(kinetic: Array, energies: dict[str, Array], payload: Array) -> Array:
     """Names (m,) from kinetic energies (m, legs), strain energies (m,) by name, and the payload's share (m,)."""
     whole = kinetic.sum(axis=1)  # of a mass-normalised mode: 1 with the payload's
-    first = alike(kinetic, axis=1, same=EQUALS).argmax(axis=1)
+    first = is_largest(kinetic, axis=1, same=EQUALS).argmax(axis=1)
     largest = np.take_along_axis(kinetic, first[:, None], axis=1)[:, 0]
     which = np.where(largest > np.maximum(MOSTLY * whole, payload), [f"leg {k + 1}" for k in first], "legs")
-    how = np.array([*energies])[alike(np.stack([*energies.values()]), axis=0, same=EQUALS).argmax(axis=0)]
+    how = np.array([*energies])[is_largest(np.stack([*energies.values()]), axis=0, same=EQUALS).argmax(axis=0)]
     names = np.char.add(np.char.add(which, " "), how)
     return np.where(np.isnan(whole), "", np.where(whole < MOSTLY, "payload", names))
 
@@ -116,13 +116,13 @@ def _kinds(kinetic: Array, energies: dict[str, Array], payload: Array) -> Array:
 STATIONS = np.linspace(0.0, 1.0, 41)
 
 
-def mode_values(robot: model.Robot, found: RobotModes, path: kinematics.Poses) -> Asked:
+def mode_values(robot: model.Robot, found: RobotModes, path: kinematics.Poses) -> LazyArrays:
     """Variables of `flexapod.modes` at one pose, by name; ``path`` is the rigid pose."""
     at, com = found.equilibrium.state.pose, robot.com
     R = matrix(at[3:])
     platform = np.concatenate([found.shapes[:, -6:-3], found.shapes[:, -3:] @ R.T], axis=1)
-    kind, of_payload, of_legs = _named(found)
-    return Asked(
+    kind, of_payload, of_legs = _mode_names(found)
+    return LazyArrays(
         {
             "frequency": found.frequency,
             "damping_ratio": lambda: found.damping_ratio,
@@ -144,8 +144,8 @@ def _leg_shapes(robot: model.Robot, found: RobotModes) -> Array:
     shapes, count = found.system.kernel.shapes, len(robot.legs)
     basis = bending_basis(shapes)
     q = found.shapes[:, :-6].reshape(len(found.shapes), count, found.system.n)
-    legs = lateral(shapes, q)
-    line = off_axis(robot, found.system, q, found.equilibrium.state.q[:, shapes.l_index], STATIONS)
+    legs = lateral_amplitudes(shapes, q)
+    line = axis_deflections(robot, found.system, q, found.equilibrium.state.q[:, shapes.l_index], STATIONS)
     result = line - line[..., -1:] * STATIONS
     for i, leg in enumerate(robot.legs):
         length = found.equilibrium.state.q[i, shapes.l_index]
@@ -177,7 +177,7 @@ def _stretch(robot: model.Robot, found: RobotModes, platform: Array) -> Array:
 
 
 def _of_frames(robot: model.Robot, found: RobotModes) -> Array:
-    """What plates on mounts add to the joint-to-joint lengths, (m, legs) [m]."""
+    """Change of joint-to-joint lengths by plates on mounts, (m, legs) [m]."""
     system, at = found.system, found.equilibrium.state.pose
     shapes, R = system.kernel.shapes, matrix(at[3:])
     tips = at[:3] + (robot.platform_joints - robot.com) @ R.T
@@ -202,7 +202,7 @@ def _ways(legs: kinematics.Limbs, feet: Array) -> Array:
 
 
 class Vibration(NamedTuple):
-    """At instants `time` [s]: `frequency` [Hz], `envelope` (amplitude) and `sag` (mean) in the unit of the signal."""
+    """Vibration at instants `time` [s]: `frequency` [Hz], `envelope` (amplitude), `sag` (mean) of the signal."""
 
     time: Array
     frequency: Array

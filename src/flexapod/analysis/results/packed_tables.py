@@ -1,6 +1,6 @@
-"""Tables of a study in a few bytes, and back to the bit: what a result keeps of files that it names.
+"""Tables of a study packed into a few bytes, and unpacked to the bit: a result stores the files that it names.
 
-Numbers of a column are kept as whole numbers: decimal digits times a unit where nearly all were written so, else their
+Numbers of a column are whole numbers: decimal digits times a unit where nearly all were written so, else their
 64 bits; of these the first or second differences where they are smaller; then byte by byte, deflated.
 """
 
@@ -57,7 +57,7 @@ def pack(tables: Mapping[str, Stored]) -> Bytes:
 
 
 def _part(value: Any, arrays: dict[bytes, tuple[int, Array]]) -> object:
-    """A value as JSON; equal arrays are kept once."""
+    """A value as JSON; equal arrays are stored once."""
     if not isinstance(value, np.ndarray):
         return {"value": value}
     flat = np.ascontiguousarray(value, dtype=np.float64).ravel()
@@ -66,8 +66,8 @@ def _part(value: Any, arrays: dict[bytes, tuple[int, Array]]) -> object:
 
 
 def _joined(entries: list[Any], arrays: list[Array]) -> Bytes:
-    columns = [_Column.of(array) for array in arrays]
-    told = {"tables": entries, "arrays": [column.told() for column in columns]}
+    columns = [_Column.shortest_form(array) for array in arrays]
+    told = {"tables": entries, "arrays": [column.header() for column in columns]}
     header = zlib.compress(json.dumps(told).encode())
     content = b"".join(
         [MAGIC, len(header).to_bytes(8, "little"), header, *(c for column in columns for c in column.made)]
@@ -125,7 +125,7 @@ def _value(part: Mapping[str, Any], arrays: list[Array]) -> object:
 
 
 def _inflated(content: bytes, size: int | None) -> bytes:
-    """What was deflated: as many bytes, or at most `HEADER`."""
+    """Inflate content to `size` bytes, or to at most `HEADER` where it is None."""
     reader = zlib.decompressobj()
     found = reader.decompress(content, HEADER if size is None else size + 1)
     if (size is not None and len(found) != size) or not reader.eof:
@@ -149,7 +149,7 @@ class _Column:
     made: tuple[bytes, ...] = ()
 
     @classmethod
-    def of(cls, x: Array) -> _Column:
+    def shortest_form(cls, x: Array) -> _Column:
         """The shortest of the ways to keep (n,) numbers."""
         found = [_made(x.view(np.int64), x[:0], np.zeros(0, np.int64))]
         settings: list[dict[str, Any]] = [{}]
@@ -162,8 +162,8 @@ class _Column:
         order, made = found[best]
         return cls(size=x.size, order=order, lengths=tuple(map(len, made)), made=made, **settings[best])
 
-    def told(self) -> dict[str, Any]:
-        """All but the bytes."""
+    def header(self) -> dict[str, Any]:
+        """Header of the column: all but its bytes."""
         return {name: value for name, value in vars(self).items() if name != "made"}
 
     def numbers(self, pieces: list[bytes]) -> Array:

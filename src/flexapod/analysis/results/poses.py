@@ -1,4 +1,4 @@
-"""Many poses at once: from the forms that users give to `kinematics.Poses`, and back to coordinates."""
+"""Many poses at once: `kinematics.Poses` from the forms that users give, and coordinates of them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from flexapod import kinematics, model
-from flexapod.analysis.results.arguments import POSE_KEYS, PoseLike, with_numbers
+from flexapod.analysis.results.arguments import POSE_KEYS, PoseLike, pose_numbers
 from flexapod.common.arrays import Array, floats
 from flexapod.common.errors import InputError
 from flexapod.common.quantities import number
@@ -16,8 +16,8 @@ ORIGIN = np.zeros(3)  # of the platform frame
 BATCH = 200  # poses computed together: their matrices stay in the processor's cache
 
 
-def is_many(pose: PoseLike) -> bool:
-    """Whether poses are given as several: (P, 6), `Poses` of several samples, or names with arrays."""
+def has_many_poses(pose: PoseLike) -> bool:
+    """Test whether poses are given as several: (P, 6), `Poses` of several samples, or names with arrays."""
     if pose is None or isinstance(pose, str):
         return False
     if isinstance(pose, kinematics.Poses):
@@ -26,11 +26,11 @@ def is_many(pose: PoseLike) -> bool:
         return any(np.ndim(value) > 0 for value in pose.values())
     try:
         return np.ndim(pose) > 1
-    except ValueError:  # rows of different lengths: `as_many` refuses them
+    except ValueError:  # rows of different lengths: `as_poses` refuses them
         return True
 
 
-def as_many(robot: model.Robot, pose: PoseLike) -> kinematics.Poses:
+def as_poses(robot: model.Robot, pose: PoseLike) -> kinematics.Poses:
     """P poses at rest; they need not be in reach.
 
     Raises
@@ -44,14 +44,14 @@ def as_many(robot: model.Robot, pose: PoseLike) -> kinematics.Poses:
         unknown = [name for name in pose if name not in POSE_KEYS]
         if unknown:
             raise InputError("is not an axis", key=f"pose.{unknown[0]}", allowed=", ".join(POSE_KEYS))
-        named = with_numbers(pose)
+        named = pose_numbers(pose)
         try:
             columns = np.broadcast_arrays(*[floats(named.get(name, 0.0)) for name in POSE_KEYS])
         except ValueError:
             raise InputError("has arrays that do not fit each other", key="pose", allowed="lengths alike") from None
         values = np.stack(columns, axis=-1)
     else:
-        values = _numbers([with_numbers(row) for row in pose] if isinstance(pose, list | tuple) else pose)
+        values = _numbers([pose_numbers(row) for row in pose] if isinstance(pose, list | tuple) else pose)
     if values.ndim != 2 or values.shape[1] != 6 or not np.isfinite(values).all():
         raise InputError(
             "are not poses",
@@ -59,15 +59,15 @@ def as_many(robot: model.Robot, pose: PoseLike) -> kinematics.Poses:
             value=values.shape,
             allowed="finite numbers of shape (P, 6): surge, sway, heave [m], roll, pitch, yaw [rad] from home",
         )
-    return from_home(robot, values)
+    return poses_about_home(robot, values)
 
 
-def from_home(robot: model.Robot, values: Array) -> kinematics.Poses:
+def poses_about_home(robot: model.Robot, values: Array) -> kinematics.Poses:
     """Poses at rest from surge, sway, heave [m], roll, pitch, yaw [rad], (P, 6); see `kinematics.poses_from_home`."""
     return kinematics.poses_from_home(robot, values)
 
 
-def coordinates_of(robot: model.Robot, path: kinematics.Poses, pivot: Array = ORIGIN) -> Array:
+def pose_coordinates(robot: model.Robot, path: kinematics.Poses, pivot: Array = ORIGIN) -> Array:
     """Surge to heave [m] of a pivot, roll, pitch, yaw [rad] of the platform from home, (P, 6); inverse of (T2.9)."""
     home = kinematics.home_pose(robot)
     R = path.rotation @ home.rotation[0].T
@@ -81,10 +81,10 @@ def coordinates_of(robot: model.Robot, path: kinematics.Poses, pivot: Array = OR
 
 def coordinate_words(at: Mapping[str, float]) -> str:
     """A pose from home: "surge 12 mm, roll 5 deg"."""
-    return ", ".join(f"{name} {in_shown_unit(name, value)}" for name, value in at.items())
+    return ", ".join(f"{name} {coordinate_text(name, value)}" for name, value in at.items())
 
 
-def in_shown_unit(name: str, value: float) -> str:
+def coordinate_text(name: str, value: float) -> str:
     """A coordinate of a pose, in mm or deg."""
     shown, unit = (1e3 * value, "mm") if name in model.AXES[:3] else (np.rad2deg(value), "deg")
     return f"{number(round(shown, 9), 4)} {unit}"

@@ -1,4 +1,4 @@
-"""The rigid robot on its commanded path: computed once, and handed on to checks, estimates and results."""
+"""The rigid robot on its commanded path, computed once for checks, estimates and results."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from flexapod import kinematics
+from flexapod.analysis.results.remarks import remark
 from flexapod.common.arrays import Array
 from flexapod.model import ActuatorStudy, Robot, Study
 from flexapod.solve.statics.ideal_robot import RobotForces, rigid_forces
@@ -23,16 +24,16 @@ def path_instants(study: Study | ActuatorStudy) -> Array:
 
 
 def open_force_words(forces: RobotForces) -> list[str]:
-    """That rigid statics does not determine all forces, where it does not."""
+    """Sentence on the forces that rigid statics does not determine; empty where it determines all."""
     count = forces.open_forces
     if not count:
         return []
     left = f"{count} force{'s' * (count > 1)}"
-    return [f"rigid statics leaves {left} open; shown are those of least strain energy in the legs"]
+    return [remark("open forces", forces=left)]
 
 
-class RigidPath:
-    """The commanded path of a robot's study at T instants; each part is computed when it is asked for, once.
+class RigidPath(kinematics.RigidPoses):
+    """The commanded path of a robot's study at T instants; each part is computed on request, once.
 
     Parameters
     ----------
@@ -56,14 +57,14 @@ class RigidPath:
         return kinematics.poses(self.robot, self.study.motion, self.time)
 
     @property
-    def first_looks(self) -> Iterator[RigidPath]:
+    def coarse_paths(self) -> Iterator[RigidPath]:
         """The path at few instants, ever farther from home, where it leads far; none where its poses are known."""
         looks = () if "poses" in self.__dict__ else kinematics.first_looks(self.robot, self.study.motion, self.time)
         return (RigidPath(self.study, self.time[at]) for at in looks)
 
     @cached_property
     def base(self) -> kinematics.Placed | None:
-        """Where a base that is moved stands; poses are as seen from there, and the rigid robot moves with it."""
+        """Place of a base that is moved; poses are relative to it, and the rigid robot moves with it."""
         return kinematics.base_placed(self.robot, self.time)
 
     def place(self, point: Array) -> Array:
@@ -77,21 +78,6 @@ class RigidPath:
         return self.poses.rotation if self.base is None else self.base.rotation @ self.poses.rotation
 
     @cached_property
-    def reach(self) -> kinematics.Reach:
-        """What the poses ask of the legs, whether they can take them or not."""
-        return kinematics.reach(self.robot, self.poses)
-
-    @cached_property
-    def legs(self) -> kinematics.LegState:
-        """Legs with rates and accelerations."""
-        return kinematics.inverse_kinematics(self.robot, self.poses)
-
-    @cached_property
-    def nearest(self) -> kinematics.NearestSingularity:
-        """Where the path comes nearest to a singularity."""
-        return kinematics.nearest_singularity(self.robot, self.poses)
-
-    @cached_property
     def wrench(self) -> Array:
         """Load at the tool, world axes, (T, 6)."""
         return kinematics.wrench(self.study.load, self.time)
@@ -99,12 +85,7 @@ class RigidPath:
     @cached_property
     def forces(self) -> RobotForces:
         """Forces of drives and joints."""
-        return rigid_forces(self.robot, self.poses, self.wrench, self.legs)
-
-    @cached_property
-    def axes(self) -> Array:
-        """Unit vectors from base to platform joint, (T, legs, 3)."""
-        return kinematics.leg_axes(self.robot, self.poses, self.legs)
+        return rigid_forces(self, self.wrench)
 
     def at(self, t: Array) -> RigidPath:
         """The path at other instants: this one, or what is known of its poses, where it has them."""

@@ -1,4 +1,4 @@
-"""From a recorded time integration of a robot to named results."""
+"""Named results of a robot from its recorded time integration."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.analysis.results.causes import deviation_by_cause, errors_of
-from flexapod.analysis.results.lazy_arrays import Made
-from flexapod.analysis.results.leg_results import leg_labels, leg_results, slides
-from flexapod.analysis.results.legs import bending_basis, has_strokes, per_turn, stroke_forces
+from flexapod.analysis.results.lazy_arrays import ArraySource
+from flexapod.analysis.results.leg_results import leg_labels, leg_results, sliding_words
+from flexapod.analysis.results.legs import bending_basis, has_strokes, screw_travel, stroke_forces
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.analysis.results.time_history import Record
 from flexapod.common.arrays import Array
@@ -22,16 +22,16 @@ from flexapod.solve.frames import base_on_mount, floor, shared_by_legs
 from flexapod.solve.system import System
 
 
-def robot_results(study: Study, system: System, record: Record, path: RigidPath) -> dict[str, Made]:
+def robot_results(system: System, path: RigidPath, record: Record) -> dict[str, ArraySource]:
     """All variables of a robot's simulation but the rigid forces, by name; `path` at the recorded instants."""
-    robot = study.robot
+    robot = path.robot
     return {
-        **payload_results(robot, path, record),
-        **leg_results(robot, system, path, record),
-        **cause_results(robot, system, path, record),
+        **payload_results(path, record),
+        **leg_results(system, path, record),
+        **cause_results(system, path, record),
         **energy_results(record, robot.base_motion is not None),
-        **frame_results(robot, system, path, record),
-        **command_results(study, record.time),
+        **frame_results(system, path, record),
+        **command_results(path.study, record.time),
     }
 
 
@@ -42,15 +42,15 @@ def robot_coords(robot: Robot, system: System, record: Record) -> dict[str, Arra
     if count := bending_basis(shapes).count:
         labels["shape"] = np.arange(1, count + 1)
     if shapes.bristles:
-        labels["slide"] = slides(system)
+        labels["slide"] = sliding_words(system)
     if shapes.beam.axial.count:
         labels["axial_shape"] = np.arange(shapes.beam.axial.count)
     return labels
 
 
-def payload_results(robot: Robot, path: RigidPath, record: Record) -> dict[str, Made]:
+def payload_results(path: RigidPath, record: Record) -> dict[str, ArraySource]:
     """Payload and tool against the rigid path."""
-    com = record.pose[:, :3]
+    robot, com = path.robot, record.pose[:, :3]
     e = cache(lambda: canonical(record.pose[:, 3:]))
     e_rigid = cache(lambda: quaternion(path.rotation))
     R = cache(lambda: matrix(e()))
@@ -70,25 +70,25 @@ def payload_results(robot: Robot, path: RigidPath, record: Record) -> dict[str, 
     }
 
 
-def cause_results(robot: Robot, system: System, path: RigidPath, record: Record) -> dict[str, Made]:
+def cause_results(system: System, path: RigidPath, record: Record) -> dict[str, ArraySource]:
     """Deviation of the centre of mass by cause."""
 
     @cache
     def shares() -> Array:
-        found = deviation_by_cause(robot, path, errors_of(robot, system, path, record))
+        found = deviation_by_cause(path, errors_of(system, path, record))
         return found if path.base is None else np.einsum("txy,tcly->tclx", path.base.rotation, found)
 
     def residual() -> Array:
-        deviation = record.pose[:, :3] - path.place(robot.com)
+        deviation = record.pose[:, :3] - path.place(path.robot.com)
         return deviation - shares().reshape(len(deviation), -1, 3).sum(axis=1)
 
     return {"deviation_by_cause": shares, "deviation_residual": residual}
 
 
-def rigid_force_results(path: RigidPath) -> dict[str, Made]:
+def rigid_force_results(path: RigidPath) -> dict[str, ArraySource]:
     """Drive and joint forces of the rigid robot."""
-    found: dict[str, Made] = {
-        "drive_force_rigid": lambda: path.forces.drive_force * per_turn(path.robot),
+    found: dict[str, ArraySource] = {
+        "drive_force_rigid": lambda: path.forces.drive_force * screw_travel(path.robot),
         "joint_force_rigid": lambda: path.forces.joint_force,
     }
     if has_strokes(path.robot):
@@ -113,9 +113,10 @@ def energy_results(record: Record, moved: bool = False) -> dict[str, Array]:
     }
 
 
-def frame_results(robot: Robot, system: System, path: RigidPath, record: Record) -> dict[str, Made]:
-    """Where base and plates on mounts are, forces on the floor, and the deviation as seen from the base plate."""
-    found: dict[str, Made] = {}
+def frame_results(system: System, path: RigidPath, record: Record) -> dict[str, ArraySource]:
+    """Motion of base and plates on mounts, forces on the floor, and deviation relative to the base plate."""
+    robot = path.robot
+    found: dict[str, ArraySource] = {}
     for name, what in (("g", "base_motion"), ("f", "base_mount"), ("m", "platform_mount")):
         if system.kernel.shapes.has(name):
             moved = shared_by_legs(system, record.q, name)
@@ -141,7 +142,7 @@ def _from_the_base(robot: Robot, system: System, record: Record) -> tuple[Array,
     return base_on_mount(system, robot, record.q).seen(*floor(system, robot, record.q).seen(tool, R))
 
 
-def command_results(study: Study, t: Array) -> dict[str, Made]:
+def command_results(study: Study, t: Array) -> dict[str, ArraySource]:
     """Commanded surge, sway, heave and roll, pitch, yaw with rates and accelerations at instants (T,)."""
     law = cache(lambda: coordinates(study.motion, t))
     endings = {"": "position", "_rate": "rate", "_acceleration": "acceleration"}

@@ -1,4 +1,4 @@
-"""Results of a simulation that came from a file: what is read of them later is there, and is what it says it is."""
+"""Check of simulation results read from a file: every variable read later is present and valid."""
 
 from __future__ import annotations
 

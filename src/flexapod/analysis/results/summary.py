@@ -1,4 +1,4 @@
-"""The answer in a few numbers: how large the deviation is, on which axis, and which part is to blame."""
+"""Summary of a result in a few numbers: size of the deviation, its axis, and the largest contributor."""
 
 from __future__ import annotations
 
@@ -7,17 +7,33 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.analysis.results.cause_labels import cause_words
+from flexapod.analysis.results.cause_labels import cause_labels
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
-from flexapod.common.quantities import NOTHING, along_axes, cleared, text
-from flexapod.common.ranking import EQUALS, first_largest, most
+from flexapod.common.quantities import NOTHING, along_axes, fill_template, zero_rounding
+from flexapod.common.ranking import EQUALS, first_largest, largest_item
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 SMALLEST_EXCURSION = 1e-6  # rigid travel below which a percentage says nothing [m]
 POINTS = {"com": "The payload's centre of mass", "tool": "The tool"}
+UNTIL = " until the computation stopped"
+_LENGTHS = "(free length {start:.4g} m at the start, {end:.4g} m at the end)"
+WORDS = {
+    "rigid": "{point} stays on the path of the rigid robot: its legs are rigid.",
+    "swinging": "{point} stays on the path of the rigid robot: tips of legs swing by up to {tips:~3 m}.",
+    "misses": "{point} misses its rigid path by up to {peak:~3 m}{until} ({axes})",
+    "blamed": "the largest cause is {cause} ({share:.0f} %{leg})",
+    "leg": ", most of it in leg {leg}",
+    "straight": "The tip stays on the hub's line{until}: nothing bends the beam " + _LENGTHS + ".",
+    "bent": (
+        "The tip leaves the hub's line by up to {peak:~3 m}{until}, at t = {time:.3g} s, because the beam bends "
+        + _LENGTHS
+        + "."
+    ),
+}
+"""The sentences of a summary, and what may stand in them."""
 POINT_WORDS = {"com": "centre of mass", "tool": "tool"}
 
 
@@ -64,15 +80,17 @@ class RobotSummary:
     @property
     def largest_cause(self) -> str | None:
         """Cause with the largest share in size; None without deviation."""
-        return most(self.causes, key=lambda cause: abs(self.causes[cause])) if self.causes else None
+        return largest_item(self.causes, key=lambda cause: abs(self.causes[cause])) if self.causes else None
 
     @property
     def shown_axes(self) -> tuple[AxisSummary, ...]:
         """The axes as they are shown: what is rounding beside the largest one is 0, a deviation at no time."""
         travel = max(a.excursion for a in self.axes)
-        axes = [a if cleared(a.excursion, travel) else replace(a, excursion=0.0) for a in self.axes]
+        axes = [a if zero_rounding(a.excursion, travel) else replace(a, excursion=0.0) for a in self.axes]
         return tuple(
-            a if cleared(a.peak, self.peak) else replace(a, peak=0.0, time=None, rms=0.0, per_cent=a.per_cent and 0.0)
+            a
+            if zero_rounding(a.peak, self.peak)
+            else replace(a, peak=0.0, time=None, rms=0.0, per_cent=a.per_cent and 0.0)
             for a in axes
         )
 
@@ -81,21 +99,19 @@ class RobotSummary:
         """The deviation and its largest cause, in one sentence."""
         name = POINTS[self.point]
         if self.peak < NOTHING:
-            still = (
-                "its legs are rigid" if self.tips < NOTHING else f"tips of legs swing by up to {text(self.tips, 'm')}"
-            )
-            return f"{name} stays on the path of the rigid robot: {still}."
+            return fill_template(WORDS["rigid" if self.tips < NOTHING else "swinging"], point=name, tips=self.tips)
         by_axis = along_axes([a.peak for a in self.shown_axes])
-        leg = "" if self.worst_leg is None else f", most of it in leg {self.worst_leg}"
-        until = " until the computation stopped" if self.partial else ""
-        size = f"{name} misses its rigid path by up to {text(self.peak, 'm')}{until} ({by_axis})"
-        if self.largest_cause is None:
-            return f"{size}."
-        share = f"{100 * self.causes[self.largest_cause]:.0f} %{leg}"
-        return f"{size}; the largest cause is {self.words[self.largest_cause]} ({share})."
+        until = UNTIL if self.partial else ""
+        misses = fill_template(WORDS["misses"], point=name, peak=self.peak, until=until, axes=by_axis)
+        cause = self.largest_cause
+        if cause is None:
+            return f"{misses}."
+        leg = "" if self.worst_leg is None else fill_template(WORDS["leg"], leg=self.worst_leg)
+        blamed = fill_template(WORDS["blamed"], cause=self.words[cause], share=100 * self.causes[cause], leg=leg)
+        return f"{misses}; {blamed}."
 
     def as_dict(self) -> dict[str, object]:
-        """Everything as plain data."""
+        """Summary as plain data."""
         found = {name: value for name, value in asdict(self).items() if name != "words"}
         return {**found, "largest_cause": self.largest_cause, "sentence": self.sentence}
 
@@ -114,17 +130,18 @@ class ActuatorSummary:
     @property
     def sentence(self) -> str:
         """The deflection and its cause, in one sentence."""
-        until = " until the computation stopped" if self.partial else ""
-        lengths = f"(free length {self.lengths[0]:.4g} m at the start, {self.lengths[1]:.4g} m at the end)"
-        if self.peak < NOTHING:
-            return f"The tip stays on the hub's line{until}: nothing bends the beam {lengths}."
-        return (
-            f"The tip leaves the hub's line by up to {text(self.peak, 'm')}{until}, at t = {self.time:.3g} s, because "
-            f"the beam bends {lengths}."
+        kind = "straight" if self.peak < NOTHING else "bent"
+        return fill_template(
+            WORDS[kind],
+            peak=self.peak,
+            until=UNTIL if self.partial else "",
+            time=self.time,
+            start=self.lengths[0],
+            end=self.lengths[1],
         )
 
     def as_dict(self) -> dict[str, object]:
-        """Everything as plain data."""
+        """Summary as plain data."""
         return {**asdict(self), "sentence": self.sentence}
 
 
@@ -175,7 +192,7 @@ def summary(data: Dataset, point: str = "com") -> RobotSummary | ActuatorSummary
         worst_leg_share=share,
         tips=float(np.linalg.norm(data.tip_deflection.values, axis=-1).max(initial=0.0)),
         partial=partial,
-        words=cause_words(data),
+        words=cause_labels(data),
     )
 
 
@@ -186,13 +203,13 @@ def tip_size(data: Dataset) -> Array:
 
 
 def summaries(data: Dataset) -> list[RobotSummary | ActuatorSummary]:
-    """What is told of a result, the point that matters most first: a tool, where it is apart, then centre of mass."""
-    tool = [summary(data, "tool")] if "com_deviation" in data and tool_apart(data) else []
+    """Summaries of a result, the most important point first: a separate tool, then the centre of mass."""
+    tool = [summary(data, "tool")] if "com_deviation" in data and has_separate_tool(data) else []
     return [*tool, summary(data)]
 
 
-def tool_apart(data: Dataset) -> bool:
-    """Whether the tool of a robot is another point than its centre of mass."""
+def has_separate_tool(data: Dataset) -> bool:
+    """Test whether the tool of a robot is another point than its centre of mass."""
     return float(np.abs(data.tool_position_rigid - data.com_position_rigid).max()) > 0
 
 
@@ -216,7 +233,7 @@ def _blame(data: Dataset, at: int) -> tuple[dict[str, float], int | None, float 
     by_leg = shares[first_largest(np.abs(shares.sum(axis=1)))]
     parts = by_leg / by_leg.sum()
     second, largest = np.sort(parts)[-2:]
-    if not cleared(largest - second, largest):  # legs alike: none of them is the one
+    if not zero_rounding(largest - second, largest):  # legs alike: none of them is the one
         return causes, None, None
     leg = first_largest(parts, EQUALS)
     return causes, leg + 1, float(parts[leg])

@@ -1,4 +1,4 @@
-"""What is kept of a time integration: the stored quantities of each chunk, nothing else."""
+"""Record of a time integration: the stored quantities of each chunk, nothing else."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Record:
     interrupted: bool
 
     def part(self, which: slice) -> Record:
-        """Some of the instants."""
+        """Record of some of the instants."""
         names = [field.name for field in fields(self) if isinstance(getattr(self, field.name), np.ndarray)]
         return replace(self, **{name: getattr(self, name)[which] for name in names})
 
@@ -75,7 +75,7 @@ _KEPT = ("time", "q", "lam", "drive", "pose", "reaction", "energy", "sums", "clo
 
 
 def check_progress(progress: object) -> None:
-    """Refuse what cannot be told how far a run is, before it begins."""
+    """Refuse a `progress` that cannot be called, before a run begins."""
     if progress is not None and not callable(progress):
         raise InputError("cannot be called", key="progress", value=progress, allowed="a function (time, duration)")
 
@@ -95,7 +95,7 @@ def collect(chunks: Iterable[Chunk], rates: Sequence[int], duration: float, prog
     failure, interrupted, of_force = None, False, None
     try:
         for chunk in chunks:
-            parts.append(kept(chunk.recording, rates))  # whole or not at all, whenever the user interrupts
+            parts.append(recorded_arrays(chunk.recording, rates))  # whole or not at all, whenever the user interrupts
             steps.append(chunk.step)
             errors.append(chunk.error)
             of_force = chunk.force_error
@@ -118,8 +118,8 @@ def collect(chunks: Iterable[Chunk], rates: Sequence[int], duration: float, prog
     )
 
 
-def kept(r: Recording, of: Sequence[int]) -> dict[str, Array]:
-    """What a `Record` has of a recording, with the rates of some coordinates of the legs."""
+def recorded_arrays(r: Recording, of: Sequence[int]) -> dict[str, Array]:
+    """Arrays of a recording that a `Record` holds, with the rates of some coordinates of the legs."""
     legs, n = r.q.shape[1:]
     rates = r.v[:, : legs * n].reshape(len(r.time), legs, n)
     parts = {name: getattr(r, name) for name in _KEPT}
@@ -127,7 +127,7 @@ def kept(r: Recording, of: Sequence[int]) -> dict[str, Array]:
     return {name: np.array(array) for name, array in parts.items()}  # copies: views would keep the whole chunk
 
 
-def finished(made: Callable[[], Dataset], record: Record) -> Dataset:
+def result_or_interrupt(made: Callable[[], Dataset], record: Record) -> Dataset:
     """The result of a record; raised as `Interrupted` if the user stopped it, also while the result was made."""
     try:
         result = made()

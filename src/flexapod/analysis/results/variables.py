@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.analysis.results.cause_labels import CAUSES
-from flexapod.analysis.results.lazy_arrays import Asked
-from flexapod.common.lazy_imports import loaded
+from flexapod.analysis.results.lazy_arrays import LazyArrays
+from flexapod.common.lazy_imports import load_module
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -342,8 +342,8 @@ def dataset(
     Parameters
     ----------
     values : mapping
-        Arrays by name; of `Asked` what nobody has asked for yet is made when it is read; its sizes are then those of
-        ``coords`` and of the arrays before it.
+        Arrays by name; of `LazyArrays` what nobody has asked for yet is made when it is read; its sizes are then those
+        of ``coords`` and of the arrays before it.
     coords : mapping, optional
         Labels of `time`, `mode`, `station` where these dimensions occur.
     attrs : mapping, optional
@@ -351,8 +351,8 @@ def dataset(
     forms : mapping, optional
         Entries that replace those of `VARIABLES`.
     """
-    loaded("xarray")
-    from flexapod.common.datasets import awaited, labelled, variable
+    load_module("xarray")
+    from flexapod.common.datasets import assemble_dataset, lazy_variable, variable
 
     forms = forms or {}
     known = {dim: len(given) for dim, (given, _) in COORDINATES.items()} | {"pair": 2}
@@ -361,15 +361,15 @@ def dataset(
     for name in values:
         dims, units, long_name = forms[name] if name in forms else VARIABLES[name]
         described = {"units": units, "long_name": long_name}
-        if isinstance(values, Asked) and values.there(name) is None:
+        if isinstance(values, LazyArrays) and values.peek(name) is None:
             own = {dim: (known | sizes)[dim] for dim in dims}
-            data[name] = awaited(values, name, own, int if name in _WHOLE else float, described)
+            data[name] = lazy_variable(values, name, own, int if name in _WHOLE else float, described)
         else:
             data[name] = variable(dims, values[name], described)
         sizes |= data[name].sizes
     labels = {dim: (given, {"long_name": words}) for dim, (given, words) in fixed_labels(sizes).items()}
     labels |= {dim: (given, dict(_COORDINATE_ATTRS.get(dim, {}))) for dim, given in (coords or {}).items()}
-    return labelled(data, labels, attrs or {})
+    return assemble_dataset(data, labels, attrs or {})
 
 
 _COORDINATE_ATTRS = {

@@ -1,4 +1,4 @@
-"""The door of the page's server: whom it lets in, with which words it refuses, and the headers of every answer."""
+"""Access control of the page's server: clients it admits, text of its refusals, headers of every answer."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from websockets.asyncio.server import ServerConnection, serve
 from websockets.http11 import Request, Response
 
 from flexapod.app.browser.background import CONNECTIONS, LOG
-from flexapod.app.browser.client_limits import LARGEST_MESSAGE, Visitor
-from flexapod.app.browser.network import has_place, is_expected, is_same_site, names_in_words, whose
+from flexapod.app.browser.client_limits import LARGEST_MESSAGE, ClientConnection
+from flexapod.app.browser.network import admits_client, client_key, is_expected, is_same_site, names_in_words
 
 MOST_VISITORS = 64
-"""Pages that are open at once; one address has at most as many as are still free (`has_place`)."""
+"""Pages that are open at once; one address has at most as many as are still free (`admits_client`)."""
 QUEUE = 4  # frames of one visitor that wait for their turn
 CLOSING = 2.0  # time for a visitor to agree that it is over [s]
 
@@ -35,8 +35,8 @@ Process = Callable[[ServerConnection, Request], Response | None]
 _ONE_AT_A_TIME = threading.Lock()
 
 
-class Door:
-    """What is asked of everybody who connects to `host`, where the server listens.
+class AccessControl:
+    """Checks on every client that connects to `host`, where the server listens.
 
     `name`: another one under which the page is reached; `left`: called in the event loop when somebody has left.
     """
@@ -46,8 +46,8 @@ class Door:
         self._stands = False
 
     @contextmanager
-    def before(self) -> Iterator[None]:
-        """Stand before the server that viser starts in this block; viser has no other way to set its limits."""
+    def guard_server(self) -> Iterator[None]:
+        """Guard the server that viser starts in this block; viser has no other way to set its limits."""
         with _ONE_AT_A_TIME:
             websockets_server.serve = cast("Any", self._serve)
             try:
@@ -63,7 +63,7 @@ class Door:
             "max_size": LARGEST_MESSAGE,
             "max_queue": QUEUE,
             "close_timeout": CLOSING,
-            "create_connection": Visitor,
+            "create_connection": ClientConnection,
             "server_header": None,
             "logger": CONNECTIONS,
             "process_request": lambda connection, request: self._answer(process_request, connection, request),
@@ -72,7 +72,7 @@ class Door:
         return serve(lambda connection: self._receive(handler, connection), *place, **options | own)
 
     def _answer(self, process: Process, connection: ServerConnection, request: Request) -> Response | None:
-        """Refuse a request in words, or leave it to viser."""
+        """Refuse a request with a text, or leave it to viser."""
         refused = self._refusal(connection, request)
         if refused is not None:
             LOG.warning("a request is refused (%d): %s", *refused)
@@ -108,10 +108,13 @@ class Door:
         if "Upgrade" not in request.headers:
             return None
         forwarded = request.headers.get_all("X-Forwarded-For") if self._name else []
-        visitor, there = cast("Visitor", connection), cast("set[Visitor]", connection.server.connections)
-        visitor.whose = whose(visitor.peer, forwarded[-1] if forwarded else None)
+        visitor, there = (
+            cast("ClientConnection", connection),
+            cast("set[ClientConnection]", connection.server.connections),
+        )
+        visitor.whose = client_key(visitor.peer, forwarded[-1] if forwarded else None)
         own = sum(other.whose == visitor.whose for other in there)
-        if has_place(own, len(there), MOST_VISITORS):
+        if admits_client(own, len(there), MOST_VISITORS):
             return None
         words = f"{len(there)} pages are open, {own} of them from your address; it may have no more now. "
         return http.HTTPStatus.SERVICE_UNAVAILABLE, words + "Close one, or try again later."
@@ -176,7 +179,7 @@ _PLAIN = re.compile(r"[a-z0-9.:\[\]-]+", re.IGNORECASE)
 
 
 def security_headers(asked: Sequence[str]) -> dict[str, str]:
-    """What the page may load, who may embed it, and what a browser tells others of it.
+    """Headers that limit what the page may load, who may embed it, and what a browser reports to others.
 
     `asked`: lines ``Host`` of the request; browsers that do not count websockets as 'self' are told the address.
     """

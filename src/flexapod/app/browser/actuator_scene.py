@@ -16,11 +16,11 @@ from flexapod.common.quantities import number, text
 from flexapod.model.laws import MotionLaw
 from flexapod.output.scene.geometry import (
     BEAM_POINTS,
-    DrawnMotion,
+    BeamMotion,
     beam_frame,
     disc,
+    path_segments,
     straight_beam,
-    strip,
     tube,
     tube_faces,
 )
@@ -46,11 +46,11 @@ class ActuatorScene(PageScene):
         super().__init__(client)
         self._study: model.ActuatorStudy | None = None
         self._actuator: model.Actuator
-        self._motion: DrawnMotion | None = None
+        self._motion: BeamMotion | None = None
         self._nodes: dict[str, Any] = {}
 
     def show_study(self, study: model.ActuatorStudy) -> None:
-        """As `PageScene.show_study`."""
+        """Draw the actuator of a study undeformed at its free length; no result is shown any more."""
         with self.lock:
             if self._closed:
                 return
@@ -66,7 +66,7 @@ class ActuatorScene(PageScene):
                 self._look(np.array([0.5, -1.4, 0.7] if actuator.space else [0.0, -1.6, 0.2]))
 
     def show_pose(self, pose: float) -> None:
-        """As `PageScene.show_pose`; a length outside the hub [m], the hub as at t = 0."""
+        """Draw the straight beam at a length outside the hub [m], the hub as at t = 0."""
         with self.lock:
             if self._study is None:
                 return
@@ -77,12 +77,12 @@ class ActuatorScene(PageScene):
                 self._draws(f"the straight beam, {text(pose, 'm', 4)} outside the hub", STRAIGHT)
 
     def set_time(self, time: float) -> None:
-        """As `PageScene.set_time`."""
+        """Draw beam, rigid ghost and deflection at the stored instant nearest to `time` [s]."""
         with self.lock:
             if self._motion is None:
                 return
             self.time: float = float(time)
-            i, bent, straight = self._motion.at(time, self.scale)
+            i, bent, straight = self._motion.frame_at(time, self.scale)
             length, twist = float(self._motion.length[i]), self.scale * self._motion.twist[i]
             with self.client.atomic():
                 self._only(*OF_RESULTS)
@@ -92,7 +92,7 @@ class ActuatorScene(PageScene):
                 self._draws("")
 
     def show_mode(self, modes: BeamModes, mode: int, amplitude: float, phase: float, where: str = "") -> None:
-        """As `PageScene.show_mode`; the size is the free length, and what twists turns by ten times the share [rad]."""
+        """Draw a mode, `amplitude` as a share of the free length; a twisting one turns by ten times the share [rad]."""
         with self.lock:
             if self._study is None:
                 return
@@ -108,19 +108,19 @@ class ActuatorScene(PageScene):
                 self._draws(f"mode {mode}, {modes.kind[mode - 1]}{where and f' at {where}'}", note)
 
     def _whole(self) -> tuple[Array, Array]:
-        """As `PageScene._whole`: both ends of the beam at instants; an axis that is free may turn to any angle."""
+        """Both ends of the beam at instants, (n, 3) [m] each; an axis that is free may turn to any angle."""
         if self._study is None:
             return _NOTHING[0, :0], _NOTHING[0, :0]
         study, actuator = self._study, self._actuator
         time = np.linspace(0.0, study.duration, INSTANTS)
 
-        def moved(law: MotionLaw | None, start: float, free: Array) -> Array:
+        def displacement(law: MotionLaw | None, start: float, free: Array) -> Array:
             return free if law is None else start + kinematics.motion_law(law, time)[0]
 
         turn = np.linspace(0.0, 2 * np.pi, INSTANTS)
-        angle = moved(study.motion.rotation, actuator.angle, turn)
-        elevation = moved(study.motion.elevation, actuator.elevation, turn)
-        length = moved(study.motion.extension, actuator.free_length, np.full(INSTANTS, actuator.length))
+        angle = displacement(study.motion.rotation, actuator.angle, turn)
+        elevation = displacement(study.motion.elevation, actuator.elevation, turn)
+        length = displacement(study.motion.extension, actuator.free_length, np.full(INSTANTS, actuator.length))
         along = beam_frame(actuator, angle, elevation)[:, 0]
         tip = actuator.hub_radius + length
         return (tip - actuator.length)[:, None] * along, tip[:, None] * along
@@ -136,7 +136,7 @@ class ActuatorScene(PageScene):
         return 1 - (1 - np.linspace(0.0, 1.0, BEAM_POINTS)) * length / self._actuator.length
 
     def legend(self) -> str:
-        """As `PageScene.legend`."""
+        """Legend of the beam as HTML: its axes, and the meaning of the colours."""
         space = self._study is not None and self._study.actuator.space
         title = "<b>The beam</b> (Z up)" if space else "<b>The beam in its plane of motion</b> (X to the right, Y up)"
         return (
@@ -145,7 +145,7 @@ class ActuatorScene(PageScene):
         )
 
     def close(self) -> None:
-        """As `PageScene.close`."""
+        """Drop study, result and nodes; nothing is drawn any more."""
         with self.lock:
             super().close()
             self._study = self._motion = None
@@ -218,10 +218,10 @@ class ActuatorScene(PageScene):
         self._nodes["words"].text = f"deflection {text(deflection, 'm')}"
         self._nodes["words"].position = end
 
-    def _take(self, data: Dataset | None) -> DrawnMotion | None:
-        self._motion = None if data is None or self._study is None else DrawnMotion(self._study, data)
+    def _take(self, data: Dataset | None) -> BeamMotion | None:
+        self._motion = None if data is None or self._study is None else BeamMotion(self._study, data)
         return self._motion
 
     def _redraw_paths(self) -> None:
         if self._motion is not None:
-            self._nodes["path"].points = strip(self._motion.tips(self.scale), most=1500)
+            self._nodes["path"].points = path_segments(self._motion.tips(self.scale), most=1500)

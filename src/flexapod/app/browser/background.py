@@ -1,6 +1,7 @@
-"""Work of one session in the background: what goes wrong is told to its person; of requests only the newest counts.
+"""Background work of one session, and the log of the page's server.
 
-What the page's server writes to its log: as much as somebody can read, whatever others send.
+An error is reported to the person whose work raised it; of several requests only the newest counts. The log
+stays short enough to be read, whatever clients send.
 """
 
 from __future__ import annotations
@@ -21,17 +22,17 @@ class Threads:
 
     def start(self, name: str, work: Callable[[], None]) -> None:
         """Do some work in a thread of its own, ``flexapod-name``; it does not keep the program alive."""
-        threading.Thread(target=self.guarded, args=(work,), name=f"flexapod-{name}", daemon=True).start()
+        threading.Thread(target=self.run, args=(work,), name=f"flexapod-{name}", daemon=True).start()
 
-    def guarded(self, work: Callable[[], None]) -> None:
-        """Do some work here; what it raises is told."""
+    def run(self, work: Callable[[], None]) -> None:
+        """Do some work here; an exception is reported."""
         try:
             work()
         except Exception as error:
             self._fault(error)
 
 
-class Latest:
+class Debouncer:
     """Calls `work` in a thread for the newest request; requests that come meanwhile lead to one more call.
 
     What the work raises is told by the `threads` of the session.
@@ -62,7 +63,7 @@ class Latest:
                 continue
             with self._lock:
                 self._asked, work = False, self._work
-            self._threads.guarded(work)
+            self._threads.run(work)
 
     def _wait(self) -> float | None:
         """Time until the work may begin [s]; None, and the thread ends, where nothing is asked for."""
@@ -81,15 +82,15 @@ LONGEST = 8_000
 """Longest entry [characters]."""
 
 
-class Few(logging.Filter):
-    """Lets so many entries pass, cuts long ones, and says how many it left out."""
+class LogLimiter(logging.Filter):
+    """Filter that limits the rate of log entries, cuts long ones, and states how many it left out."""
 
     def __init__(self) -> None:
         super().__init__()
         self._left, self._since, self._dropped = float(MOST_LINES), time.monotonic(), 0
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Whether an entry is written."""
+        """Decide whether an entry is written, and cut a long one."""
         now = time.monotonic()
         self._left, self._since = min(MOST_LINES, self._left + now - self._since), now
         if self._left < 1:
@@ -106,7 +107,7 @@ class Few(logging.Filter):
 
 
 def _unexpected(record: logging.LogRecord) -> bool:
-    """Whether an entry tells of more than somebody who does not speak as a browser does, or left."""
+    """Test whether an entry reports more than a client that left or broke the protocol."""
     error = record.exc_info[1] if record.exc_info else None
     return not isinstance(error, WebSocketException | OSError | EOFError)
 
@@ -116,7 +117,7 @@ LOG = logging.getLogger("flexapod.view")
 CONNECTIONS = LOG.getChild("connections")
 """The log of what lies below them."""
 
-FEW = Few()
+FEW = LogLimiter()
 LOG.addFilter(FEW)
 CONNECTIONS.setLevel(logging.WARNING)  # who comes and goes is not told
 CONNECTIONS.addFilter(_unexpected)

@@ -1,4 +1,4 @@
-"""The tab "Budget": whose microns the errors of the tool are, at home or where a result deviates most."""
+"""The tab "Budget": error budget of the tool by part, at home or where a result deviates most."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import viser
 
 from flexapod import model
 from flexapod.app.browser import markup
-from flexapod.app.browser.background import Latest, Threads
+from flexapod.app.browser.background import Debouncer, Threads
 from flexapod.common.errors import FlexapodError
 from flexapod.output.scene.style import ERRORS
 
@@ -27,7 +27,7 @@ class BudgetPanel:
 
     def __init__(self, client: viser.ClientHandle, threads: Threads) -> None:
         self._html = client.gui.add_html("")
-        self._lock, self._latest = threading.Lock(), Latest(threads, self._compute)
+        self._lock, self._latest = threading.Lock(), Debouncer(threads, self._compute)
         self._study: model.Study | model.ActuatorStudy | None = None
         self._data: Dataset | None = None
 
@@ -62,8 +62,8 @@ class BudgetPanel:
 def budget_html(study: model.Study | model.ActuatorStudy, data: Dataset | None = None) -> str:
     """A budget in sentences, as a chart and as a table."""
     from flexapod.analysis import budget
-    from flexapod.analysis.error_budget.text import bars, table
-    from flexapod.output.text.budget import peak_budget
+    from flexapod.analysis.error_budget.text import bars
+    from flexapod.output.text.budget import peak_budget, table
 
     if not isinstance(study, model.Study):
         return markup.block("Error budgets are those of robots: a single actuator has no tool to place.", "soft")
@@ -76,7 +76,10 @@ def budget_html(study: model.Study | model.ActuatorStudy, data: Dataset | None =
     note = f"At rest, {where}; world axes. What is dynamic: flexapod budget FILE --motion."
     sentences = markup.block(first, "good") + "".join(markup.block(line) for line in more)
     return (
-        sentences + chart_html(bars(found)) + markup.wide(markup.table_html(*table(found))) + markup.block(note, "soft")
+        sentences
+        + chart_html(bars(found))
+        + markup.scrollable_html(markup.table_html(*table(found)))
+        + markup.block(note, "soft")
     )
 
 
@@ -108,4 +111,4 @@ def chart_html(rows: list[Bar]) -> str:
         for name, (what, color) in ERRORS.items()
         if name in used
     )
-    return markup.framed("".join(lines) + f"<div style='padding-top:0.5em'>{legend}</div>")
+    return markup.panel_html("".join(lines) + f"<div style='padding-top:0.5em'>{legend}</div>")

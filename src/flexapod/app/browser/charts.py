@@ -11,11 +11,11 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from flexapod.analysis.results.element_outputs import of_elements
+from flexapod.analysis.results.element_outputs import element_names
 from flexapod.analysis.results.summary import POINT_WORDS, tip_size
 from flexapod.common.arrays import Array
-from flexapod.common.quantities import NOTHING, capital, cleared_lines, number, scale
-from flexapod.output.scene.geometry import nearest
+from flexapod.common.quantities import NOTHING, capital, number, scale, zero_rounding_lines
+from flexapod.output.scene.geometry import nearest_index
 from flexapod.output.scene.style import AXIS_COLORS, ENERGIES, colors_of_legs, drives
 
 if TYPE_CHECKING:
@@ -46,14 +46,14 @@ class Chart:
 
     @property
     def limits(self) -> tuple[float, float]:
-        """Of the vertical axis."""
+        """Lower and upper limit of the vertical axis."""
         low, high = float(np.nanmin(self.values)), float(np.nanmax(self.values))
         margin = 0.06 * (high - low) or 0.06 * abs(high) or 1.0  # lines that are 0: from -1 to 1
         return low - margin, high + margin
 
-    def at(self, time: float) -> tuple[float, Array]:
+    def values_at(self, time: float) -> tuple[float, Array]:
         """The stored instant nearest to a time, as in the scene, and the values of all lines there, (lines,)."""
-        place = nearest(self.time, time)
+        place = nearest_index(self.time, time)
         return float(self.time[place]), self.values[:, place]
 
 
@@ -81,7 +81,7 @@ def charts(data: Dataset, point: str = "com") -> dict[str, Chart]:
                 _legs(data),
                 colors,
             ),
-            **{name: _of_element(data, name, colors) for name in of_elements(data)},
+            **{name: _of_element(data, name, colors) for name in element_names(data)},
             "energies": _energies(data),
         }
     return {
@@ -114,7 +114,7 @@ def _chart(data: Dataset, title: str, values: DataArray, unit: str, names: list[
         title=f"{title}: none" if none else title,
         unit=shown.name,
         time=data.time.values,
-        values=cleared_lines(lines),
+        values=zero_rounding_lines(lines),
         names=tuple(names),
         colors=colors[: len(names)],
     )
@@ -134,8 +134,8 @@ def _energies(data: Dataset) -> Chart:
     )
 
 
-def thinned(values: Array, most: int = MOST) -> NDArray[np.intp]:
-    """Which of T instants to draw: of each piece of the time the extremes of every line (lines, T), in order."""
+def decimation_indices(values: Array, most: int = MOST) -> NDArray[np.intp]:
+    """Indices of the instants to draw: extremes of every line (lines, T) in each piece of the time, ascending."""
     count = values.shape[1]
     if count <= most:
         return np.arange(count)
@@ -162,7 +162,7 @@ class ChartView:
         self._chart, self._plot, self._values = chart, None, None
         if chart is None:
             return
-        self._drawn = thinned(chart.values)
+        self._drawn = decimation_indices(chart.values)
         with self._place:
             self._plot = self._gui.add_uplot(
                 self._lines(chart, time),
@@ -185,7 +185,7 @@ class ChartView:
     def _lines(self, chart: Chart, time: float) -> tuple[Array, ...]:
         """Instants, lines, and the cursor: a line along the lower edge that rises at the instant nearest to `time`."""
         instants, (low, high) = chart.time[self._drawn], chart.limits
-        time, now = chart.at(time)
+        time, now = chart.values_at(time)
         place = np.full(3, int(np.searchsorted(instants, time)))
         lines = [np.insert(line[self._drawn], place, at) for line, at in zip(chart.values, now, strict=True)]
         mark = np.insert(np.full(len(instants), low), place, (low, high, low))
@@ -193,7 +193,7 @@ class ChartView:
 
 
 def _series(chart: Chart) -> tuple[Any, ...]:
-    """How the lines are drawn; the last is the cursor."""
+    """Style of the lines; the last is the cursor."""
     plain = {"points": {"show": False}}
     lines = [
         {"label": name, "stroke": color, "width": 1.6, "dash": dash, **plain}
@@ -204,7 +204,7 @@ def _series(chart: Chart) -> tuple[Any, ...]:
 
 def _readout(chart: Chart, time: float) -> str:
     """Names, colours and values of the lines at the instant nearest to a time, as HTML."""
-    time, values = chart.at(time)
+    time, values = chart.values_at(time)
     largest = float(np.nanmax(np.abs(chart.values), initial=0.0))
     values = [0.0 if abs(value) <= _NOTHING * largest else value for value in values]
     cells = "".join(

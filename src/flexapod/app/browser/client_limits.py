@@ -1,4 +1,4 @@
-"""One connection to the page's server: what is taken from it, what viser sees of it, the threads that answer."""
+"""Limits on one connection to the page's server: its messages, what viser sees of it, the threads that answer."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from websockets.frames import DATA_OPCODES, Frame
 from websockets.protocol import Event
 
 from flexapod.app.browser.background import LOG
-from flexapod.app.browser.network import has_place, whose
+from flexapod.app.browser.network import admits_client, client_key
 
 LARGEST_MESSAGE = 2_000_000
 """Largest message that is taken [bytes]; more closes the connection."""
@@ -79,8 +79,8 @@ _FORMS: dict[str, Any] = {GREETING: _Camera, INPUT: _Input, BEGIN: _Begin, FILE:
 """Messages that a page sends for itself; others are dropped: viser would pass some of them on to everybody."""
 
 
-class Visitor(ServerConnection):
-    """A connection whose messages are looked at before they are decoded; `work`: callbacks that wait or run for it."""
+class ClientConnection(ServerConnection):
+    """A connection whose messages are checked before they are decoded; `work`: its callbacks that wait or run."""
 
     peer: str
     whose: str
@@ -94,9 +94,9 @@ class Visitor(ServerConnection):
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Begin, unless there are too many already."""
         super().connection_made(transport)
-        self.peer = self.whose = whose(str((transport.get_extra_info("peername") or ("",))[0]))
-        others = [cast("Visitor", other) for other in self.server.handlers if other is not self]
-        if not has_place(sum(other.peer == self.peer for other in others), len(others), MOST_CONNECTIONS):
+        self.peer = self.whose = client_key(str((transport.get_extra_info("peername") or ("",))[0]))
+        others = [cast("ClientConnection", other) for other in self.server.handlers if other is not self]
+        if not admits_client(sum(other.peer == self.peer for other in others), len(others), MOST_CONNECTIONS):
             self.transport.abort()
 
     def data_received(self, data: bytes) -> None:
@@ -148,7 +148,7 @@ def _kind(message: str | bytes) -> str:
 
 
 def _is_finite(kind: str, message: bytes) -> bool:
-    """Whether all numbers of a message are numbers; ValueError where it has another form."""
+    """Test whether all numbers of a message are finite; ValueError where it has another form."""
     finite = _all_finite(msgspec.structs.astuple(msgspec.msgpack.decode(message, type=_FORMS[kind])))
     if not finite:
         LOG.warning("a message is ignored: a number in a %s is not finite", kind)
@@ -161,14 +161,14 @@ def _all_finite(value: object) -> bool:
     return not isinstance(value, float) or math.isfinite(value)
 
 
-class Pool(ThreadPoolExecutor):
-    """What a callback raises is told to the client that it belongs to; what waits for one holds up that one only.
+class CallbackPool(ThreadPoolExecutor):
+    """Threads for callbacks: exceptions are reported to the client of a callback, and a full queue delays it alone.
 
     `fault` is called with the client's number, or None, and the exception; `visitor` gives the connection of a number.
     """
 
     def __init__(
-        self, fault: Callable[[int | None, BaseException], None], visitor: Callable[[int], Visitor | None]
+        self, fault: Callable[[int | None, BaseException], None], visitor: Callable[[int], ClientConnection | None]
     ) -> None:
         super().__init__(max_workers=32, thread_name_prefix="flexapod-view")
         self._fault, self._visitor = fault, visitor

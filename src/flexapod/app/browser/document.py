@@ -36,34 +36,34 @@ class Document:
     path: str | None
     files: NamedFiles = NOWHERE
 
-    def changed(self, key: str, value: object) -> Document:
-        """With another value at a key path such as ``payload.com[2]``; a key that is not there is added."""
+    def with_value(self, key: str, value: object) -> Document:
+        """Document with another value at a key path such as ``payload.com[2]``; a key that is absent is added."""
         tree = tomlkit.parse(self.text)
         table, last = _holder(tree, key)
         table[last] = value
-        return self.saying(tree.as_string())
+        return self.with_text(tree.as_string())
 
-    def without(self, key: str) -> Document:
-        """Without the value at a key path."""
+    def without_key(self, key: str) -> Document:
+        """Document without the value at a key path."""
         tree = tomlkit.parse(self.text)
         table, last = _holder(tree, key)
         del table[last]
-        return self.saying(tree.as_string())
+        return self.with_text(tree.as_string())
 
-    def saying(self, text: str) -> Document:
-        """With another text."""
+    def with_text(self, text: str) -> Document:
+        """Document with another text and the same files."""
         return replace(self, text=text)
 
-    def beside(self, folder: Path) -> Document:
-        """With a folder in which it may name tables, besides those that it has."""
+    def with_folder(self, folder: Path) -> Document:
+        """Document that may also name the tables in a folder, besides those that it has."""
         return replace(self, files=NamedFiles(folder, closed=True, stored=self.files.stored))
 
     def value(self, key: str) -> object:
         """The value at a key path, as written; None where there is none."""
         return _value(tomllib.loads(self.text), key)
 
-    def having(self, keys: Iterable[str]) -> set[str]:
-        """Those of the key paths at which there is a value."""
+    def present_keys(self, keys: Iterable[str]) -> set[str]:
+        """Subset of the key paths at which the document has a value."""
         data = tomllib.loads(self.text)
         return {key for key in keys if _value(data, key) is not None}
 
@@ -80,14 +80,14 @@ class TypedQuantity:
         return (self.unit or DIMENSIONS[dimension].unit).replace("^2", "²").replace("^3", "³").replace("um", "µm")
 
     def in_unit(self, unit: str, dimension: str) -> TypedQuantity:
-        """The same in another unit."""
+        """The same quantity in another unit."""
         if unit == self.unit:
             return self
         here, there = (to_si(f"1 {u}", dimension) if u else 1.0 for u in (self.unit, unit))
         return TypedQuantity(self.number * here / there, unit)
 
-    def written(self) -> object:
-        """What to write into the file: a number, or a text with the unit."""
+    def toml_value(self) -> object:
+        """Value to write into the file: a number, or a text with the unit."""
         text = plain(self.number)
         if self.unit:
             return f"{text} {self.unit}"
@@ -126,7 +126,7 @@ def _holder(tree: Any, key: str) -> tuple[Any, str | int]:
 _HEADING = re.compile(r"^\s*\[\[?\s*([^\[\]\"']+?)\s*\]\]?\s*(#.*)?$")
 
 
-def blocks(text: str, name: str) -> list[tuple[int, int]]:
+def table_spans(text: str, name: str) -> list[tuple[int, int]]:
     """Lines (first, after the last) of each table with a heading ``[name]`` or ``[[name]]``, its inner tables included.
 
     Comments directly above a heading belong to it, blank lines before them to nobody.
@@ -144,27 +144,27 @@ def blocks(text: str, name: str) -> list[tuple[int, int]]:
     return found
 
 
-def replaced(text: str, first: int, after: int, lines: Sequence[str]) -> str:
+def replace_lines(text: str, first: int, after: int, lines: Sequence[str]) -> str:
     """The text with other lines in place of some."""
     old = text.splitlines()
     end = "\r\n" if "\r\n" in text else "\n"
     return end.join([*old[:first], *lines, *old[after:]]) + end
 
 
-def renamed(lines: Sequence[str], name: str, heading: str) -> list[str]:
+def rename_table(lines: Sequence[str], name: str, heading: str) -> list[str]:
     """The lines of a table with another heading, ``[[leg]]`` for ``[leg]``."""
     pattern = re.compile(rf"^\s*\[\[?\s*{re.escape(name)}\s*\]\]?")
     return [pattern.sub(heading, line) for line in lines]
 
 
-def bare(lines: Sequence[str]) -> list[str]:
+def strip_comments(lines: Sequence[str]) -> list[str]:
     """The lines of a table without comments."""
     tree = tomlkit.parse("\n".join(lines) + "\n")
     _strip(tree)
     return [line for line in tree.as_string().splitlines() if line.strip() and not line.lstrip().startswith("#")]
 
 
-def checked(text: str, expected: object, key: str) -> str:
+def check_toml(text: str, expected: object, key: str) -> str:
     """The text where it reads as it should, else InputError: it is written in a way that the form does not change."""
     try:
         same = tomllib.loads(text) == expected
@@ -213,19 +213,19 @@ def read(document: Document, removed: tuple[str, ...] = ()) -> Edit:
     return Edit(document=document, study=study, removed=removed)
 
 
-def edited(document: Document, changes: Mapping[str, object]) -> Edit:
+def edit_values(document: Document, changes: Mapping[str, object]) -> Edit:
     """The document with other values at some key paths."""
     for key, value in changes.items():
-        document = document.changed(key, value)
+        document = document.with_value(key, value)
     return read(document)
 
 
-def chosen(document: Document, field: NotedField, value: str) -> Edit:
+def edit_choice(document: Document, field: NotedField, value: str) -> Edit:
     """The document with another choice; keys of the same table that belonged to the choice before are taken out."""
-    found, removed = read(document.changed(field.key, value)), []
+    found, removed = read(document.with_value(field.key, value)), []
     while (key := _refused(found, field.table)) is not None:
         removed.append(key)
-        found = read(found.document.without(key), tuple(removed))
+        found = read(found.document.without_key(key), tuple(removed))
     return found
 
 

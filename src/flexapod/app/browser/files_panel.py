@@ -15,9 +15,9 @@ from viser import ClientHandle, Icon, IconName
 from flexapod.app.browser import markup
 from flexapod.app.browser.background import Threads
 from flexapod.app.browser.document import Document, read
-from flexapod.app.browser.uploads import LARGEST, Sent, limit_uploads, read_upload, store_table, study_download
+from flexapod.app.browser.uploads import LARGEST, UploadFolder, limit_uploads, read_upload, store_table, study_download
 from flexapod.common.errors import FlexapodError
-from flexapod.common.files import scratch
+from flexapod.common.files import temporary_folder
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -32,7 +32,7 @@ def netcdf(data: Dataset) -> bytes:
     from flexapod.analysis.store import save
 
     named = data.assign_attrs(study_file=Path(str(data.attrs.get("study_file", ""))).name)
-    with _ONE_AT_A_TIME, scratch() as folder:
+    with _ONE_AT_A_TIME, temporary_folder() as folder:
         return save(named, folder / "results.nc").read_bytes()
 
 
@@ -40,18 +40,18 @@ def csv(data: Dataset) -> bytes:
     """``results.csv``."""
     from flexapod.analysis.store import save_csv
 
-    with scratch() as folder:
+    with temporary_folder() as folder:
         return save_csv(data, folder / "results.csv").read_bytes()
 
 
 def figures(data: Dataset) -> bytes:
     """A ZIP archive of the standard figures, PNG."""
-    from flexapod.output.report.figures import draw
+    from flexapod.output.report.figures import draw_figures
 
-    with _ONE_AT_A_TIME, scratch() as folder:
+    with _ONE_AT_A_TIME, temporary_folder() as folder:
         archive = io.BytesIO()
         with zipfile.ZipFile(archive, "w", zipfile.ZIP_STORED) as files:
-            for figure in draw(data, folder, ("png",)):
+            for figure in draw_figures(data, folder, ("png",)):
                 files.write(figure.png, figure.png.name)
         return archive.getvalue()
 
@@ -81,7 +81,7 @@ class FilesPanel:
         self,
         client: ClientHandle,
         threads: Threads,
-        sent: Sent,
+        sent: UploadFolder,
         document: Callable[[], Document],
         study: Callable[[], Study | ActuatorStudy],
         data: Callable[[], Dataset | None],

@@ -1,6 +1,7 @@
-"""Above the tabs: the answer or what is wrong, Simulate, progress, what the scene shows.
+"""Header above the tabs, caption of the scene, and the study that a session begins with.
 
-What everybody begins with: a study file, or results that carry their study.
+The header shows the answer or what is wrong, Simulate, progress. A session begins with a study file, or with
+results that carry their study.
 """
 
 from __future__ import annotations
@@ -15,13 +16,13 @@ import viser
 from viser import ClientHandle, Icon
 
 from flexapod import model
-from flexapod.analysis.results.attributes import study_in
+from flexapod.analysis.results.attributes import study_from_attributes
 from flexapod.app.browser import markup
 from flexapod.app.browser.document import Document
 from flexapod.common.errors import InputError
 from flexapod.common.files import RESULTS
 from flexapod.common.tables.named_files import NamedFiles
-from flexapod.model.stored import stored_tables
+from flexapod.model.stored_tables import stored_tables
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -58,7 +59,7 @@ class Header:
     def say(self, html: str) -> None:
         """Show words in place of those before; the last answer keeps its room: what is below stays under the mouse."""
         self.said = html
-        self._words.content = html if html == self._answer else markup.in_room_of(self._answer, html)
+        self._words.content = html if html == self._answer else markup.reserve_height(self._answer, html)
 
     def fault(self, html: str) -> None:
         """Show a fault below the words until the next change or simulation that is asked for; "" for none."""
@@ -66,7 +67,7 @@ class Header:
             self._fault.content = html
 
     def running(self, on: bool) -> None:
-        """Whether a simulation runs, from its beginning: Cancel or Simulate can be pressed."""
+        """Show that a simulation begins or has ended: Cancel or Simulate can be pressed, and progress is 0."""
         self._progress.value, self._runs = 0.0, on
         self._update()
 
@@ -75,16 +76,16 @@ class Header:
         self._progress.value = 100.0 * min(max(share, 0.0), 1.0)
 
     def ready(self, on: bool) -> None:
-        """Whether there is a study that can be simulated."""
+        """Show whether there is a study that can be simulated."""
         self._ready = on
         self._update()
 
     def _update(self) -> None:
-        """Nothing comes and goes: what is below stays under the mouse."""
+        """Enable or disable both buttons; neither is hidden, so that what is below stays under the mouse."""
         self._simulate.disabled, self._cancel.disabled = self._runs or not self._ready, not self._runs
 
 
-class Picture:
+class SceneCaption:
     """Words on the scene of one user, and two buttons with what they do."""
 
     def __init__(self, gui: viser.GuiApi, back: Callable[[], None], reset: Callable[[], None]) -> None:
@@ -108,7 +109,7 @@ class Picture:
 
 @dataclass(frozen=True, kw_only=True)
 class StudySource:
-    """What everybody begins with: a study file, its study, and results if there are any."""
+    """Source that a session begins with: a study file, its study, and results if there are any."""
 
     document: Document
     study: model.Study | model.ActuatorStudy
@@ -121,7 +122,7 @@ def _document(study: model.Study | model.ActuatorStudy, path: str) -> Document:
 
 
 def open_source(file: Path) -> StudySource:
-    """What a study file or results on disk begin with.
+    """Read a study file, or results with their study, as the source of a session.
 
     InputError as of `flexapod.load`, or where the file is not a result of a simulation.
     """
@@ -135,7 +136,7 @@ def open_source(file: Path) -> StudySource:
     check_run(data, str(file))
     path, text = data.attrs.get("study_file") or str(file), str(data.attrs["study"])
     try:
-        study = study_in(data.attrs, str(file))
+        study = study_from_attributes(data.attrs, str(file))
     except InputError as error:
         if "com_deviation" not in data:
             raise InputError(f"carries a study that is refused: {error}", file=file) from None
@@ -147,7 +148,7 @@ def open_source(file: Path) -> StudySource:
 
 def _check_kind(study: model.Study | model.ActuatorStudy, data: Dataset, file: str) -> None:
     """Refuse results whose study is of something else, or does not know the shapes they were computed with."""
-    from flexapod.output.scene.geometry import as_computed
+    from flexapod.output.scene.geometry import computed_study
 
     if isinstance(study, model.Study) != ("com_deviation" in data):
         raise InputError("holds a study of something else than its results", file=file, key="study")
@@ -159,7 +160,7 @@ def _check_kind(study: model.Study | model.ActuatorStudy, data: Dataset, file: s
             value=len(study.robot.legs),
             allowed=str(data.sizes["leg"]),
         )
-    match_shapes: Any = as_computed  # of one kind or the other
+    match_shapes: Any = computed_study  # of one kind or the other
     try:
         match_shapes(study, data)
     except InputError as error:

@@ -1,4 +1,4 @@
-"""What the colours of the legs mean: values over time, a scale that colour-blind readers tell apart, the legend."""
+"""Colours of the legs by values over time, on a scale that colour-blind readers tell apart, and their legend."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from flexapod import model
 from flexapod.common.arrays import Array
-from flexapod.common.quantities import NOTHING, cleared_lines, number, scale
+from flexapod.common.quantities import NOTHING, number, scale, zero_rounding_lines
 from flexapod.output.scene.style import colors_of_legs, drives
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ def _force(study: model.Study, data: Dataset) -> LegColors:
     largest = float(np.nanmax(np.abs(values))) or 1.0
     stroke = found.place == "length"
     return LegColors(
-        values=cleared_lines(values.T).T,
+        values=zero_rounding_lines(values.T).T,
         low=-largest,
         high=largest,
         unit=unit.name,
@@ -151,7 +151,7 @@ def _bending(study: model.Study, data: Dataset) -> LegColors:
     size = size if size.max() >= NOTHING else 0 * size
     unit = scale(size, "m")
     return LegColors(
-        values=cleared_lines(unit(size).T).T,
+        values=zero_rounding_lines(unit(size).T).T,
         low=0.0,
         high=float(unit(size).max()) or 1.0,
         unit=unit.name,

@@ -13,9 +13,9 @@ import viser
 from viser import Icon
 
 from flexapod.app.browser import markup
-from flexapod.app.browser.background import Latest, Threads
+from flexapod.app.browser.background import Debouncer, Threads
 from flexapod.app.browser.scene import PageScene
-from flexapod.app.browser.text_fields import Dial, by_user
+from flexapod.app.browser.text_fields import NumberField, user_callback
 from flexapod.app.browser.time_panel import Player
 from flexapod.common.errors import FlexapodError
 from flexapod.common.quantities import text
@@ -24,7 +24,7 @@ SHOWN_FREQUENCY = 0.5  # of the drawn motion, whatever the mode's own [Hz]
 _NONE: str = "none yet"
 
 
-class ModeShow:
+class ModePlayer:
     """Choice of a mode, button, amplitude and phase for one user.
 
     `draw` is called with the place of the mode in the list (0 is the first), amplitude as a share, phase between -1 and
@@ -46,15 +46,15 @@ class ModeShow:
         self._player = Player(scene, threads, self.lock, self._step, self._label)
         self._choice = gui.add_dropdown("mode", [_NONE], initial_value=_NONE)
         self._play = gui.add_button("Animate", icon=Icon.PLAYER_PLAY, disabled=True, hint="Show the chosen mode moving")
-        self._amplitude = Dial(gui, threads, "amplitude", "%", (1.0, 25.0), 0.5, 8.0, self._still)
-        self._phase = Dial(gui, threads, "phase", "deg", (0.0, 360.0), 1.0, 90.0, self._still, dimension="angle")
+        self._amplitude = NumberField(gui, threads, "amplitude", "%", (1.0, 25.0), 0.5, 8.0, self._still)
+        self._phase = NumberField(gui, threads, "phase", "deg", (0.0, 360.0), 1.0, 90.0, self._still, dimension="angle")
         self._size, self._note = size, gui.add_html("")
-        self._choice.on_update(by_user(self.play))
+        self._choice.on_update(user_callback(self.play))
         self._play.on_click(lambda _: self.pause() if self.playing else self.play())
 
     @property
     def playing(self) -> bool:
-        """Whether a mode moves."""
+        """True while a mode is animated."""
         return self._player.playing
 
     def offer(self, modes: Sequence[str], length: float) -> None:
@@ -119,7 +119,7 @@ CHANGED = 0.3  # after a change of the study, before its modes are computed [s]
 Study = TypeVar("Study")
 
 
-class ToldModes(NamedTuple):
+class ModeTable(NamedTuple):
     """Modes: what the scene draws, their names in the choice, their table as HTML.
 
     `where` they are taken, in words; `length` [m] that amplitudes are a share of.
@@ -132,7 +132,7 @@ class ToldModes(NamedTuple):
     length: float = 0.0
 
 
-class ListedModes(ABC, Generic[Study]):
+class ModeControls(ABC, Generic[Study]):
     """Controls of modes for one user; the `scene` draws them."""
 
     size: str
@@ -145,9 +145,9 @@ class ListedModes(ABC, Generic[Study]):
         self._study: Study | None = None
         self._modes: Any = None
         self._where = ""
-        self._latest = Latest(threads, self._compute)
+        self._latest = Debouncer(threads, self._compute)
         self._words = client.gui.add_html("")
-        self._show = ModeShow(client.gui, scene, threads, self._draw, self.size)
+        self._show = ModePlayer(client.gui, scene, threads, self._draw, self.size)
         self._add_controls(client.gui, threads)
         self._table = client.gui.add_html("")
 
@@ -160,7 +160,7 @@ class ListedModes(ABC, Generic[Study]):
         """Bring those inputs to another study."""
 
     @abstractmethod
-    def _listed(self, study: Study) -> ToldModes:
+    def _listed(self, study: Study) -> ModeTable:
         """The modes of a study with these inputs."""
 
     @abstractmethod
@@ -200,11 +200,11 @@ class ListedModes(ABC, Generic[Study]):
             self.scene.show_mode(self._modes, place + 1, amplitude, phase, self._where)
 
     def _compute(self) -> None:
-        """The modes, or in words why there are none."""
+        """Compute and list the modes, or show why there are none."""
         study = self._study
         if study is None:
             return
-        found, said = ToldModes(None, [], ""), ""
+        found, said = ModeTable(None, [], ""), ""
         try:
             found = self._listed(study)
         except FlexapodError as error:

@@ -1,6 +1,6 @@
-"""What people are told: errors, answers and remarks as HTML in which nothing that comes from a file is live.
+"""Errors, answers and remarks as HTML in which nothing that comes from a file is live; calls of scripts.
 
-Scripts of ours in the page of one client (`assets`), each a function of one argument.
+Scripts (`assets`) run in the page of one client, each a function of one argument.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from viser import ClientHandle
 
 from flexapod.common.errors import FlexapodError
 from flexapod.common.version import __version__
-from flexapod.output.text.answers import lines_of, parts_of
+from flexapod.output.text.parts import error_lines, error_parts
 
 _LIGHT = {"error": "#c0392b", "warning": "#9a6700", "good": "#2c6e49", "soft": "#666666"}
 _COLOURS = {kind: f"var(--flexapod-{kind}, {colour})" for kind, colour in _LIGHT.items()} | {"plain": "inherit"}
@@ -31,7 +31,7 @@ def block(text: str, kind: str = "plain") -> str:
 
 def title(text: str) -> str:
     """A heading."""
-    return framed(f"<b style='font-size:1.05em'>{escape(text)}</b>")
+    return panel_html(f"<b style='font-size:1.05em'>{escape(text)}</b>")
 
 
 def lines_html(lines: Sequence[str], kind: str = "plain") -> str:
@@ -41,10 +41,10 @@ def lines_html(lines: Sequence[str], kind: str = "plain") -> str:
 
 def error_html(error: FlexapodError) -> str:
     """The words of the command line for an error; of a file the name, not the folders of whoever runs the server."""
-    parts = parts_of(error)
+    parts = error_parts(error)
     if file := parts.get("file"):
         parts["file"] = Path(file).name
-    head, *rest = lines_of(parts)
+    head, *rest = error_lines(parts)
     words = [f"<b>{escape(head)}</b>", *(escape(line.strip()) for line in rest)]
     return _box("<br>".join(words), "error")
 
@@ -55,7 +55,7 @@ def fault_html(error: BaseException) -> str:
     return block(f"Error: {what}. This is a fault of flexapod, not yours; the server's terminal shows more.", "error")
 
 
-def in_room_of(hidden: str, html: str) -> str:
+def reserve_height(hidden: str, html: str) -> str:
     """Words that take no less room than others, which are not seen."""
     place = "grid-area:1/1;min-width:0"
     return (
@@ -74,19 +74,19 @@ def table_html(header: Sequence[str], rows: Sequence[Sequence[str]], marked: Seq
             f"<td style='{cell}{'left' if not i else 'right'}'>{escape(text)}</td>" for i, text in enumerate(row)
         )
         body += f"<tr style='color:{_COLOURS['error'] if mark else 'inherit'}'>{cells}</tr>"
-    return framed(f"<table style='border-collapse:collapse;font-size:0.95em'><tr>{head}</tr>{body}</table>")
+    return panel_html(f"<table style='border-collapse:collapse;font-size:0.95em'><tr>{head}</tr>{body}</table>")
 
 
-def wide(html: str) -> str:
+def scrollable_html(html: str) -> str:
     """HTML that may be wider than the panel."""
     return f"<div tabindex='0' role='region' aria-label='table' style='overflow-x:auto;white-space:nowrap'>{html}</div>"
 
 
 def _box(inner: str, kind: str) -> str:
-    return framed(f"<span class='flexapod-{kind}' style='color:{_COLOURS[kind]}'>{inner}</span>")
+    return panel_html(f"<span class='flexapod-{kind}' style='color:{_COLOURS[kind]}'>{inner}</span>")
 
 
-def framed(inner: str) -> str:
+def panel_html(inner: str) -> str:
     """HTML at the margins and in the size of the panel's other words."""
     return f"<div style='padding:0 0.75em 0.5em;font-size:0.8rem;line-height:1.35;overflow-wrap:anywhere'>{inner}</div>"
 

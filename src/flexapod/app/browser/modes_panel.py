@@ -11,16 +11,17 @@ import viser
 from viser import Icon
 
 from flexapod import kinematics, model
-from flexapod.analysis.results.idealizations import held
+from flexapod.analysis.results.idealizations import soft_drives
 from flexapod.app.browser import markup
 from flexapod.app.browser.background import Threads
-from flexapod.app.browser.listed_modes import ListedModes, ToldModes
+from flexapod.app.browser.listed_modes import ModeControls, ModeTable
 from flexapod.app.browser.robot_scene import pose_words
 from flexapod.app.browser.scene import PageScene
-from flexapod.app.browser.text_fields import Dial
+from flexapod.app.browser.text_fields import NumberField
 from flexapod.common.quantities import number, text
 from flexapod.output.scene.geometry import BEAM_POINTS
 from flexapod.output.scene.skeleton import Skeleton
+from flexapod.output.text.description import locked_drive_words
 
 if TYPE_CHECKING:
     from flexapod.output.scene.robot_scene import BeamModes as Shapes
@@ -29,21 +30,21 @@ if TYPE_CHECKING:
 LISTED = 24  # modes in the list
 
 
-class ShownRobotModes(ListedModes[model.Study]):
+class RobotModeControls(ModeControls[model.Study]):
     """Controls of a robot's modes for one user."""
 
     size = "the robot's size"
 
     def _add_controls(self, gui: viser.GuiApi, threads: Threads) -> None:
         """Sliders of the pose from home: millimetres and degrees; `_fit` sets how far the former reach."""
-        self._pose: dict[str, Dial] = {}
+        self._pose: dict[str, NumberField] = {}
         with gui.add_folder("Pose from home"):
             for name in model.AXES[:3]:
-                self._pose[name] = Dial(
+                self._pose[name] = NumberField(
                     gui, threads, name, "mm", (-1.0, 1.0), 1.0, 0.0, self._moved, dimension="length"
                 )
             for name in model.AXES[3:]:
-                self._pose[name] = Dial(
+                self._pose[name] = NumberField(
                     gui, threads, name, "deg", (-60.0, 60.0), 0.5, 0.0, self._moved, dimension="angle"
                 )
             home = gui.add_button("Home", icon=Icon.HOME)
@@ -61,7 +62,7 @@ class ShownRobotModes(ListedModes[model.Study]):
             self._pose[name].disabled = not moves
             self._pose[name].value *= moves
 
-    def _listed(self, study: model.Study) -> ToldModes:
+    def _listed(self, study: model.Study) -> ModeTable:
         from flexapod import analysis as fx
 
         pose = self._at()
@@ -75,10 +76,13 @@ class ShownRobotModes(ListedModes[model.Study]):
         table = (
             markup.table_html(header, rows)
             + (markup.block(f"and {more} higher ones", "soft") if more > 0 else "")
-            + markup.block(f"{held(study.robot)}, about the static equilibrium at the pose above.", "soft")
+            + markup.block(
+                f"{locked_drive_words(soft_drives(study.robot))}, about the static equilibrium at the pose above.",
+                "soft",
+            )
         )
         names = [f"{m}: {f} Hz, {kind}" for m, f, _, kind in rows]
-        return ToldModes(found, names, table, pose_words(pose), Skeleton(study.robot).size)
+        return ModeTable(found, names, table, pose_words(pose), Skeleton(study.robot).size)
 
     def _preview(self, study: model.Study) -> None:
         self.scene.show_pose(self._at())
@@ -98,19 +102,28 @@ MOVED = 0.1  # after the slider has moved, before the modes are computed [s]
 MOST = 12  # shapes
 
 
-class ShownBeamModes(ListedModes[model.ActuatorStudy]):
+class BeamModeControls(ModeControls[model.ActuatorStudy]):
     """Length and number of shapes of a beam, and the modes they give, for one user."""
 
     size = "the free length"
 
     def _add_controls(self, gui: viser.GuiApi, threads: Threads) -> None:
-        def moved() -> None:
+        def resize() -> None:
             self._moved(MOVED)
 
-        self._length = Dial(
-            gui, threads, "free length", "m", (0.0, 1.0), 0.01, 0.5, moved, dimension="length", hint="Outside the hub"
+        self._length = NumberField(
+            gui,
+            threads,
+            "free length",
+            "m",
+            (0.0, 1.0),
+            0.01,
+            0.5,
+            resize,
+            dimension="length",
+            hint="Outside the hub",
         )
-        self._count = Dial(gui, threads, "shapes", "", (1, MOST), 1, 3, moved, hint="Lateral shapes, and modes")
+        self._count = NumberField(gui, threads, "shapes", "", (1, MOST), 1, 3, resize, hint="Lateral shapes, and modes")
 
     def _fit(self, study: model.ActuatorStudy) -> None:
         actuator = study.actuator
@@ -118,7 +131,7 @@ class ShownBeamModes(ListedModes[model.ActuatorStudy]):
         self._length.value = actuator.free_length
         self._count.value = min(MOST, max(1, study.simulation.modes))
 
-    def _listed(self, study: model.ActuatorStudy) -> ToldModes:
+    def _listed(self, study: model.ActuatorStudy) -> ModeTable:
         from flexapod.output.scene.robot_scene import beam_modes
 
         still = _still(study, self._length.value, int(self._count.value))
@@ -127,7 +140,7 @@ class ShownBeamModes(ListedModes[model.ActuatorStudy]):
         names = [
             f"{i}: {number(f, 4)} Hz{kind}" for i, (f, kind) in enumerate(zip(found.frequency, kinds, strict=True), 1)
         ]
-        return ToldModes(
+        return ModeTable(
             found,
             names,
             _beam_table(found, still),
@@ -164,7 +177,7 @@ def _beam_table(modes: Shapes, study: model.ActuatorStudy) -> str:
 
 
 class ModesPanel:
-    """Modes for one user; made inside the tab that holds them, with what `ListedModes` takes."""
+    """Modes for one user; made inside the tab that holds them, with what `ModeControls` takes."""
 
     client: viser.ClientHandle
     scene: PageScene
@@ -173,11 +186,11 @@ class ModesPanel:
         self.client, self.scene, self._threads = client, scene, threads
         self._place = client.gui.add_folder(None)
         self._lock = threading.Lock()
-        self._inside: ShownRobotModes | ShownBeamModes | None = None
+        self._inside: RobotModeControls | BeamModeControls | None = None
 
     def show_study(self, study: model.Study | model.ActuatorStudy) -> None:
         """List the modes of another study; computed in the background."""
-        kind = ShownRobotModes if isinstance(study, model.Study) else ShownBeamModes
+        kind = RobotModeControls if isinstance(study, model.Study) else BeamModeControls
         with self._lock:
             if not isinstance(self._inside, kind):
                 self._leave()

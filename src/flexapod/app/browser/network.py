@@ -1,4 +1,4 @@
-"""Where a server may listen, and who reaches it there."""
+"""Addresses of the page's server: where it may listen, and which clients it admits there."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def free_port(host: str, port: int | None) -> int:
 
 
 def is_local(host: str) -> bool:
-    """Whether only programs on this machine reach a host."""
+    """Test whether only programs on this machine reach a host."""
     try:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:
@@ -41,7 +41,7 @@ def is_local(host: str) -> bool:
 
 
 def is_expected(asked: str, host: str, name: str | None = None) -> bool:
-    """Whether the page was asked for under an address or a name of this machine, which listens on `host`.
+    """Test whether the page was requested under an address or a name of this machine, which listens on `host`.
 
     A page of another site may have its own name point here (DNS rebinding) and would then count as this site: names
     that are not this machine's are refused, unless `host` or `name` is that name. `asked`: the header ``Host``, name
@@ -60,7 +60,7 @@ def is_expected(asked: str, host: str, name: str | None = None) -> bool:
 
 
 def is_same_site(origin: str, asked: str) -> bool:
-    """Whether the header ``Origin`` names the site that the header ``Host`` asks for.
+    """Test whether the header ``Origin`` names the site that the header ``Host`` asks for.
 
     The scheme may be https: a proxy before this server may speak TLS. A port that is not given is the scheme's own.
     """
@@ -72,8 +72,8 @@ def is_same_site(origin: str, asked: str) -> bool:
     return there == here and (port or own) == (asked_port or own)
 
 
-def whose(peer: str, forwarded: str | None = None) -> str:
-    """Whose a connection is, for limits: the address that it came from, of IPv6 the network of one customer (/64).
+def client_key(peer: str, forwarded: str | None = None) -> str:
+    """Client of a connection, for limits: the address that it came from, of IPv6 the network of a customer (/64).
 
     `forwarded`: the header ``X-Forwarded-For`` where a proxy is known to stand before this server: its last entry is
     the one that the proxy wrote, about a connection from this machine.
@@ -95,8 +95,8 @@ def _address(text: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address | None:
     return (found.ipv4_mapped if isinstance(found, ipaddress.IPv6Address) else None) or found
 
 
-def has_place(own: int, there: int, most: int) -> bool:
-    """Whether one more may come of somebody with `own` of the `there` that are here, where `most` find room.
+def admits_client(own: int, there: int, most: int) -> bool:
+    """Test whether a client with `own` of `there` connections may open one more, where `most` are allowed.
 
     Nobody gets more than are still free: each who takes all leaves half of what was there to the next.
     """
@@ -104,7 +104,7 @@ def has_place(own: int, there: int, most: int) -> bool:
 
 
 def names_in_words(host: str, name: str | None) -> str:
-    """Under what the page is served."""
+    """Names under which the page is served, as text."""
     listed = ["127.0.0.1", "localhost"] if is_local(host) else ["its address", "localhost", "the name of this machine"]
     return ", ".join(listed + ([name] if name else [])) + " (flexapod view --name NAME adds one)"
 
@@ -123,6 +123,6 @@ def _own_names() -> tuple[str, ...]:
 
 
 def address(host: str, port: int) -> str:
-    """What to type into the browser on this machine."""
+    """Address of the page for a browser on this machine."""
     shown = "localhost" if host in ("0.0.0.0", "::") else host
     return f"http://{f'[{shown}]' if ':' in shown else shown}:{port}"

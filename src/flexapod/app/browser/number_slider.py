@@ -11,7 +11,7 @@ from viser import ClientHandle, GuiDropdownHandle, GuiSliderHandle
 from flexapod.app.browser import markup
 from flexapod.app.browser.background import Threads
 from flexapod.app.browser.document import TypedQuantity, quantity
-from flexapod.app.browser.text_fields import TypedText, by_user, plain, written
+from flexapod.app.browser.text_fields import TypedText, entry_value, plain, user_callback
 from flexapod.model.file.fields import NotedField
 
 FIRST = ("leg.piston.diameter", "payload.mass", "actuator.EI")
@@ -20,7 +20,7 @@ DIGITS = 12  # of a number that is turned
 _NONE: tuple[str, ...] = ("",)
 
 
-class Knob:
+class NumberSlider:
     """A choice of a number and a slider from zero to twice its value.
 
     `turned`, `entered` are called with key and value to write while the slider is dragged, and where a number is typed;
@@ -110,21 +110,21 @@ class Knob:
                 order=2,
             )
         slider.precision = min(100, max(0, DIGITS - math.floor(math.log10(abs(reach)))))
-        slider.on_update(by_user(lambda: self._turned(field.key, slider.value)))
+        slider.on_update(user_callback(lambda: self._turned(field.key, slider.value)))
         self._slider = slider
 
     def _turned(self, key: str, number: float) -> None:
         field, self._typing = self._fields.get(key), False
         now = quantity(field.value) if field is not None else None
         if now is not None:
-            self._slid(key, TypedQuantity(float(f"{number:.{DIGITS}g}"), now.unit).written())
+            self._slid(key, TypedQuantity(float(f"{number:.{DIGITS}g}"), now.unit).toml_value())
 
     def _typed(self, text: str, left: bool) -> None:
         field = self._fields.get(self._choice.value)
         now = quantity(field.value) if field is not None else None
         self._typing = not left
         if field is not None:
-            self._entered(field.key, written(text, now.unit if now is not None else ""))
+            self._entered(field.key, entry_value(text, now.unit if now is not None else ""))
 
     def _left(self, empty: bool) -> None:
         self._typing = False

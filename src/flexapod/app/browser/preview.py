@@ -25,14 +25,14 @@ def coarse(study: model.Study | model.ActuatorStudy) -> model.Study | model.Actu
     return study if own is not None and own >= TOLERANCE else model.override(study, tolerance=TOLERANCE)
 
 
-def is_quick(study: model.Study | model.ActuatorStudy) -> bool:
-    """Whether the fast answer comes within a second or two: from what is asked for, however busy the machine is."""
+def is_preview_fast(study: model.Study | model.ActuatorStudy) -> bool:
+    """Test whether the fast answer takes a second or two, from the size of the study, not the load of the machine."""
     instants = study.duration / study.simulation.output_step
     return instants * max(1, study.simulation.lateral_shapes) <= MOST
 
 
 def preview_words(study: model.Study | model.ActuatorStudy, data: Dataset) -> str:
-    """What to say of a result at another tolerance than its study asks for; "" for one at the study's own."""
+    """Text on a result at another tolerance than its study asks for; "" for one at the study's own."""
     used, own = data.attrs.get("tolerance"), study.simulation
     if used == own.tolerance:
         return ""

@@ -14,7 +14,16 @@ from flexapod.app.browser.legend import rgb
 from flexapod.common.arrays import Array
 from flexapod.common.quantities import number, text
 from flexapod.kinematics.rotations import exponential, quaternion
-from flexapod.output.scene.geometry import ROUNDING, Instant, orientation, plate, round_down, strip, tube, tube_faces
+from flexapod.output.scene.geometry import (
+    ROUNDING,
+    Instant,
+    orientation,
+    path_segments,
+    plate,
+    round_down,
+    tube,
+    tube_faces,
+)
 from flexapod.output.scene.skeleton import STATIONS, Scene, Skeleton
 from flexapod.output.scene.style import colors_of_legs
 
@@ -244,8 +253,8 @@ class Deviation:
 
     def paths(self, rigid: Array, flexible: Array) -> None:
         """Draw both paths (T, 3), the flexible one with its deviation magnified."""
-        self._rigid.points = strip(rigid).astype(np.float32)
-        self._bent.points = strip(flexible).astype(np.float32)
+        self._rigid.points = path_segments(rigid).astype(np.float32)
+        self._bent.points = path_segments(flexible).astype(np.float32)
 
     def draw(self, now: Instant) -> None:
         """The arrow from the rigid to the drawn point; in words the true length."""

@@ -58,7 +58,7 @@ class RobotScene(PageScene):
 
     @property
     def points(self) -> tuple[str, ...]:
-        """As `PageScene.points`."""
+        """Points whose deviation the result has: "tool" first where it is apart, and "com"."""
         return ("tool", "com") if self._motion is not None and self._motion.tool_apart else ("com",)
 
     @property
@@ -68,7 +68,7 @@ class RobotScene(PageScene):
         return np.array([rgb(color) for color in colors_of_legs(count)])
 
     def show_study(self, study: model.Study) -> None:
-        """As `PageScene.show_study`."""
+        """Draw the rigid robot of a study at the instant that was shown; no result is shown any more."""
         with self.lock:
             if self._closed:
                 return
@@ -90,30 +90,30 @@ class RobotScene(PageScene):
                 self._names = api.replaces(self._names)
                 self._only()
                 start = kinematics.poses(study.robot, study.motion, [self.time])
-                drawn.robot.draw(robot.at(start.position[0], start.rotation[0]), self._plain)
+                drawn.robot.draw(robot.scene_at(start.position[0], start.rotation[0]), self._plain)
                 self._draws(f"the rigid robot at {number(self.time, 4)} s; no result yet", STRAIGHT)
             if first:
                 self._look(np.array(_EYES[study.robot.plane]))
 
     def show_pose(self, pose: PoseLike) -> None:
-        """As `PageScene.show_pose`; a pose as for `flexapod.modes`, in reach or not; InputError for no pose."""
+        """Draw the undeformed robot at a pose as for `flexapod.modes`, in reach or not; InputError for no pose."""
         with self.lock:
             if self._drawn is None:
                 return
             path = as_pose(self._drawn.study.robot, pose, check=False)
-            points = self._drawn.skeleton.at(path.position[0], path.rotation[0])
+            points = self._drawn.skeleton.scene_at(path.position[0], path.rotation[0])
             with self.client.atomic():
                 self._only()
                 self._drawn.robot.draw(points, self._plain)
                 self._draws(f"the undeformed robot at {pose_words(pose)}", STRAIGHT)
 
     def set_time(self, time: float) -> None:
-        """As `PageScene.set_time`."""
+        """Draw robot, rigid ghost and deviation at the stored instant nearest to `time` [s]."""
         with self.lock:
             if self._drawn is None or self._motion is None:
                 return
             self.time: float = float(time)
-            now = self._motion.at(time, self.scale, self.point)
+            now = self._motion.instant_at(time, self.scale, self.point)
             with self.client.atomic():
                 self._only(*OF_RESULTS)
                 self._drawn.robot.draw(now.flexible, self._leg_colors(now.index))
@@ -123,7 +123,7 @@ class RobotScene(PageScene):
                 self._draws("")
 
     def show_mode(self, modes: Dataset, mode: int, amplitude: float, phase: float, where: str = "") -> None:
-        """As `PageScene.show_mode`."""
+        """Draw a mode of the robot, `amplitude` as a share of the robot's size."""
         with self.lock:
             if self._drawn is None:
                 return
@@ -137,7 +137,7 @@ class RobotScene(PageScene):
                 self._draws(f"mode {mode}{where and f' at {where}'}", mode_note(size))
 
     def legend(self) -> str:
-        """As `PageScene.legend`, with the values at the time that is shown."""
+        """Legend of the legs' colours as HTML, with the values at the time that is shown."""
         with self.lock:
             if self._motion is None or self.drawn:
                 return plain_legend(len(self._plain))
@@ -146,13 +146,13 @@ class RobotScene(PageScene):
             return plain_legend(len(self._plain)) if self._colors is None else self._colors.html(index)
 
     def colour_by(self, quantity: str) -> None:
-        """As `PageScene.colour_by`."""
+        """Colour the legs by "force", "stroke margin", "bending", or by their number ("plain")."""
         with self.lock:
             self._colors = None
             super().colour_by(quantity)
 
     def close(self) -> None:
-        """As `PageScene.close`."""
+        """Drop study, result and colours; nothing is drawn any more."""
         with self.lock:
             super().close()
             self._motion = self._colors = self._at_rest = self._drawn = None
@@ -176,12 +176,12 @@ class RobotScene(PageScene):
             self._drawn.deviation.paths(*self._motion.paths(self.scale, self.point))
 
     def _whole(self) -> tuple[Array, Array]:
-        """As `PageScene._whole`: at home and at instants of the motion; payload and tool have labels."""
+        """Points (n, 3) [m] of the robot at home and along its motion, and those of payload and tool with labels."""
         if self._drawn is None:
             return _NOWHERE, _NOWHERE
         study, skeleton = self._drawn.study, self._drawn.skeleton
         found = kinematics.poses(study.robot, study.motion, np.linspace(0.0, study.duration, INSTANTS))
-        seen = [skeleton.at(x, R) for x, R in zip(found.position, found.rotation, strict=True)] + [skeleton.home]
+        seen = [skeleton.scene_at(x, R) for x, R in zip(found.position, found.rotation, strict=True)] + [skeleton.home]
         labelled = [place for scene in seen for place in (scene.com, scene.centre + scene.rotation @ skeleton.tool)]
         return np.vstack([*(scene.points for scene in seen), skeleton.home.base * LABELS]), np.array(labelled)
 

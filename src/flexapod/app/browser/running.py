@@ -1,6 +1,6 @@
-"""A simulation in a thread of its own; as many at once as there are cores, whoever asked for them.
+"""Simulations of all sessions in threads of their own, as many at once as there are cores, and their results.
 
-Results of all visitors together: how much they may take, and whose goes where there is no more room.
+Results of all clients share one limit of memory; beyond it the oldest is dropped.
 """
 
 from __future__ import annotations
@@ -27,18 +27,18 @@ LONG = 10.0  # from here on all are alike: the longest wait of a long simulation
 
 
 @dataclass(eq=False)
-class Turn:
-    """What one simulation has had of the cores so far [s], and since when it has waited or computed."""
+class CoreUsage:
+    """Time that one simulation has `used` of a core [s], and the instant `since` which it waits or computes."""
 
     used: float = 0.0
     since: float = field(default_factory=time.monotonic)
 
     def rank(self, now: float) -> float:
-        """The lowest is first: who has computed little, or has waited for long."""
+        """Rank in the queue, lowest first: simulations that computed little or waited for long."""
         return min(self.used, LONG) - (now - self.since)
 
 
-class Cores:
+class CorePool:
     """Places for simulations, shared by all sessions of a server: `count`, else the cores that this process may use.
 
     Who has computed least comes first, so that short simulations pass long ones; long ones take turns.
@@ -47,10 +47,10 @@ class Cores:
     def __init__(self, count: int | None = None) -> None:
         self._free = count or local_cores()
         self._changed = threading.Condition()
-        self._queue: list[Turn] = []
+        self._queue: list[CoreUsage] = []
 
-    def take(self, turn: Turn, cancelled: Callable[[], bool], waits: Callable[[], None]) -> bool:
-        """Wait for a place for `turn`; False where it was `cancelled` meanwhile. Who has one gives it back.
+    def acquire(self, turn: CoreUsage, cancelled: Callable[[], bool], waits: Callable[[], None]) -> bool:
+        """Wait for a core for `turn`; False where it was `cancelled` meanwhile. The caller gives the core back.
 
         `wake` makes those who wait look again whether they are cancelled; `waits` is called once if it takes a while.
         """
@@ -78,15 +78,15 @@ class Cores:
                 self._queue.remove(turn)
                 self._changed.notify_all()
 
-    def give_back(self, turn: Turn) -> None:
+    def release(self, turn: CoreUsage) -> None:
         """Leave a place that was taken."""
         with self._changed:
             turn.used += time.monotonic() - turn.since
             self._free += 1
             self._changed.notify_all()
 
-    def is_wanted(self, turn: Turn) -> bool:
-        """Whether somebody who has a place should let another one, who waits, compute first."""
+    def should_yield(self, turn: CoreUsage) -> bool:
+        """Test whether a simulation that has a core should let one that waits compute first."""
         with self._changed:
             now = time.monotonic()
             spent = now - turn.since
@@ -95,11 +95,11 @@ class Cores:
             return self._first().rank(now) < min(turn.used + spent, LONG)
 
     def wake(self) -> None:
-        """Those who wait look whether they are cancelled."""
+        """Make waiting simulations check whether they are cancelled."""
         with self._changed:
             self._changed.notify_all()
 
-    def _first(self) -> Turn:
+    def _first(self) -> CoreUsage:
         now = time.monotonic()
         return min(self._queue, key=lambda turn: turn.rank(now))
 
@@ -108,19 +108,19 @@ REPORTS = 0.1  # least time between two reports of progress [s]
 
 
 class Watcher(Protocol):
-    """Who is told how a simulation goes, in the simulation's thread."""
+    """Observer of a simulation, called in the simulation's thread."""
 
-    def waits(self, run: Run) -> None:
-        """No core has been free for a while."""
+    def on_wait(self, run: Run) -> None:
+        """Take notice that no core has been free for a while."""
 
-    def begins(self, run: Run) -> None:
-        """It has a core."""
+    def on_begin(self, run: Run) -> None:
+        """Take notice that the simulation has a core and begins."""
 
-    def progress(self, run: Run, share: float) -> None:
-        """How much is done (0 to 1), at most ten times a second."""
+    def on_progress(self, run: Run, share: float) -> None:
+        """Take notice of the share that is done (0 to 1), at most ten times a second."""
 
-    def ended(self, run: Run, found: Dataset | BaseException) -> None:
-        """Once, at the end: the result or what ended it; not where it was cancelled before it began."""
+    def on_end(self, run: Run, found: Dataset | BaseException) -> None:
+        """Take the result or the exception, once, at the end; not where the run was cancelled before it began."""
 
 
 class Run:
@@ -129,11 +129,11 @@ class Run:
     study: model.Study | model.ActuatorStudy
 
     def __init__(
-        self, study: model.Study | model.ActuatorStudy, threads: Threads, cores: Cores, watcher: Watcher
+        self, study: model.Study | model.ActuatorStudy, threads: Threads, cores: CorePool, watcher: Watcher
     ) -> None:
         self.study, self._threads, self._cores, self._watcher = study, threads, cores, watcher
         self._cancelled = threading.Event()
-        self._turn, self._has_place = Turn(), False
+        self._turn, self._has_place = CoreUsage(), False
         self._reported = 0.0
 
     def start(self) -> None:
@@ -141,36 +141,36 @@ class Run:
         self._threads.start("simulation", self._run)
 
     def cancel(self) -> None:
-        """Ask it to stop: at once where it waits, else at the next chunk of steps."""
+        """Ask the run to stop: at once where it waits, else at the next chunk of steps."""
         self._cancelled.set()
         self._cores.wake()
 
     @property
-    def cancelled(self) -> bool:
-        """Whether it was asked to stop."""
+    def is_cancelled(self) -> bool:
+        """True once the run was asked to stop."""
         return self._cancelled.is_set()
 
     def _run(self) -> None:
-        if not self._cores.take(self._turn, self._cancelled.is_set, lambda: self._watcher.waits(self)):
+        if not self._cores.acquire(self._turn, self._cancelled.is_set, lambda: self._watcher.on_wait(self)):
             return
         self._has_place = True
         try:
-            self._watcher.begins(self)
+            self._watcher.on_begin(self)
             found = self._computed()
         finally:
             self._give_back()
-        self._watcher.ended(self, found)
+        self._watcher.on_end(self, found)
 
     def _give_back(self) -> None:
         if self._has_place:
             self._has_place = False
-            self._cores.give_back(self._turn)
+            self._cores.release(self._turn)
 
     def _let_others_compute(self) -> None:
-        """Between two chunks of steps: give the place to who has computed less, and wait for the next one."""
-        if self._cores.is_wanted(self._turn):
+        """Yield the core, between two chunks of steps, to a run that has computed less, and wait for the next."""
+        if self._cores.should_yield(self._turn):
             self._give_back()
-            self._has_place = self._cores.take(self._turn, self._cancelled.is_set, _nothing)
+            self._has_place = self._cores.acquire(self._turn, self._cancelled.is_set, _nothing)
 
     def _computed(self) -> Dataset | BaseException:
         from flexapod import analysis as study
@@ -182,15 +182,15 @@ class Run:
 
     def _progress(self, reached: float, duration: float) -> None:
         self._let_others_compute()
-        if self.cancelled:
+        if self.is_cancelled:
             raise KeyboardInterrupt  # a simulation keeps what it has and ends as after Ctrl-C
         if time.monotonic() - self._reported > REPORTS:
             self._reported = time.monotonic()
-            self._watcher.progress(self, min(1.0, reached / duration) if duration > 0 else 1.0)
+            self._watcher.on_progress(self, min(1.0, reached / duration) if duration > 0 else 1.0)
 
 
 def _nothing() -> None:
-    """Who has shown progress does not say that it waits: its bar stands."""
+    """Report nothing: a run that has shown progress does not say that it waits, its bar stands."""
 
 
 MOST_RESULTS = 500e6
@@ -200,13 +200,13 @@ SHARE = 0.25
 
 
 class Holder(Protocol):
-    """Who has a result: a session."""
+    """Owner of a result: a session."""
 
     def forget(self, data: Dataset) -> None:
         """Drop this result, wherever it is, if it is still there."""
 
 
-class KeptResults:
+class ResultMemory:
     """The results of all sessions, the oldest first; `most` bytes, of which the newest may take all, or more alone.
 
     `released` is called when results have been dropped.
@@ -220,7 +220,7 @@ class KeptResults:
 
     @property
     def size(self) -> int:
-        """What the results take that are still there [bytes]."""
+        """Memory of all results that still exist [bytes]."""
         with self._lock:
             return self._size()
 

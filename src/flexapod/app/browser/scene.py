@@ -1,4 +1,4 @@
-"""What both scenes share: one user's scene, what can be hidden, the factor on deflections, who moves it."""
+"""Base of both scenes: one user's scene, parts to hide, factor on deflections, driver of its motion."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from flexapod.common.quantities import number, text
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from flexapod.output.scene.geometry import DrawnMotion, RobotMotion
+    from flexapod.output.scene.geometry import BeamMotion, RobotMotion
 
 STRAIGHT = "Drawn without deflections."
 
@@ -67,7 +67,7 @@ class PageScene(ABC):
 
     @property
     def points(self) -> tuple[str, ...]:
-        """Whose deviation the result has, the one that matters most first."""
+        """Points whose deviation the result has, the one that matters most first."""
         return ("com",)
 
     @abstractmethod
@@ -108,7 +108,7 @@ class PageScene(ABC):
 
     @abstractmethod
     def legend(self) -> str:
-        """What the colours mean, as HTML."""
+        """Legend of the colours, as HTML."""
 
     def set_scale(self, factor: float | None) -> None:
         """Draw deflections `factor` times larger; None: the automatic factor."""
@@ -129,14 +129,14 @@ class PageScene(ABC):
                 self.set_time(self.time)
 
     def picture_words(self) -> str:
-        """What is drawn, and by how much deflections are drawn larger, in a few words."""
+        """Caption of the scene: a few words on what is drawn and how many times larger deflections are."""
         if self.drawn:
             return self.drawn
         larger = "in true size" if self.scale == 1 else f"{number(self.scale, 4)} times larger"
         return f"the motion, deflections {larger}"
 
     def scale_words(self) -> str:
-        """How large deflections are drawn, in a sentence."""
+        """Sentence on how large deflections are drawn."""
         if self.drawn:
             return self._note
         if self.scale == 1:
@@ -171,25 +171,25 @@ class PageScene(ABC):
         return handle
 
     def _draws(self, what: str, note: str = "") -> None:
-        """Remember what is drawn and a sentence on its size; who shows that in words is told of a change."""
+        """Remember what is drawn and a sentence on its size, and report a change to the caption."""
         if (what, note) != (self.drawn, self._note):
             self.drawn, self._note = what, note
             self.told()
 
     def _only(self, *parts: str) -> None:
-        """Of the parts that show a result, draw these alone, unless the user hides them."""
+        """Show, of the parts that show a result, these alone, unless the user hides them."""
         self._now = parts
         for part in OF_RESULTS:
             self.visible(part, self._shown[part])
 
     def _begin(self) -> None:
-        """Before the nodes of another study take the place of those with the same names: no flicker while dragging."""
+        """Forget result and nodes before those of another study replace them by name: no flicker while dragging."""
         self.data = None
         for handles in self._parts.values():
             handles.clear()
 
     def _light(self) -> None:
-        """Softer than the page's own light, under which all colours are pale."""
+        """Light the scene more softly than the page's own light, under which all colours are pale."""
         scene = self.client.scene
         scene.configure_default_lights(enabled=False)
         scene.configure_environment_map(None)
@@ -197,7 +197,7 @@ class PageScene(ABC):
         scene.add_light_hemisphere("/light_around", ground_color=(150, 150, 150), intensity=1.6)
 
     @abstractmethod
-    def _take(self, data: Dataset | None) -> RobotMotion | DrawnMotion | None:
+    def _take(self, data: Dataset | None) -> RobotMotion | BeamMotion | None:
         """Take the arrays of a result, or none, in place of those before."""
 
     @abstractmethod
@@ -220,9 +220,9 @@ class PageScene(ABC):
 
 
 def mode_note(size: float) -> str:
-    """How large a mode is drawn; `size` of its largest displacement [m]."""
+    """Sentence on how large a mode is drawn; `size` of its largest displacement [m]."""
     return f"A mode has no size of its own: its largest displacement is drawn as {text(size, 'm')}."
 
 
 def _nothing() -> None:
-    """Nobody is told."""
+    """Report nothing."""

@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Any, cast
 
 import viser
 
-from flexapod.app.browser.access import Door
-from flexapod.app.browser.background import LOG, Latest, Threads
-from flexapod.app.browser.client_limits import Pool
-from flexapod.app.browser.running import Cores, KeptResults
-from flexapod.common.lazy_imports import loaded
-from flexapod.common.resources import collect, few_arenas
+from flexapod.app.browser.access import AccessControl
+from flexapod.app.browser.background import LOG, Debouncer, Threads
+from flexapod.app.browser.client_limits import CallbackPool
+from flexapod.app.browser.running import CorePool, ResultMemory
+from flexapod.common.lazy_imports import load_module
+from flexapod.common.resources import limit_arenas, release_memory
 
 if TYPE_CHECKING:
-    from flexapod.app.browser.client_limits import Visitor
+    from flexapod.app.browser.client_limits import ClientConnection
     from flexapod.app.browser.header import StudySource
     from flexapod.app.browser.session import Session
 
@@ -43,17 +43,17 @@ class View:
     def __init__(self, source: StudySource, host: str, port: int, name: str | None = None) -> None:
         for remark in (GONE, GARBLED):
             warnings.filterwarnings("ignore", message=remark)
-        few_arenas()
-        self._source, self._cores = source, Cores()
-        self._results = KeptResults(released=lambda: self._leftovers.request(SETTLED))
+        limit_arenas()
+        self._source, self._cores = source, CorePool()
+        self._results = ResultMemory(released=lambda: self._leftovers.request(SETTLED))
         self._sessions: dict[int, Session] = {}
         self._lock = threading.Lock()
-        self._leftovers = Latest(Threads(lambda error: self._fault(None, error)), collect)
-        door = Door(host, name, lambda: self._leftovers.request(SETTLED))
+        self._leftovers = Debouncer(Threads(lambda error: self._fault(None, error)), release_memory)
+        door = AccessControl(host, name, lambda: self._leftovers.request(SETTLED))
         with contextlib.redirect_stdout(io.StringIO()):  # viser announces itself; the command says where it listens
-            with door.before():
+            with door.guard_server():
                 self._server = _Server(host=host, port=port, label="flexapod", verbose=False)
-        self._server._thread_executor = Pool(self._fault, self._visitor)
+        self._server._thread_executor = CallbackPool(self._fault, self._visitor)
         self._server.get_event_loop().set_exception_handler(_unhandled)
         self.port: int = self._server.get_port()
         self._server.gui.configure_theme(
@@ -96,8 +96,8 @@ class View:
         if session is not None:
             session.close()
 
-    def _visitor(self, client_id: int) -> Visitor | None:
-        return cast("Visitor | None", self._server._websock_server._live_connections.get(client_id))
+    def _visitor(self, client_id: int) -> ClientConnection | None:
+        return cast("ClientConnection | None", self._server._websock_server._live_connections.get(client_id))
 
     def _fault(self, client_id: int | None, error: BaseException) -> None:
         with self._lock:
@@ -121,10 +121,10 @@ def _load() -> None:
         "flexapod.app.browser.session",
         *(f"flexapod.app.browser.{panel}_panel" for panel in ("time", "modes")),
     ):
-        loaded(name)
-    loaded("flexapod.analysis.simulation")
-    loaded("xarray")
-    loaded("dask.base")  # xarray asks it for its types; of two threads that import it at once one gets half of it
+        load_module(name)
+    load_module("flexapod.analysis.simulation")
+    load_module("xarray")
+    load_module("dask.base")  # xarray asks it for its types; of two threads that import it at once one gets half of it
 
 
 def _unhandled(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:

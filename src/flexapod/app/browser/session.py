@@ -1,6 +1,6 @@
-"""One person's state: study, results, panels, scene. Nothing of it is shared with anybody else.
+"""Session of one client: study, results, panels, scene, none of it shared with other clients.
 
-What a browser says of its inputs, looked at before viser takes it: only values that the input can have.
+Values that a browser sends for its inputs are checked before viser takes them.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ from viser import (
 from flexapod import model
 from flexapod.app.browser import markup
 from flexapod.app.browser.actuator_scene import ActuatorScene
-from flexapod.app.browser.background import LOG, Latest, Threads
+from flexapod.app.browser.background import LOG, Debouncer, Threads
 from flexapod.app.browser.document import Document, Edit, read
 from flexapod.app.browser.files_panel import FilesPanel
-from flexapod.app.browser.header import Header, Picture, StudySource
+from flexapod.app.browser.header import Header, SceneCaption, StudySource
 from flexapod.app.browser.markup import run_script
-from flexapod.app.browser.preview import coarse, is_quick, preview_words
+from flexapod.app.browser.preview import coarse, is_preview_fast, preview_words
 from flexapod.app.browser.robot_scene import RobotScene
-from flexapod.app.browser.running import Cores, KeptResults, Run
+from flexapod.app.browser.running import CorePool, ResultMemory, Run
 from flexapod.app.browser.study_panel import StudyPanel
-from flexapod.app.browser.uploads import Sent, refuse_length
+from flexapod.app.browser.uploads import UploadFolder, refuse_length
 from flexapod.common.errors import FlexapodError
-from flexapod.output.text.parts import warnings_of
+from flexapod.output.text.parts import warning_lines
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -66,7 +66,7 @@ def limit_inputs(client: ClientHandle) -> None:
 
 
 def _problem(handle: Any, value: object) -> str:
-    """Why an input cannot have a value; "" where it can."""
+    """Reason why an input cannot have a value; "" where it can."""
     if isinstance(handle, GuiSliderHandle):
         right = isinstance(value, int | float) and not isinstance(value, bool)
         return "" if right else "a slider takes a number"
@@ -88,7 +88,7 @@ QUIET = 0.15  # time without a change after which the study is simulated [s]
 
 
 class Session:
-    """What one client sees and does, from `source` on.
+    """State and actions of one client, from `source` on.
 
     Simulations of all sessions share the `cores` of the server, their results the room that `results` has.
 
@@ -97,13 +97,13 @@ class Session:
 
     client: ClientHandle
 
-    def __init__(self, client: ClientHandle, source: StudySource, cores: Cores, results: KeptResults) -> None:
+    def __init__(self, client: ClientHandle, source: StudySource, cores: CorePool, results: ResultMemory) -> None:
         self.client, self._cores, self._results = client, cores, results
-        self._threads, self._sent = Threads(self.fault), Sent()
+        self._threads, self._sent = Threads(self.fault), UploadFolder()
         self.study, self.data = source.study, source.data
         self._lock, self._closed = threading.RLock(), False
         self._run: Run | None = None
-        self._settling = Latest(self._threads, self._settled)
+        self._settling = Debouncer(self._threads, self._settled)
         self._unsettled = False
         self._valid = True
         self._panels: list[Any] = []
@@ -119,7 +119,7 @@ class Session:
 
     @property
     def busy(self) -> bool:
-        """Whether a simulation is running."""
+        """True while a simulation is running."""
         return self._run is not None
 
     def open(self, source: StudySource) -> None:
@@ -131,7 +131,7 @@ class Session:
             self._drop_panels()
             self.study, self.data, self._valid = source.study, source.data, True
             self._results.drop(self)
-            self._build(source.document.beside(self._sent.folder))
+            self._build(source.document.with_folder(self._sent.folder))
             self.time_panel.show_data(None)
             self.modes_panel.show_study(self.study)
             self.budget_panel.show(self.study)
@@ -180,7 +180,7 @@ class Session:
                     self._show_answer(self.data, markup.block("Cancelled. What was there stays.", "warning"))
 
     def fault(self, error: BaseException) -> None:
-        """Tell this person, and the log, what went wrong; the session goes on."""
+        """Report to this client, and to the log, what went wrong; the session goes on."""
         known = isinstance(error, FlexapodError)
         html = markup.error_html(error) if known else markup.fault_html(error)
         if not known or self.header is None:
@@ -192,22 +192,22 @@ class Session:
         else:
             self._fault(html)
 
-    def waits(self, run: Run) -> None:
-        """As `Watcher.waits`."""
+    def on_wait(self, run: Run) -> None:
+        """Report that the run waits for a free core."""
         self._tell(run, markup.block("Waiting for a free core: others are simulating on this machine.", "soft"))
 
-    def begins(self, run: Run) -> None:
-        """As `Watcher.begins`."""
+    def on_begin(self, run: Run) -> None:
+        """Report that the run has a core and begins."""
         self._tell(run, markup.block("Simulating.", "soft"))
 
-    def progress(self, run: Run, share: float) -> None:
-        """As `Watcher.progress`."""
+    def on_progress(self, run: Run, share: float) -> None:
+        """Show the share of the run that is done (0 to 1)."""
         with self._lock:
             if run is self._run and not self._closed and self.header is not None:
                 self.header.progress(share)
 
-    def ended(self, run: Run, found: Dataset | BaseException) -> None:
-        """As `Watcher.ended`."""
+    def on_end(self, run: Run, found: Dataset | BaseException) -> None:
+        """Show the result of the run, or the error that ended it."""
         with self._lock:
             if run is not self._run or self._closed:
                 return  # cancelled, or another one was started since
@@ -257,7 +257,7 @@ class Session:
         self.header = Header(self.client, _name(document), self.simulate, self.cancel)
         self.scene: Any = RobotScene(self.client) if isinstance(self.study, model.Study) else ActuatorScene(self.client)
         self.scene.show_study(self.study)  # first of all: it is what takes the browser longest
-        self._picture = Picture(gui, self._back, self.scene.reset_view)
+        self._picture = SceneCaption(gui, self._back, self.scene.reset_view)
         tabs = gui.add_tab_group()
         with tabs.add_tab("Time"):
             self.time_panel: TimePanel = TimePanel(self.client, self.scene, self._threads, self._point_chosen)
@@ -318,7 +318,7 @@ class Session:
             if not self._unsettled:
                 return
             self._unsettled = False
-            if is_quick(self.study):
+            if is_preview_fast(self.study):
                 self._simulate(preview=True)
             else:
                 self._say(markup.block("Changed: press Simulate for the flexible result.", "soft"))
@@ -345,7 +345,7 @@ class Session:
             self.header.answer(first + _answer(data, self.scene.point) + _preview(self.study, data))
 
     def _drawn(self) -> None:
-        """The scene shows something else: the words about it follow."""
+        """Update the caption after the scene has changed."""
         self._picture.tell(self.scene)
         self.time_panel.follow()
 
@@ -389,4 +389,4 @@ def _answer(data: Dataset, point: str) -> str:
     if data.attrs["partial"]:
         reached = f"Stopped at t = {float(data.time[-1]):.6g} s: {data.attrs.get('failure', '')}"
         html += markup.block(reached, "error")
-    return html + "".join(markup.block(f"Warning: {line}", "warning") for line in warnings_of(data))
+    return html + "".join(markup.block(f"Warning: {line}", "warning") for line in warning_lines(data))

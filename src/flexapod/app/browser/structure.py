@@ -10,7 +10,16 @@ from typing import Any
 
 import tomlkit
 
-from flexapod.app.browser.document import Document, TypedQuantity, bare, blocks, checked, quantity, renamed, replaced
+from flexapod.app.browser.document import (
+    Document,
+    TypedQuantity,
+    check_toml,
+    quantity,
+    rename_table,
+    replace_lines,
+    strip_comments,
+    table_spans,
+)
 from flexapod.model.file.fields import NotedField
 
 STARTS: dict[str, dict[str, object]] = {"load": {"wrench": [0] * 6}, "initial": {"start": "equilibrium"}}
@@ -23,7 +32,7 @@ _MANY = dict(enumerate("two three four five six seven eight".split(), start=2))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Offer:
+class StructureEdit:
     """A change that a button makes.
 
     `place`: the folder that shows it, ``[motion]``, "" where there is none yet; `inside`: the folder in that one;
@@ -39,8 +48,8 @@ class Offer:
     rows: str = ""
 
 
-def offers(document: Document) -> list[Offer]:
-    """What can be added to a study file and taken out of it; nothing for a text that is not TOML."""
+def structure_edits(document: Document) -> list[StructureEdit]:
+    """Changes that add parts to a study file or take them out; none for a text that is not TOML."""
     try:
         data = tomllib.loads(document.text)
     except tomllib.TOMLDecodeError:
@@ -51,28 +60,28 @@ def offers(document: Document) -> list[Offer]:
     return found
 
 
-def _motion(motion: object) -> list[Offer]:
+def _motion(motion: object) -> list[StructureEdit]:
     if not isinstance(motion, dict):
         return []
     if motion.get("type") == "combined" and "amplitudes" not in motion:
         hint = "The axes that move; others are added below"
         start = {"roll": "1 deg"}
-        return [_offer("[motion]", "Add amplitudes", hint, lambda d: d.changed("motion.amplitudes", start))]
+        return [_offer("[motion]", "Add amplitudes", hint, lambda d: d.with_value("motion.amplitudes", start))]
     if motion.get("type") != "waypoints":
         return []
     points = motion.get("points", [])
     if not isinstance(points, list) or not all(isinstance(point, dict) for point in points):
         return []
     hint = "A copy of the last point at a later time"
-    found = [Offer(place="[motion]", label="Add a point", hint=hint, apply=_with_point, rows=POINTS)]
+    found = [StructureEdit(place="[motion]", label="Add a point", hint=hint, apply=_with_point, rows=POINTS)]
     if len(points) > 1:
         found += [_without_offer(place) for place in range(len(points))]
     return found
 
 
-def _without_offer(place: int) -> Offer:
+def _without_offer(place: int) -> StructureEdit:
     name = f"points[{place + 1}]"
-    return Offer(
+    return StructureEdit(
         place="[motion]",
         inside=name,
         label=f"Take out {name}",
@@ -82,7 +91,7 @@ def _without_offer(place: int) -> Offer:
     )
 
 
-def _legs(data: dict[str, Any]) -> list[Offer]:
+def _legs(data: dict[str, Any]) -> list[StructureEdit]:
     leg, count = data.get("leg"), _count(data)
     if isinstance(leg, dict) and count > 1:
         many = _MANY.get(count, str(count))
@@ -102,20 +111,20 @@ def _count(data: dict[str, Any]) -> int:
     return sum(map(int, counts)) if all(count.isdecimal() for count in counts) else 0
 
 
-def _tables(data: dict[str, Any]) -> list[Offer]:
+def _tables(data: dict[str, Any]) -> list[StructureEdit]:
     found = []
     for name, start in STARTS.items():
         if name in data:
             label, hint = f"Take out [{name}]", "Without this table"
-            found.append(_offer(f"[{name}]", label, hint, lambda d, n=name: d.without(n)))
+            found.append(_offer(f"[{name}]", label, hint, lambda d, n=name: d.without_key(n)))
         else:
             hint = "A table that the file leaves out"
             found.append(_offer("", f"Add [{name}]", hint, lambda d, n=name, s=start: _with_table(d, n, s)))
     return found
 
 
-def _offer(place: str, label: str, hint: str, apply: Callable[[Document], Document]) -> Offer:
-    return Offer(place=place, label=label, hint=hint, apply=apply)
+def _offer(place: str, label: str, hint: str, apply: Callable[[Document], Document]) -> StructureEdit:
+    return StructureEdit(place=place, label=label, hint=hint, apply=apply)
 
 
 def _with_table(document: Document, name: str, values: dict[str, object]) -> Document:
@@ -123,40 +132,40 @@ def _with_table(document: Document, name: str, values: dict[str, object]) -> Doc
     table = tomlkit.table()
     table.update(values)
     tree[name] = table
-    return document.saying(tree.as_string())
+    return document.with_text(tree.as_string())
 
 
 def _with_point(document: Document) -> Document:
-    """One more waypoint: the pose of the last, as much later as that is after the one before."""
+    """Document with one more waypoint: the pose of the last, as much later as that is after the one before."""
     expected = tomllib.loads(document.text)
     points = expected["motion"].setdefault("points", [])
     if not points:
-        return document.changed("motion.points", [{"time": "1 s", "roll": "1 deg"}])
+        return document.with_value("motion.points", [{"time": "1 s", "roll": "1 deg"}])
     last = {**points[-1], "time": _later(points)}
     points.append(last)
-    found = blocks(document.text, POINTS)
+    found = table_spans(document.text, POINTS)
     if found:
         added = ["", f"[[{POINTS}]]", *tomlkit.dumps(last).splitlines()]
-        text = replaced(document.text, found[-1][1], found[-1][1], added)
+        text = replace_lines(document.text, found[-1][1], found[-1][1], added)
     else:
         tree: Any = tomlkit.parse(document.text)
         row = tomlkit.inline_table()
         row.update(last)
         tree["motion"]["points"].append(row)
         text = tree.as_string()
-    return document.saying(checked(text, expected, POINTS))
+    return document.with_text(check_toml(text, expected, POINTS))
 
 
 def _without_point(document: Document, place: int) -> Document:
-    """Without one waypoint, the first is 0."""
+    """Document without one waypoint, the first is 0."""
     expected = tomllib.loads(document.text)
     del expected["motion"]["points"][place]
-    found = blocks(document.text, POINTS)
+    found = table_spans(document.text, POINTS)
     if not found:
-        text = document.without(f"{POINTS}[{place + 1}]").text
+        text = document.without_key(f"{POINTS}[{place + 1}]").text
     else:
-        text = replaced(document.text, *found[place], [])
-    return document.saying(checked(text, expected, POINTS))
+        text = replace_lines(document.text, *found[place], [])
+    return document.with_text(check_toml(text, expected, POINTS))
 
 
 def _later(points: list[dict[str, object]]) -> object:
@@ -166,7 +175,7 @@ def _later(points: list[dict[str, object]]) -> object:
         return "1 s"
     before = quantity(points[-2].get("time")) if len(points) > 1 else None
     step = last.number - before.in_unit(last.unit, "time").number if before is not None else last.number
-    return TypedQuantity(last.number + (step if step > 0 else 1.0), last.unit).written()
+    return TypedQuantity(last.number + (step if step > 0 else 1.0), last.unit).toml_value()
 
 
 def _each_leg(document: Document) -> Document:
@@ -175,24 +184,24 @@ def _each_leg(document: Document) -> Document:
     count = _count(expected)
     expected["leg"] = [expected["leg"]] * count
     text = document.text
-    for first, after in blocks(text, "leg")[:1]:
-        lines = renamed(text.splitlines()[first:after], "leg", "[[leg]]")
-        copies = [line for _ in range(count - 1) for line in ("", *bare(lines))]
-        text = replaced(text, first, after, [*lines, *copies])
-    return document.saying(checked(text, expected, "leg"))
+    for first, after in table_spans(text, "leg")[:1]:
+        lines = rename_table(text.splitlines()[first:after], "leg", "[[leg]]")
+        copies = [line for _ in range(count - 1) for line in ("", *strip_comments(lines))]
+        text = replace_lines(text, first, after, [*lines, *copies])
+    return document.with_text(check_toml(text, expected, "leg"))
 
 
 def _one_leg(document: Document) -> Document:
     """``[leg]`` as the first ``[[leg]]`` is; the others go with their comments."""
     expected = tomllib.loads(document.text)
     expected["leg"] = expected["leg"][0]
-    text, found = document.text, blocks(document.text, "leg")
+    text, found = document.text, table_spans(document.text, "leg")
     for first, after in reversed(found[1:]):
         blank = first > 0 and not text.splitlines()[first - 1].strip()
-        text = replaced(text, first - blank, after, [])
+        text = replace_lines(text, first - blank, after, [])
     for first, after in found[:1]:
-        text = replaced(text, first, after, renamed(text.splitlines()[first:after], "leg", "[leg]"))
-    return document.saying(checked(text, expected, "leg"))
+        text = replace_lines(text, first, after, rename_table(text.splitlines()[first:after], "leg", "[leg]"))
+    return document.with_text(check_toml(text, expected, "leg"))
 
 
 MOST_ROWS = 20  # rows of a list that are shown
@@ -200,7 +209,7 @@ MOST_ROWS = 20  # rows of a list that are shown
 _ROW = re.compile(r"(.*?)\[(\d+)\]")
 
 
-def parted(fields: Sequence[NotedField]) -> tuple[list[NotedField], dict[str, int]]:
+def split_long_lists(fields: Sequence[NotedField]) -> tuple[list[NotedField], dict[str, int]]:
     """Fields but for those of lists with more than `MOST_ROWS` rows, and by key of such a list how many rows it has."""
     rows: dict[str, int] = {}
     for field in fields:
@@ -212,8 +221,8 @@ def parted(fields: Sequence[NotedField]) -> tuple[list[NotedField], dict[str, in
     return [field for field in fields if _list_of(field.key) not in long], long
 
 
-def without_rows(offers: Sequence[Offer], long: dict[str, int]) -> list[Offer]:
-    """Offers but for those that add a row to a long list or take one out."""
+def without_rows(offers: Sequence[StructureEdit], long: dict[str, int]) -> list[StructureEdit]:
+    """Edits but for those that add a row to a long list or take one out."""
     return [offer for offer in offers if offer.rows not in long]
 
 

@@ -11,10 +11,10 @@ from viser import ClientHandle, Icon
 
 from flexapod.app.browser import markup
 from flexapod.app.browser.background import Threads
-from flexapod.app.browser.document import Document, Edit, chosen, edited, first_value, read
-from flexapod.app.browser.number_slider import Knob
+from flexapod.app.browser.document import Document, Edit, edit_choice, edit_values, first_value, read
+from flexapod.app.browser.number_slider import NumberSlider
 from flexapod.app.browser.preview import preview_html
-from flexapod.app.browser.structure import Offer, offers, parted, without_rows
+from flexapod.app.browser.structure import StructureEdit, split_long_lists, structure_edits, without_rows
 from flexapod.app.browser.widgets import Setter, add_widget, signature
 from flexapod.common.errors import InputError
 from flexapod.model.file.fields import NotedField, read_fields
@@ -43,7 +43,7 @@ class StudyPanel:
         self._signatures: dict[str, object] = {}
         self._beside: dict[str, Any] = {}
         self._words = self._gui.add_html("")
-        self._knob = Knob(client, threads, self._turned, self._changed, self._left)
+        self._knob = NumberSlider(client, threads, self._turned, self._changed, self._left)
         undo = self._gui.add_button("Undo", color="gray", icon=Icon.ARROW_BACK_UP, hint="Take back the last change")
         reset = self._gui.add_button("Back to the file", color="gray", icon=Icon.FILE, hint="Take back all changes")
         undo.on_click(lambda _: self._undo())
@@ -86,7 +86,7 @@ class StudyPanel:
                 raise
 
     def _next(self) -> dict[str, tuple[object, str]] | None:
-        """What waits and differs from the document; None, and nobody is busy any more, if there is nothing."""
+        """Waiting changes that differ from the document; None, and the panel is not busy any more, without any."""
         with self._lock:
             changes = {key: change for key, change in self._waiting.items() if not self._same(key, change[0])}
             self._waiting.clear()
@@ -94,7 +94,7 @@ class StudyPanel:
             return changes or None
 
     def _same(self, key: str, value: object) -> bool:
-        """Whether a field shows `value` because it was read there, not because somebody changed it."""
+        """Test whether a field has `value` in the document already: it was read, not changed by the user."""
         field = self._fields.get(key)
         return field is not None and type(field.value) is type(value) and field.value == value
 
@@ -104,9 +104,9 @@ class StudyPanel:
             changes = {key: c for key, c in changes.items() if key in there or key.rpartition("[")[0] in there}
             before = self.document
             choices = [key for key in changes if key in self._fields and self._fields[key].choices]
-            found = edited(before, {key: value for key, (value, _) in changes.items() if key not in choices})
+            found = edit_values(before, {key: value for key, (value, _) in changes.items() if key not in choices})
             for key in choices:
-                found = chosen(found.document, self._fields[key], str(changes[key][0]))
+                found = edit_choice(found.document, self._fields[key], str(changes[key][0]))
             if found.document != before:
                 self._before = [*self._before[-99:], before]
                 typed = {
@@ -116,7 +116,7 @@ class StudyPanel:
                 }
                 self._take(found, typed, turned=all(how == "turned" for _, how in changes.values()))
 
-    def _apply_offer(self, offer: Offer) -> None:
+    def _apply_offer(self, offer: StructureEdit) -> None:
         with self._taking:
             self._replace(offer.apply(self.document))
 
@@ -143,9 +143,9 @@ class StudyPanel:
         self.document = found.document
         if found.error is None:
             self._valid = found.document
-        fields, long = parted(self._readable(found))
+        fields, long = split_long_lists(self._readable(found))
         if found.error is not None:  # reading stopped, before the rows perhaps
-            there = found.document.having(self._long)
+            there = found.document.present_keys(self._long)
             long = {key: count for key, count in self._long.items() if key in there} | long
         self._long = long
         before, self._fields = self._fields, {field.key: field for field in fields}
@@ -164,7 +164,7 @@ class StudyPanel:
         said = found.document
         fields = {field.key: field for field in read_fields(said.text, said.path, said.files)}
         if found.error is not None:
-            there = found.document.having(key for key, f in self._fields.items() if f.value is not None)
+            there = found.document.present_keys(key for key, f in self._fields.items() if f.value is not None)
             known = {key: f for key, f in self._fields.items() if f.value is None or key in there}
             fields = known | fields
         order = list(tomllib.loads(found.document.text))
@@ -193,7 +193,7 @@ class StudyPanel:
             self._folders.pop(name).remove()
             del self._signatures[name]
             self._beside = {t: h for t, h in self._beside.items() if _top(t) != name}
-        found = without_rows(offers(self.document), long)
+        found = without_rows(structure_edits(self.document), long)
         for place, (name, listed) in enumerate(tables.items()):
             here = [offer for offer in found if offer.place == name]
             remarks = [_counted(key, count) for key, count in long.items() if _top(key) == name]
@@ -203,7 +203,7 @@ class StudyPanel:
                 self._signatures[name] = now
         self._offer_tables([offer for offer in found if not offer.place])
 
-    def _offer_tables(self, found: list[Offer]) -> None:
+    def _offer_tables(self, found: list[StructureEdit]) -> None:
         """Below the folders: a button for each table that the file leaves out."""
         if [label for label, _ in self._absent] == [offer.label for offer in found]:
             return
@@ -212,12 +212,12 @@ class StudyPanel:
         with self._more:
             self._absent = [(offer.label, self._button(offer)) for offer in found]
 
-    def _buttons(self, found: list[Offer], inside: str) -> None:
+    def _buttons(self, found: list[StructureEdit], inside: str) -> None:
         for offer in found:
             if offer.inside == inside:
                 self._button(offer)
 
-    def _button(self, offer: Offer) -> Any:
+    def _button(self, offer: StructureEdit) -> Any:
         icon = Icon.MINUS if offer.label.startswith("Take out") else Icon.PLUS
         handle = self._gui.add_button(offer.label, color="gray", icon=icon, hint=offer.hint)
         handle.on_click(lambda _: self._apply_offer(offer))
@@ -233,7 +233,7 @@ class StudyPanel:
                 handle.content = content
 
     def _make_folder(
-        self, name: str, fields: list[NotedField], found: list[Offer], remarks: list[str], place: int
+        self, name: str, fields: list[NotedField], found: list[StructureEdit], remarks: list[str], place: int
     ) -> None:
         known = name in self._folders
         if known:
@@ -247,9 +247,9 @@ class StudyPanel:
             for remark in remarks:
                 self._gui.add_html(markup.block(remark, "soft"))
 
-    def _fill(self, fields: list[NotedField], found: list[Offer]) -> None:
+    def _fill(self, fields: list[NotedField], found: list[StructureEdit]) -> None:
         inner: dict[str, list[NotedField]] = {}
-        present, absent = _parted(fields)
+        present, absent = _split_absent(fields)
         for field in present:
             inner.setdefault(_inside(field), []).append(field)
         for name, listed in inner.items():
@@ -280,13 +280,13 @@ class StudyPanel:
         handle.on_update(add)
 
 
-def _parted(fields: list[NotedField]) -> tuple[list[NotedField], list[NotedField]]:
+def _split_absent(fields: list[NotedField]) -> tuple[list[NotedField], list[NotedField]]:
     """Fields that the file gives, and those that it leaves out."""
     return [f for f in fields if f.value is not None], [f for f in fields if f.value is None]
 
 
 def _counted(key: str, count: int) -> str:
-    """What is said in place of the rows of a long list."""
+    """Text in place of the rows of a long list."""
     return f"{count} {key.rpartition('.')[2]}, not changed here: change them in the file"
 
 

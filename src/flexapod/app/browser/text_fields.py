@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from flexapod.app.browser import markup
-from flexapod.app.browser.background import Latest, Threads
+from flexapod.app.browser.background import Debouncer, Threads
 from flexapod.common.errors import InputError
 from flexapod.common.units import number_and_unit, to_si
 
@@ -44,8 +44,8 @@ class TypedText:
         self._read_last, self._taken, self._left = text, taken, left
         self._shown_at = 0.0
         self._handle = gui.add_text(label, text, **look)
-        self._latest = Latest(threads, self._paused)
-        self._handle.on_update(by_user(self._heard))
+        self._latest = Debouncer(threads, self._paused)
+        self._handle.on_update(user_callback(self._heard))
 
     def show(self, text: str, label: str | None = None) -> None:
         """Show another text in place of whatever is written there."""
@@ -57,7 +57,7 @@ class TypedText:
 
     @property
     def disabled(self) -> bool:
-        """Whether nothing can be typed."""
+        """True where nothing can be typed."""
         return self._handle.disabled
 
     @disabled.setter
@@ -66,7 +66,7 @@ class TypedText:
             self._handle.disabled = disabled
 
     def remove(self) -> None:
-        """Take it off the page."""
+        """Remove the field from the page."""
         self._latest.close()
         self._handle.remove()
 
@@ -80,7 +80,7 @@ class TypedText:
 
     def _paused(self) -> None:
         if time.monotonic() - self._shown_at < CROSSED:
-            say_again(self._handle)
+            resend_value(self._handle)
         self._read()
 
     def _read(self) -> None:
@@ -90,21 +90,21 @@ class TypedText:
             self._taken(text, self._handle.value.endswith(LEFT))
 
 
-def say_again(handle: Any) -> None:
-    """Tell the browser the value of an input once more: what it was told before may have crossed what the user did."""
+def resend_value(handle: Any) -> None:
+    """Send the value of an input to the browser once more: the one before may have crossed what the user did."""
     from viser import _messages
 
     message = _messages.GuiUpdateMessage(handle._impl.uuid, {"value": handle.value})
     handle._impl.gui_api._websock_interface.queue_message(message)
 
 
-def by_user(work: Callable[[], Any]) -> Callable[[GuiEvent[Any]], None]:
+def user_callback(work: Callable[[], Any]) -> Callable[[GuiEvent[Any]], None]:
     """Work to do where a user, not this program, has set an input."""
     return lambda event: work() if event.client is not None else None
 
 
-def written(text: str, unit: str) -> object:
-    """What a typed text means in a study file: a number without a unit is in the one that is shown ("" for SI).
+def entry_value(text: str, unit: str) -> object:
+    """Value of a typed text in a study file; a number without a unit is in the one that is shown ("" for SI).
 
     A text that cannot be read is written as it is: the reader of study files says what is wrong with it.
     """
@@ -138,7 +138,7 @@ def plain(number: float) -> str:
 SETTLED = 0.3  # time without another movement after which the browser is told the value once more [s]
 
 
-class Dial:
+class NumberField:
     """Two inputs of one number; what is typed has the units of study files, and is refused beyond the ends.
 
     `unit` of the number, "" for one without, and its `dimension` (see `flexapod.common.units`); `ends` of the slider;
@@ -165,8 +165,8 @@ class Dial:
         self._text = TypedText(gui, threads, label, self._shown(value), self._typed, lambda _: self._show(), hint=hint)
         self._slider: GuiSliderHandle[float] = gui.add_slider("", *ends, step, value)
         self._words = gui.add_html("")
-        self._latest = Latest(threads, lambda: say_again(self._slider))
-        self._slider.on_update(by_user(self._dragged))
+        self._latest = Debouncer(threads, lambda: resend_value(self._slider))
+        self._slider.on_update(user_callback(self._dragged))
 
     @property
     def value(self) -> float:
@@ -185,12 +185,12 @@ class Dial:
 
     @property
     def step(self) -> float:
-        """Of the slider."""
+        """Step of the slider."""
         return self._slider.step
 
     @property
     def disabled(self) -> bool:
-        """Whether it can be changed."""
+        """True where the number cannot be changed."""
         return self._slider.disabled
 
     @disabled.setter

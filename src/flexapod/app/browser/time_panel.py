@@ -1,6 +1,6 @@
 """The tab "Time": play, pause, speed, scrub; what the scene shows; charts with a cursor at its time.
 
-What moves a scene by itself: one thread at a time, whoever started it.
+A `Player` moves a scene in a thread, one at a time, whoever started it.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from flexapod.app.browser import markup
 from flexapod.app.browser.background import Threads
 from flexapod.app.browser.charts import Chart, ChartView, charts
 from flexapod.app.browser.scene import PARTS, PageScene
-from flexapod.app.browser.text_fields import Dial, TypedText, by_user, in_unit, plain
+from flexapod.app.browser.text_fields import NumberField, TypedText, in_unit, plain, user_callback
 from flexapod.common.errors import InputError
-from flexapod.output.scene.geometry import nearest
+from flexapod.output.scene.geometry import nearest_index
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -48,7 +48,7 @@ class Player:
 
     @property
     def playing(self) -> bool:
-        """Whether the scene moves by this player."""
+        """True while the scene moves by this player."""
         return self._token is not None and self._scene.driver is self._token
 
     def start(self) -> None:
@@ -94,7 +94,7 @@ class Player:
 
 
 def _nothing(playing: bool) -> None:
-    """Nobody is told."""
+    """Report nothing."""
 
 
 CHART_FRAMES = 4  # updates of the scene between two of the chart
@@ -126,14 +126,14 @@ class TimePanel:
         gui = client.gui
         self._hint = gui.add_html(markup.block(NONE, "soft"))
         self._play = gui.add_button("Play", icon=Icon.PLAYER_PLAY, disabled=True, hint="Play or pause")
-        self._dial = Dial(gui, threads, "time", "s", (0.0, 1.0), 0.001, 0.0, self._scrubbed, dimension="time")
+        self._dial = NumberField(gui, threads, "time", "s", (0.0, 1.0), 0.001, 0.0, self._scrubbed, dimension="time")
         self._dial.disabled = True
         self._speed = gui.add_dropdown("speed", tuple(SPEEDS), initial_value="1/4", hint="Time shown per time passed")
         self._choice = gui.add_dropdown("chart", [_NOTHING], initial_value=_NOTHING)
         self._view = ChartView(gui)
         self._make_look(gui, threads)
         self._play.on_click(lambda _: self.pause() if self._player.playing else self.play())
-        self._choice.on_update(by_user(self._draw_chart))
+        self._choice.on_update(user_callback(self._draw_chart))
 
     def show_data(self, data: Dataset | None) -> None:
         """Take a result, or nothing; the scene has it already, at the time that stays."""
@@ -200,7 +200,7 @@ class TimePanel:
         """Write the stored instant that is shown; where the user wrote a time, only if it is another one."""
         if self._data is not None:
             instants = self._data.time.values
-            shown = float(instants[nearest(instants, self._time)])
+            shown = float(instants[nearest_index(instants, self._time)])
             if always or abs(shown - self._time) > 1e-3 * self._dial.step:
                 self._dial.value = shown
 
@@ -252,11 +252,11 @@ class TimePanel:
             self._automatic = gui.add_button("Automatic factor", hint="Largest deflection well visible")
             self._scale_words = gui.add_html("")
             boxes = {name: gui.add_checkbox(name, shown) for name, shown in PARTS.items()}
-        self._color.on_update(by_user(self._recolor))
-        self._point.on_update(by_user(self._choose_point))
+        self._color.on_update(user_callback(self._recolor))
+        self._point.on_update(user_callback(self._choose_point))
         self._automatic.on_click(lambda _: self._rescale(None))
         for name, box in boxes.items():
-            box.on_update(by_user(lambda name=name, box=box: self.scene.visible(name, box.value)))
+            box.on_update(user_callback(lambda name=name, box=box: self.scene.visible(name, box.value)))
 
     def _recolor(self) -> None:
         self._take_scene()

@@ -1,6 +1,7 @@
-"""Files that somebody sends: limited in size, read as data, refused in the words of the command line.
+"""Files that clients send, and the study that they download.
 
-A study for somebody to take along: its text, and with it the tables that the text names.
+Uploads are limited in size, read as data, and refused in the words of the command line. A download has the text
+of the study and the tables that the text names.
 """
 
 from __future__ import annotations
@@ -18,13 +19,13 @@ import numpy as np
 from flexapod import model
 from flexapod.app.browser.document import Document, read
 from flexapod.common.errors import InputError
-from flexapod.common.files import scratch
+from flexapod.common.files import temporary_folder
 from flexapod.common.tables.csv_tables import table_text
-from flexapod.common.tables.named_files import Content, NamedFiles, Unreadable
+from flexapod.common.tables.named_files import Content, NamedFiles, UnreadableFile
 from flexapod.common.tables.systems import system_text
-from flexapod.common.tables.toml import parsed
+from flexapod.common.tables.toml import parse_toml
 from flexapod.model import ActuatorStudy, Study
-from flexapod.model.stored import stored_tables
+from flexapod.model.stored_tables import stored_tables
 
 if TYPE_CHECKING:
     from viser import ClientHandle
@@ -37,12 +38,12 @@ MOST_BYTES = 10 * LARGEST
 """Size of all tables that are kept for one person [bytes]."""
 
 
-class Sent:
+class UploadFolder:
     """The folder of the tables that one person has sent; it lasts as long as their session."""
 
     def __init__(self) -> None:
         self._end = ExitStack()
-        self.folder: Path = self._end.enter_context(scratch())
+        self.folder: Path = self._end.enter_context(temporary_folder())
 
     def close(self) -> None:
         """Delete the tables."""
@@ -70,10 +71,10 @@ def read_upload(name: str, content: bytes, folder: Path) -> Document:
     except UnicodeDecodeError:
         raise InputError("cannot be read: it is not UTF-8 text", file=name, allowed="a study file (TOML)") from None
     sent = NamedFiles(folder, closed=True)
-    for key, file in _named(parsed(text, name)):
+    for key, file in _named(parse_toml(text, name)):
         try:
             sent.place(file)
-        except Unreadable as error:
+        except UnreadableFile as error:
             raise InputError(
                 error.what, file=name, key=key, value=file, allowed=error.allowed, next_step=error.next_step
             ) from None
@@ -239,12 +240,12 @@ def study_files(document: Document, study: Study | ActuatorStudy) -> tuple[str, 
         )
         tables[name] = {**tables.get(name, {}), **table.content}
         if document.value(place) != name:
-            document = document.changed(place, name)
+            document = document.with_value(place, name)
     return document.text, {name: _text(content) for name, content in tables.items()}
 
 
 def _places(key: str) -> tuple[str, ...]:
-    """Where a key may stand in a text: by itself, in the table of all legs, in place of its table."""
+    """Key paths at which a key may be in a text: its own, that in the table of all legs, that of its table."""
     of_all = re.sub(r"^leg\[\d+\]", "leg", key)
     return key, of_all, *(place.rpartition(".")[0] for place in (key, of_all))
 
@@ -262,7 +263,7 @@ def _free(name: str, tables: dict[str, Content], content: Content) -> str:
 
 
 def _fit(there: Content, content: Content) -> bool:
-    """Whether columns may stand beside others: those that both have are the same, the instants among them."""
+    """Test whether columns may join others: those that both have are the same, the instants among them."""
     both = there.keys() & content.keys()
     return bool(both) and all(
         there[x][0] == content[x][0] and np.array_equal(np.asarray(there[x][1]), np.asarray(content[x][1]))

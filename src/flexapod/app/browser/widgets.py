@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from viser import GuiApi
 
 from flexapod.app.browser.document import TypedQuantity, quantity
-from flexapod.app.browser.text_fields import TypedText, by_user, plain, written
+from flexapod.app.browser.text_fields import TypedText, entry_value, plain, user_callback
 from flexapod.common.errors import InputError
 from flexapod.common.units import DIMENSIONS, to_si
 from flexapod.model.file.fields import NotedField
@@ -29,7 +29,7 @@ EMPTY = "a number, or one with a unit; an emptied field gets its value back"
 
 
 def signature(field: NotedField) -> tuple[object, ...]:
-    """What a field's input depends on besides the value: where it differs, another input is needed."""
+    """Properties on which a field's input depends besides the value: where they differ, another input is needed."""
     return field.key, field.kind, field.dimensions, field.choices, _rows(field)
 
 
@@ -54,14 +54,14 @@ def _number(gui: GuiApi, threads: Threads, field: NotedField, changed: Changed, 
     dimension = field.dimensions[0]
     first, unit = _shown(field.value, "", dimension)
 
-    def taken(text: str, done: bool) -> None:
-        changed(field.key, written(text, unit), not done)
+    def accept(text: str, done: bool) -> None:
+        changed(field.key, entry_value(text, unit), not done)
 
     def title() -> str:
         return _label(field.name, unit, dimension)
 
     hint = _hint(field, unit)
-    box = TypedText(gui, threads, title(), first, taken, lambda empty: left(field.key, empty), hint=hint)
+    box = TypedText(gui, threads, title(), first, accept, lambda empty: left(field.key, empty), hint=hint)
 
     def show(value: object) -> None:
         nonlocal unit
@@ -96,7 +96,7 @@ def _choice(gui: GuiApi, field: NotedField, changed: Changed) -> Setter:
     if field.value not in options:
         options = (*options, str(field.value))
     handle = gui.add_dropdown(field.name, options, initial_value=str(field.value))
-    handle.on_update(by_user(lambda: changed(field.key, handle.value, True)))
+    handle.on_update(user_callback(lambda: changed(field.key, handle.value, True)))
 
     def show(value: object) -> None:
         if value in options:
@@ -107,7 +107,7 @@ def _choice(gui: GuiApi, field: NotedField, changed: Changed) -> Setter:
 
 def _flag(gui: GuiApi, field: NotedField, changed: Changed) -> Setter:
     handle = gui.add_checkbox(field.name, field.value is True)
-    handle.on_update(by_user(lambda: changed(field.key, handle.value, True)))
+    handle.on_update(user_callback(lambda: changed(field.key, handle.value, True)))
 
     def show(value: object) -> None:
         handle.value = value is True
@@ -124,11 +124,11 @@ def _fixed(gui: GuiApi, _threads: Threads, field: NotedField, _changed: Changed,
 def _written(gui: GuiApi, threads: Threads, field: NotedField, changed: Changed, left: Left) -> Setter:
     """Letters of a mechanism, or a list that is none of the numbers that are asked for, as text."""
 
-    def taken(text: str, done: bool) -> None:
+    def accept(text: str, done: bool) -> None:
         changed(field.key, text, not done)
 
     hint = _hint(field, "")
-    box = TypedText(gui, threads, field.name, str(field.value), taken, lambda empty: left(field.key, empty), hint=hint)
+    box = TypedText(gui, threads, field.name, str(field.value), accept, lambda empty: left(field.key, empty), hint=hint)
     return lambda value: box.show(str(value))
 
 
@@ -183,10 +183,10 @@ def _components(gui: GuiApi, threads: Threads, field: NotedField, part: _Part, c
         shown = [None if q is None else q.in_unit(unit, dimension) for q in found]
         return [str(v) if q is None else plain(q.number) for v, q in zip(values, shown, strict=True)]
 
-    def taken(i: int) -> Callable[[str, bool], None]:
+    def accept(i: int) -> Callable[[str, bool], None]:
         def take(text: str, done: bool) -> None:
-            value = written(text, unit)
-            changed(f"{key}[{start + i + 1}]", 0 if value == written("0", unit) else value, not done)
+            value = entry_value(text, unit)
+            changed(f"{key}[{start + i + 1}]", 0 if value == entry_value("0", unit) else value, not done)
 
         return take
 
@@ -198,7 +198,7 @@ def _components(gui: GuiApi, threads: Threads, field: NotedField, part: _Part, c
 
     texts = numbers(_at(field.value, part))
     boxes = [
-        TypedText(gui, threads, title, text, taken(i), leave(i), hint=_hint(field, unit))
+        TypedText(gui, threads, title, text, accept(i), leave(i), hint=_hint(field, unit))
         for i, (title, text) in enumerate(zip(titles(), texts, strict=True))
     ]
 
@@ -211,7 +211,7 @@ def _components(gui: GuiApi, threads: Threads, field: NotedField, part: _Part, c
 
 
 def _rows(field: NotedField) -> int:
-    """How many lists of numbers a field has; 0 where they are not as long as they are asked for."""
+    """Number of lists of numbers in a field; 0 where they are not as long as they are asked for."""
     if field.kind not in ("vector", "rows") or not isinstance(field.value, list):
         return 0
     rows = field.value if field.kind == "rows" else [field.value]

@@ -1,1 +1,1 @@
-"""What users start: the command line and its reports. Reads Datasets and descriptions, never a solver's internals."""
+"""The command line. It reads Datasets and descriptions, never a solver's internals."""

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 import typer
 from typer.core import TyperGroup
 
-from flexapod.app.cli.failures import INTERRUPTED, heed_signals, print_parts, say_full, stop_code
+from flexapod.app.cli.failures import INTERRUPTED, install_signal_handlers, print_parts, report_output_error, stop_code
 from flexapod.common.version import __version__
 
 if TYPE_CHECKING:
@@ -133,12 +133,12 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without the letter µ shows ? and goes on
-    heed_signals()
+    install_signal_handlers()
     gc.set_threshold(20_000)  # a search for each 700 new objects takes a tenth of the time that figures need
     try:
         code = _whole()
     except OSError as error:
-        say_full(error)
+        report_output_error(error)
         _let_go(sys.stdout)
         code = 1
     try:
@@ -168,7 +168,7 @@ def _flushed(stream: TextIO | None) -> None:
 
 
 def _let_go(stream: TextIO) -> None:
-    """What could not be written is given up, so that the end of the process does not try again."""
+    """Give up what could not be written to a stream, so that the end of the process does not try again."""
     with suppress(OSError, ValueError):
         nothing = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nothing, stream.fileno())

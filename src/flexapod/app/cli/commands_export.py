@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from flexapod.app.cli.failures import guarded
+from flexapod.app.cli.failures import report_failures
 from flexapod.app.cli.options import (
     Force,
     Json,
@@ -23,7 +23,7 @@ from flexapod.app.cli.options import (
 )
 from flexapod.common.errors import InputError
 from flexapod.output.text.parts import Bullets
-from flexapod.output.text.terminal import tell
+from flexapod.output.text.terminal import print_answer
 
 if TYPE_CHECKING:
     from flexapod.output.exchange.formats import Exported
@@ -74,7 +74,7 @@ Place = Annotated[
 ]
 
 
-@guarded
+@report_failures
 def export(
     file: StudyFile,
     format: Kind = "abaqus",
@@ -92,9 +92,9 @@ def export(
     json: Json = False,
 ) -> None:
     """Write the robot for other programs: a deck, a unit that runs, a model, its motion to look at, matrices."""
-    from flexapod.app.cli.commands_map import parse_pose
+    from flexapod.app.cli.pose_options import parse_pose
     from flexapod.common.units import quantity
-    from flexapod.output.exchange.formats import FORMATS, check_options, check_place, format_of, written
+    from flexapod.output.exchange.formats import FORMATS, check_options, check_place, format_of, write_format
 
     given: dict[str, object] = {
         "pose": parse_pose(pose),
@@ -120,8 +120,8 @@ def export(
         check_writable(path.parent if kind.endings else path)
         if "title" in FORMATS[format].options:
             given["title"] = f"{file.stem}: robot with locked drives"
-        found = written(study, format, path, given)
-    tell(_words(file, pose, format, found), lambda: _as_dict(format, found, elements, count), json=json)
+        found = write_format(study, format, path, given)
+    print_answer(_words(file, pose, format, found), lambda: _as_dict(format, found, elements, count), json=json)
 
 
 def _words(file: Path, pose: str | None, format: str, found: Exported) -> Sequence[str | Bullets]:
@@ -138,7 +138,7 @@ def _words(file: Path, pose: str | None, format: str, found: Exported) -> Sequen
 
 
 def _written(found: Exported) -> list[str]:
-    """What was written: each of a few files, of many the one that names the others and how many there are."""
+    """Lines on an export: each of a few files, of many the one that names the others and how many there are."""
     if len(found.files) <= FEW:
         return [f"Written: {path}" for path in found.files]
     others = [path for path in found.files if path != found.path]

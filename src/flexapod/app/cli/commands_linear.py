@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from flexapod.app.cli.commands_export import COMMA
-from flexapod.app.cli.failures import guarded
+from flexapod.app.cli.failures import report_failures
 from flexapod.app.cli.options import (
     Force,
     Json,
@@ -24,8 +24,8 @@ from flexapod.app.cli.options import (
 )
 from flexapod.common.errors import InputError
 from flexapod.common.files import write_text
-from flexapod.common.lazy_imports import without
-from flexapod.output.text.terminal import tell
+from flexapod.common.lazy_imports import hide_package
+from flexapod.output.text.terminal import print_answer
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -56,7 +56,7 @@ Mat = Annotated[Path | None, typer.Option("--mat", metavar="FILE.mat", help="Wri
 Count = Annotated[int, typer.Option("--count", min=1, help="How many of the slowest poles to show.")]
 
 
-@guarded
+@report_failures
 def frf(
     file: StudyFile, input: Inputs = "wrench", output: Outputs = "tool", pose: Pose = None, drives: Drives = "given",
     friction: Friction = None, lowest: From = "1 Hz", highest: To = "1000 Hz", points: Points = 400,
@@ -69,27 +69,27 @@ def frf(
         if path is not None:
             _check_file(path, key, force)
     hz = _frequencies(lowest, highest, points)
-    with without("dask"):
+    with hide_package("dask"):
         from flexapod.output.text.linear import frf_as_dict, frf_items
 
         model = _model(file, pose, drives, friction, (input, output))
         data = model.frequency_response(hz)
         files = _write(model, data, out, uff, mat, figure=not no_figures)
         items = chain(frf_items(data, pose, drives), map("Written: {}".format, files))
-        tell(items, lambda: frf_as_dict(data, files), json=json)
+        print_answer(items, lambda: frf_as_dict(data, files), json=json)
 
 
-@guarded
+@report_failures
 def damp(
     file: StudyFile, pose: Pose = None, drives: Drives = "given", friction: Friction = None, count: Count = 24,
     json: Json = False,
 ) -> None:  # fmt: skip
     """Poles about the static equilibrium at a pose: frequencies, damping, and whether they grow."""
-    with without("dask"):
+    with hide_package("dask"):
         from flexapod.output.text.linear import damp_as_dict, damp_items
 
         data = _model(file, pose, drives, friction).damp()
-        tell(damp_items(data, pose, drives, count), lambda: damp_as_dict(data), json=json)
+        print_answer(damp_items(data, pose, drives, count), lambda: damp_as_dict(data), json=json)
 
 
 def _model(
@@ -97,7 +97,7 @@ def _model(
 ) -> LinearModel:
     """The model with these channels; without any such that every robot has."""
     from flexapod.analysis.linear import linearize
-    from flexapod.app.cli.commands_map import parse_pose
+    from flexapod.app.cli.pose_options import parse_pose
 
     with as_options(**OPTIONS):
         if friction not in (None, "sliding", "stuck"):

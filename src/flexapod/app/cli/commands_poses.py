@@ -1,6 +1,6 @@
-"""A command at a pose of the locked robot: `modes` lists its modes.
+"""Commands at a pose of the locked robot: `modes` lists its modes, `budget` the error of the tool by part.
 
-`flexapod budget`: what every part adds to the error of the tool, at a pose or along the motion.
+The budget is at a pose or along the motion.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from flexapod.app.cli.failures import guarded
+from flexapod.app.cli.failures import report_failures
 from flexapod.app.cli.options import Json, NoFigures, Pose, Quiet, StudyFile, Verbose, as_options, check_writable
-from flexapod.output.text.terminal import tell
+from flexapod.output.text.terminal import print_answer
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -29,7 +29,7 @@ Folder = Annotated[
 Count = Annotated[int, typer.Option("--count", min=1, help="How many of the lowest modes to show.")]
 
 
-@guarded
+@report_failures
 def modes(
     file: StudyFile, pose: Pose = None, out: Folder = None, count: Count = 12, no_figures: NoFigures = False,
     json: Json = False,
@@ -40,7 +40,7 @@ def modes(
     """
     from flexapod import model
     from flexapod.analysis import modes as compute
-    from flexapod.app.cli.commands_map import parse_pose
+    from flexapod.app.cli.pose_options import parse_pose
     from flexapod.output.text.answers import modes_as_dict, modes_items
 
     study = model.load(file)
@@ -51,14 +51,15 @@ def modes(
     shaken, sentences = _shaken(study, parse_pose(pose)) if of_robot else (None, ())
     files = [] if out is None else _write_modes(data, shaken, out, figure=of_robot and not no_figures)
     items = chain(modes_items(study, data, pose, count, sentences), map("Written: {}".format, files))
-    tell(items, lambda: modes_as_dict(data, shaken, files), json=json)
+    print_answer(items, lambda: modes_as_dict(data, shaken, files), json=json)
 
 
 def _shaken(study: Study, pose: dict[str, float] | None) -> tuple[Dataset | None, tuple[str, ...]]:
     """Vibration by the study's disturbances, and in words, or why it has none."""
     from flexapod.analysis import vibration
-    from flexapod.analysis.pose_errors.disturbances import words_of
+    from flexapod.analysis.pose_errors.disturbances import shaking
     from flexapod.common.errors import FlexapodError
+    from flexapod.output.text.description import vibration_words
 
     if study.disturbance is None:
         return None, ()
@@ -66,7 +67,7 @@ def _shaken(study: Study, pose: dict[str, float] | None) -> tuple[Dataset | None
         data = vibration(study, pose)
     except FlexapodError as error:
         return None, (f"vibration by disturbances cannot be said: {error}",)
-    return data, words_of(data, "there")
+    return data, vibration_words(shaking(data), "there")
 
 
 def _write_modes(data: Dataset, shaken: Dataset | None, folder: Path, *, figure: bool) -> list[Path]:
@@ -87,7 +88,7 @@ BudgetFolder = Annotated[
 ]
 
 
-@guarded
+@report_failures
 def budget(
     file: StudyFile, pose: Pose = None, motion: Motion = False, out: BudgetFolder = None, no_figures: NoFigures = False,
     quiet: Quiet = False, verbose: Verbose = False, json: Json = False,
@@ -95,12 +96,12 @@ def budget(
     """Error budget of the tool: which part adds what, and what halving the largest error would bring."""
     from flexapod import model
     from flexapod.analysis import budget as compute
-    from flexapod.analysis.error_budget.text import budget_counts
-    from flexapod.analysis.results.idealizations import ideal_words
-    from flexapod.app.cli.commands_map import parse_pose
+    from flexapod.analysis.results.idealizations import idealization
+    from flexapod.app.cli.pose_options import parse_pose
     from flexapod.common.errors import InputError
-    from flexapod.output.text.budget import budget_as_dict, budget_items
-    from flexapod.output.text.terminal import progress_bar, tell
+    from flexapod.output.text.budget import budget_as_dict, budget_counts, budget_items
+    from flexapod.output.text.description import ideal_words
+    from flexapod.output.text.terminal import print_answer, progress_bar
 
     study = model.load(file)
     if isinstance(study, model.ActuatorStudy):
@@ -111,9 +112,11 @@ def budget(
             study, parse_pose(pose), motion=motion, progress=lambda now, end: report("simulating", now / end)
         )
     files = [] if out is None else _write(data, out, figure=not no_figures)
-    ideal, counts = ideal_words(study.robot), None if motion else budget_counts(study.robot)
+    ideal, counts = ideal_words(idealization(study.robot)), None if motion else budget_counts(study.robot)
     items = chain(budget_items(data, (ideal, counts)), map("Written: {}".format, files))
-    tell(items, lambda: {**budget_as_dict(data, files), "ideal": ideal, "counts": counts}, json=json, verbose=verbose)
+    print_answer(
+        items, lambda: {**budget_as_dict(data, files), "ideal": ideal, "counts": counts}, json=json, verbose=verbose
+    )
 
 
 def _write(data: Dataset, folder: Path, *, figure: bool) -> list[Path]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from flexapod.app.cli.failures import guarded
+from flexapod.app.cli.failures import report_failures
 from flexapod.app.cli.options import Json, NoFigures, Quiet, check_writable
 from flexapod.common.files import write_text
 from flexapod.output.text import terminal
@@ -25,14 +25,14 @@ Engines = Annotated[
 ]
 
 
-@guarded
+@report_failures
 def replicate(
     out: Folder = Path("replicate"), engines: Engines = False, no_figures: NoFigures = False, json: Json = False,
     quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Repeat the paper's whole study: figures, data, table of its claims, report."""
     from flexapod.analysis.results.summary import summary
-    from flexapod.verification.paper.claims import by_whose, claims, counted
+    from flexapod.verification.paper.claims import claims, group_by_owner, verdict_summary
     from flexapod.verification.paper.engines import agreements
     from flexapod.verification.paper.outputs import replicate as repeat
 
@@ -47,15 +47,15 @@ def replicate(
         return {"summary": found.as_dict(), "claims": [asdict(claim) for claim in table], **more, "files": files}
 
     items: list[Item] = [found.sentence, "The paper prints about 5 mm in Y and 10 mm in Z."]
-    for title, some in by_whose(table).items():
+    for title, some in group_by_owner(table).items():
         told = [f"{claim.where}: {claim.says}: {claim.verdict} ({claim.ours})" for claim in some]
-        items.append(Chapter(f"{title} ({counted(some)[:-1]}):", told))
+        items.append(Chapter(f"{title} ({verdict_summary(some)[:-1]}):", told))
     if agreed:
         theirs = [f"{row.quantity}: {row.words}" for row in agreed]
         items += [Chapter("Exudyn, an independent engine, against us (largest values):", theirs, close=True)]
     figures = "" if no_figures else "figures/ "
     items += ["", f"In {out}: report.html (open it in a browser), claims.md, {figures}and data/."]
-    terminal.tell(items, data, json=json)
+    terminal.print_answer(items, data, json=json)
     _fail(result)
 
 
@@ -71,7 +71,7 @@ Page = Annotated[Path | None, typer.Option("--html", metavar="FILE", help="Also 
 Markdown = Annotated[Path | None, typer.Option("--markdown", metavar="FILE", help="Also write it as Markdown.")]
 
 
-@guarded
+@report_failures
 def verify(
     only: Only = None,
     slow: All = False,
@@ -92,11 +92,11 @@ def verify(
             compute(only or (), slow=slow, progress=report, keep=outcomes.append)
         except KeyboardInterrupt:
             interrupted = True
-    passed = not interrupted and all(o.passed or o.not_run for o in outcomes)
+    passed = not interrupted and all(o.is_verified or o.not_run for o in outcomes)
     if not interrupted:
         _write(outcomes, html, markdown)
     state = {"passed": passed, "complete": not interrupted}
-    terminal.tell(_verified(outcomes), lambda: {**state, "cases": [o.as_dict() for o in outcomes]}, json=json)
+    terminal.print_answer(_verified(outcomes), lambda: {**state, "cases": [o.as_dict() for o in outcomes]}, json=json)
     if interrupted:
         raise KeyboardInterrupt
     if not passed:
@@ -123,7 +123,7 @@ def _write(outcomes: list[Outcome], html: Path | None, markdown: Path | None) ->
     from flexapod.verification import pack
 
     if markdown is not None:
-        write_text(markdown, pack.markdown(outcomes))
+        write_text(markdown, pack.verification_markdown(outcomes))
     if html is not None:
         marks = {"pass": "good", "fail": "bad", "not computed": "bad", "not run": "open"}
         cases = [
@@ -138,7 +138,7 @@ def _checks(outcome: Outcome) -> TextTable:
     head = ("What", "Reference", "Ours", "Error", "Tolerance", "Verdict")
     rows = [
         (c.what, f"{c.reference:.10g}", f"{c.ours:.10g}", f"{c.error:.2g}", f"{c.tolerance:.2g}",
-         "reference at fault" if c.fault else "pass" if c.passed else "fail")
+         "reference at fault" if c.fault else "pass" if c.within_tolerance else "fail")
         for c in outcome.checks
     ]  # fmt: skip
     return TextTable(head, rows, marks={"pass": "good", "fail": "bad"})

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from flexapod.app.cli.failures import INTERRUPTED, guarded, print_parts, show, stopped
+from flexapod.app.cli.failures import INTERRUPTED, print_error, print_parts, report_failures, stop_words
 from flexapod.app.cli.options import (
     FORMATS,
     Json,
@@ -24,7 +24,7 @@ from flexapod.app.cli.options import (
     write_data,
 )
 from flexapod.common.errors import ComputationError, InputError
-from flexapod.common.lazy_imports import without
+from flexapod.common.lazy_imports import hide_package
 from flexapod.output.text import terminal
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ Format = Annotated[
 USUAL = "png,svg"
 
 
-@guarded
+@report_failures
 def run(
     file: StudyFile, out: Out = None, formats: Format = USUAL, no_figures: NoFigures = False, json: Json = False,
     quiet: Quiet = False, verbose: Verbose = False,
@@ -52,7 +52,7 @@ def run(
     _run(load(file), results_folder(file, "run", out), drawn, json=json, quiet=quiet, verbose=verbose)
 
 
-@guarded
+@report_failures
 def actuator(
     file: StudyFile, out: Out = None, formats: Format = USUAL, no_figures: NoFigures = False, json: Json = False,
     quiet: Quiet = False, verbose: Verbose = False,
@@ -81,7 +81,7 @@ def _run(
 
     check_disk(study, folder)
     interrupted = False
-    with without("dask"), without("pint"), terminal.progress_bar(quiet=quiet or json) as report:
+    with hide_package("dask"), hide_package("pint"), terminal.progress_bar(quiet=quiet or json) as report:
         try:
             data = simulate(study, progress=lambda time, end: report("simulating", COMPUTING * time / end))
         except Interrupted as stop:
@@ -106,11 +106,11 @@ def _say(
 
     items = chain(run_items(study, data), ["", _where(data, folder, files)])
     places = {"folder": folder, "files": files}
-    terminal.tell(items, lambda: run_as_dict(study, data) | places, json=json, verbose=verbose)
+    terminal.print_answer(items, lambda: run_as_dict(study, data) | places, json=json, verbose=verbose)
 
 
 def _where(data: Dataset, folder: Path, files: Sequence[Path]) -> str:
-    """Where the files are, and what they took."""
+    """Sentence on the files of a run, and on the steps and the time that it took."""
     formats = list(dict.fromkeys(path.suffix for path in files if path.suffix[1:] in FORMATS))
     names = ", ".join(path.name for path in files if path.suffix not in formats)
     names = names.replace("report.html", "report.html (open it in a browser)")
@@ -123,21 +123,21 @@ def _where(data: Dataset, folder: Path, files: Sequence[Path]) -> str:
 
 def _stopped(data: Dataset, *, json: bool) -> None:
     kept = "what was computed is kept and marked as partial" if data.attrs["partial"] else "the whole result is kept"
-    what = f"{stopped()} at t = {float(data.time[-1]):.6g} s; {kept}"
+    what = f"{stop_words()} at t = {float(data.time[-1]):.6g} s; {kept}"
     print_parts({"kind": "interrupt", "what": what}, INTERRUPTED, as_json=json)
 
 
 def _failed(data: Dataset, *, json: bool) -> None:
     what = f"the simulation stopped at t = {float(data.time[-1]):.6g} s: {data.attrs['failure']}"
-    show(ComputationError(what, next_step="What was computed is kept and marked as partial"), as_json=json)
+    print_error(ComputationError(what, next_step="What was computed is kept and marked as partial"), as_json=json)
 
 
 Clear = Annotated[bool, typer.Option("--clear", help="Remove all kernels; each is compiled again when needed.")]
 
 
-@guarded
+@report_failures
 def cache(clear: Clear = False, json: Json = False) -> None:
-    """Where compiled kernels are kept, how many there are, and how to remove them.
+    """Show where compiled kernels are stored, how many there are and their size, or remove them.
 
     FLEXAPOD_CACHE chooses another folder, FLEXAPOD_CACHE_MEGABYTES another bound.
     """
@@ -151,7 +151,7 @@ def cache(clear: Clear = False, json: Json = False) -> None:
         items = [f"Folder: {found.folder}", f"{kernels}, {_megabytes(found.size)} of at most {_megabytes(found.limit)}"]
         if found.unused_because:
             items += [f"Not used: {found.unused_because}. Each run compiles its own kernels."]
-    terminal.tell(items, lambda: _as_dict(found, cleared=clear), json=json)
+    terminal.print_answer(items, lambda: _as_dict(found, cleared=clear), json=json)
 
 
 def _as_dict(found: CacheContent, *, cleared: bool) -> dict[str, object]:

@@ -1,8 +1,7 @@
-"""Commands about study files: `new` writes one, `keys` says what it may contain, `check` describes it in words.
+"""Commands on study files: `new` writes one, `keys` says what it may contain, `check` describes it as text.
 
-The examples of the gallery, and the notebooks: files that `flexapod new --example` writes and `--list` names.
-
-Names of tables and keys of a study file, read without the model: answers about wrong ones come at once.
+`new --example` also writes the examples of the gallery and the notebooks, which `--list` names. Names of tables
+and keys are read without the model: answers about wrong ones come at once.
 """
 
 from __future__ import annotations
@@ -15,16 +14,20 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from flexapod.app.cli.failures import guarded
+from flexapod.app.cli.failures import report_failures
 from flexapod.app.cli.options import Force, Json, StudyFile, Verbose, as_options, refuse_existing
-from flexapod.common.errors import InputError, closest, nearest
+from flexapod.common.errors import InputError, closest_word, suggest_word
 from flexapod.common.files import write_text
-from flexapod.common.tables.reference import Entry, reference
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.output.text import parts
-from flexapod.output.text.terminal import tell
+from flexapod.output.text.terminal import print_answer
 
 if TYPE_CHECKING:
-    from flexapod.model.file.page import Listed
+    from flexapod.common.tables import reference
+    from flexapod.common.tables.reference import Entry
+    from flexapod.model.file.page import ListedEntry
+else:
+    reference = LazyModule("flexapod.common.tables.reference")
 
 Name = Annotated[Path | None, typer.Argument(metavar="NAME.toml", help="File to write.")]
 Preset = Annotated[
@@ -60,7 +63,7 @@ Notebook = Annotated[
 List = Annotated[bool, typer.Option("--list", help="Name all presets, examples and notebooks.")]
 
 
-@guarded
+@report_failures
 def new(
     name: Name = None, preset: Preset = None, request: From = None, ideal: Ideal = False, example: Example = None,
     notebook: Notebook = None, listed: List = False, force: Force = False, json: Json = False,
@@ -96,11 +99,10 @@ def new(
     write_text(path, text)
     words = f", from the preset {source['preset']}" if "preset" in source else ""
     data = {"file": path, **source, **({} if request is None else {"remarks": remarks})}
-    tell([*remarks, f"{path} written{words}. Edit it, then: flexapod check {path}"], lambda: data, json=json)
+    print_answer([*remarks, f"{path} written{words}. Edit it, then: flexapod check {path}"], lambda: data, json=json)
 
 
 def _list(*, json: bool) -> None:
-    pass  # FOLD
     from flexapod.model import PRESETS
 
     found = {
@@ -108,17 +110,15 @@ def _list(*, json: bool) -> None:
         **{option: titles(option) for option in ("--example", "--notebook")},
     }
     items = [f"{option} {name}".ljust(40) + title for option, names in found.items() for name, title in names.items()]
-    tell(items, lambda: {option.strip("-"): names for option, names in found.items()}, json=json)
+    print_answer(items, lambda: {option.strip("-"): names for option, names in found.items()}, json=json)
 
 
 def _example(option: str, wanted: str, name: Path | None, *, force: bool, json: bool) -> None:
-    pass  # FOLD
-
-    written, path = text(option, wanted), place(option, wanted, name)
+    written, path = text(option, wanted), example_path(option, wanted, name)
     refuse_existing(path, force)
     write_text(path, written)
     run = f"python {path}" if option == "--example" else f"jupytext --to ipynb {path}, or open it in Jupyter"
-    tell([f"{path} written. Run it: {run}"], lambda: {"file": path, option.strip("-"): wanted}, json=json)
+    print_answer([f"{path} written. Run it: {run}"], lambda: {"file": path, option.strip("-"): wanted}, json=json)
 
 
 def _preset(name: str) -> tuple[str, dict[str, object], list[str]]:
@@ -131,7 +131,7 @@ def _preset(name: str) -> tuple[str, dict[str, object], list[str]]:
 def _first_robot(request: str, preset: str | None, *, ideal: bool) -> tuple[str, dict[str, object], list[str]]:
     """Text of a first robot, what it is from, and what there is to say about it."""
     from flexapod.design.first_robot import IDEAL, first_robot, parse_request
-    from flexapod.output.text.answers import first_words
+    from flexapod.output.text.answers import first_robot_sentences
 
     if preset is not None:
         raise InputError("is given together with --from", key="--preset", value=preset, allowed="one of the two")
@@ -141,7 +141,7 @@ def _first_robot(request: str, preset: str | None, *, ideal: bool) -> tuple[str,
             "is given together with --from drive", key="--ideal", value=wanted.drive, allowed="one of the two"
         )
     text = first_robot(replace(wanted, drive=IDEAL) if ideal else wanted)
-    return text, {"from": request}, first_words(text)
+    return text, {"from": request}, first_robot_sentences(text)
 
 
 Table = Annotated[str | None, typer.Argument(metavar="[TABLE]", help="Only this table and those in it: leg.drive")]
@@ -152,12 +152,10 @@ Schema = Annotated[
 ]
 
 
-@guarded
+@report_failures
 def keys(table: Table = None, markdown: Markdown = None, schema: Schema = None, json: Json = False) -> None:
     """Show every key of a study file: what it is, unit, what it is if left out, what is allowed, an example."""
     from dataclasses import asdict
-
-    pass  # FOLD
 
     if table is not None:
         check_table(table)
@@ -170,18 +168,18 @@ def keys(table: Table = None, markdown: Markdown = None, schema: Schema = None, 
     from flexapod.model.file import page
 
     if markdown is not None:
-        write_text(markdown, page.markdown())
+        write_text(markdown, page.study_file_page())
     if schema is not None:
         from flexapod.model.file.json_schema import json_schema
 
         write_text(schema, json_schema())
-    found = page.listed(table)
+    found = page.list_entries(table)
     written = [f"{' and '.join(files)} written."] if files else None
     told = (_key_chapter(item, page.HEAD, alone=table is not None) for item in found)
-    tell(written or told, lambda: [asdict(item) for item in found], json=json)
+    print_answer(written or told, lambda: [asdict(item) for item in found], json=json)
 
 
-def _key_chapter(found: Listed, head: Sequence[str], *, alone: bool) -> parts.Chapter:
+def _key_chapter(found: ListedEntry, head: Sequence[str], *, alone: bool) -> parts.Chapter:
     """A table of a study file: its words, its keys, an example."""
     entry = found.entry
     title = f"[{entry.table}] {entry.title}".rstrip() + ("" if alone else f" ({entry.study})")
@@ -193,20 +191,21 @@ def _key_chapter(found: Listed, head: Sequence[str], *, alone: bool) -> parts.Ch
     )
 
 
-@guarded
+@report_failures
 def check(file: StudyFile, verbose: Verbose = False, json: Json = False) -> None:
     """Validate a study and say in words what it asks of its legs: lengths, strokes, loads, stiffness, frequencies."""
     from flexapod.analysis.description.robot_description import describe
     from flexapod.model import Study, load
     from flexapod.output.text.check import check_items
+    from flexapod.output.text.description import control_words, description_as_dict
 
     found, control = describe(study := load(file)), ()
     if isinstance(study, Study) and study.control is not None:
-        from flexapod.analysis.predicted_damping import control_words
+        from flexapod.analysis.predicted_damping import control_effect
 
-        control = control_words(study)
-    data = lambda: found.as_dict() | ({"control": control} if control else {})  # noqa: E731
-    tell(check_items(found, control), data, json=json, verbose=verbose)
+        control = control_words(control_effect(study))
+    data = lambda: description_as_dict(found) | ({"control": control} if control else {})  # noqa: E731
+    print_answer(check_items(found, control), data, json=json, verbose=verbose)
 
 
 _FOLDERS = {"--example": "examples/gallery", "--notebook": "examples/notebooks"}
@@ -228,13 +227,13 @@ def text(option: str, name: str) -> str:
     """
     known = titles(option)
     if name not in known:
-        next_step = closest(name, known) or "flexapod new --list names them"
+        next_step = suggest_word(name, known) or "flexapod new --list names them"
         raise InputError("is not known", key=option, value=name, allowed=", ".join(known), next_step=next_step)
     return files("flexapod").joinpath(_FOLDERS[option], f"{name}.py").read_text(encoding="utf-8")
 
 
-def place(option: str, name: str, given: Path | None) -> Path:
-    """Where an example is written: NAME.py here, unless another place is given."""
+def example_path(option: str, name: str, given: Path | None) -> Path:
+    """Path at which an example is written: NAME.py here, unless another place is given."""
     if given is not None and (given.is_dir() or given.suffix not in ("", ".py")):
         words = "is a folder" if given.is_dir() else "is no name of a Python file"
         raise InputError(words, file=given, allowed="FILE.py", next_step=f"{option} {name} alone writes {name}.py")
@@ -259,7 +258,7 @@ def check_table(wanted: str) -> None:
     InputError
         With the table that is meant: of that last name, with a key of that name, or of a similar name.
     """
-    entries = reference().entries
+    entries = reference.reference().entries
     tables = list(dict.fromkeys(entry.table for entry in entries))
     if any(f"{table}.".startswith(f"{wanted}.") for table in tables):
         return
@@ -285,8 +284,8 @@ def _meant(wanted: str, tables: list[str], entries: tuple[Entry, ...]) -> str:
     lasts = {name.rpartition(".")[2]: name for name in reversed(tables)}
     keys = {f"{entry.table}.{key}": entry.table for entry in entries for key in entry.data}
     keys = {name: table for name, table in keys.items() if name not in tables}
-    close = nearest(wanted, [*tables, *keys])
+    close = closest_word(wanted, [*tables, *keys])
     if close in keys:
         return f"Did you mean the key {close}? `flexapod keys {keys[close]}`"
-    close = close or lasts.get(nearest(last, lasts) or "")
+    close = close or lasts.get(closest_word(last, lasts) or "")
     return f"Did you mean {close!r}?" if close else "`flexapod keys` lists all tables with their keys"

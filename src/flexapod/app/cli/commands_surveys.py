@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from flexapod.app.cli.failures import INTERRUPTED, guarded, print_parts, stopped
+from flexapod.app.cli.failures import INTERRUPTED, print_parts, report_failures, stop_words
 from flexapod.app.cli.options import Json, NoFigures, Out, Quiet, StudyFile, as_options, results_folder
-from flexapod.common.lazy_imports import without
+from flexapod.common.lazy_imports import hide_package
 from flexapod.output.text import terminal
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ RetryFailed = Annotated[bool, typer.Option("--retry-failed", help="Compute point
 Zarr = Annotated[bool, typer.Option("--zarr", help="Write what was computed also as Zarr, for other programs.")]
 
 
-@guarded
+@report_failures
 def sweep(
     file: StudyFile, sweep_file: SweepFile, out: SweepOut = None, scheduler: Scheduler = None, workers: Workers = None,
     retry_failed: RetryFailed = False, zarr: Zarr = False, no_figures: NoFigures = False, json: Json = False,
@@ -50,7 +50,7 @@ def sweep(
     folder = results_folder(file, sweep_file.stem, out)
     store = folder / ("sweep.zarr" if zarr else "sweep.sqlite")
     options = as_options(workers="--workers", scheduler="--scheduler")
-    with without("dask.array"), options, terminal.progress_bar(quiet=quiet or json) as report:
+    with hide_package("dask.array"), options, terminal.progress_bar(quiet=quiet or json) as report:
         try:
             data = compute(
                 file, sweep_file, store=store, scheduler=scheduler, workers=workers, retry_failed=retry_failed,
@@ -85,7 +85,7 @@ def _say_sweep(data: Dataset, folder: Path, files: list[Path], *, json: bool) ->
 
     where = f"In {folder}: {', '.join(path.name for path in files)}."
     places = {"folder": folder, "files": files}
-    terminal.tell(chain(sweep_items(data), ["", where]), lambda: sweep_as_dict(data) | places, json=json)
+    terminal.print_answer(chain(sweep_items(data), ["", where]), lambda: sweep_as_dict(data) | places, json=json)
 
 
 def _stopped_sweep(data: Dataset, *, json: bool) -> None:
@@ -93,7 +93,7 @@ def _stopped_sweep(data: Dataset, *, json: bool) -> None:
     print_parts(
         {
             "kind": "interrupt",
-            "what": f"{stopped()} after {done} of {data.sizes['point']} points, which are stored",
+            "what": f"{stop_words()} after {done} of {data.sizes['point']} points, which are stored",
             "next_step": f"To continue, run the same command again: {shlex.join(['flexapod', *sys.argv[1:]])}",
         },
         INTERRUPTED,
@@ -107,7 +107,7 @@ Accuracy = Annotated[
 Ladder = Annotated[bool, typer.Option("--ladder", help="Also every fidelity, rigid to solid-fem: error against cost.")]
 
 
-@guarded
+@report_failures
 def converge(
     file: StudyFile, accuracy: Accuracy = 1e-2, ladder: Ladder = False, out: Out = None,
     no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
@@ -184,10 +184,10 @@ def _say(tables: dict[str, Dataset], folder: Path, files: list[Path], *, json: b
     said = {"convergence": convergence_items, "ladder": ladder_items}
     where = f"In {folder}: {', '.join(path.name for path in files)}."
     items = (item for name, data in tables.items() for item in said[name](data))
-    terminal.tell(chain(items, ["", where]), data, json=json)
+    terminal.print_answer(chain(items, ["", where]), data, json=json)
 
 
 def _stopped(tables: dict[str, Dataset], *, json: bool) -> None:
     count = sum(data.sizes["setting"] for data in tables.values())
-    what = f"{stopped()} after {count} settings; what was computed is kept and marked as partial"
+    what = f"{stop_words()} after {count} settings; what was computed is kept and marked as partial"
     print_parts({"kind": "interrupt", "what": what}, INTERRUPTED, as_json=json)

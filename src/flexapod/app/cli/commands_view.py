@@ -11,10 +11,10 @@ from typing import Annotated
 
 import typer
 
-from flexapod.app.cli.failures import guarded
+from flexapod.app.cli.failures import report_failures
 from flexapod.app.cli.options import Json
 from flexapod.common.errors import InputError
-from flexapod.output.text.terminal import tell
+from flexapod.output.text.terminal import print_answer
 
 LOCAL = "127.0.0.1"
 PACKAGES = ("msgspec", "tomlkit", "viser", "websockets")  # what the page alone needs
@@ -35,7 +35,7 @@ Name = Annotated[
 NoBrowser = Annotated[bool, typer.Option("--no-browser", help="Do not open the page in the browser.")]
 
 
-@guarded
+@report_failures
 def view(
     file: File,
     host: Host = LOCAL,
@@ -121,4 +121,4 @@ def _say(page: str, host: str, *, json: bool) -> None:
             "There is no password."
         )
     # at once: whoever reads the address may end it before another line is written
-    tell([said], lambda: {"address": page, "local": local}, json=json)
+    print_answer([said], lambda: {"address": page, "local": local}, json=json)

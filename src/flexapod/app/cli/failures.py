@@ -1,4 +1,4 @@
-"""Errors and signals at the edge: words or JSON on stderr, and an exit code; a traceback only where it is asked for."""
+"""Errors and signals of commands: text or JSON on stderr, and an exit code; a traceback only if it is asked for."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ import typer
 
 from flexapod.common.errors import FlexapodError, InputError
 from flexapod.common.version import __version__
-from flexapod.output.text.answers import lines_of, parts_of
+from flexapod.output.text.parts import error_lines, error_parts
 
 _received: list[int] = []
 
 
-def heed_signals() -> None:
-    """From now on they arrive as KeyboardInterrupt; one that is ignored, as after nohup, stays so."""
+def install_signal_handlers() -> None:
+    """Make SIGTERM and SIGHUP raise KeyboardInterrupt; one that is ignored, as after nohup, stays so."""
     for name in ("SIGTERM", "SIGHUP"):
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is signal.SIG_DFL:
@@ -39,8 +39,8 @@ def _stop(number: int, _: FrameType | None) -> NoReturn:
     raise KeyboardInterrupt
 
 
-def stopped() -> str:
-    """By what the command is being stopped, in words."""
+def stop_words() -> str:
+    """Text on what stops the command: a signal, or Ctrl-C."""
     return f"stopped by {signal.Signals(_received[0]).name if _received else 'Ctrl-C'}"
 
 
@@ -60,7 +60,7 @@ _TABLES = {
 }  # fmt: skip
 
 
-def guarded(command: Callable[P, None]) -> Callable[P, None]:
+def report_failures(command: Callable[P, None]) -> Callable[P, None]:
     """Turn what a command raises into a message on stderr and an exit code; its ``json`` argument says in which form.
 
     2: bad input; 1: a failed computation, or a fault of ours; 130: stopped by Ctrl-C.
@@ -76,12 +76,12 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             raise
         except FlexapodError as error:
             _trace()
-            show(_placed(error, kwargs), as_json=as_json)
+            print_error(_placed(error, kwargs), as_json=as_json)
             raise typer.Exit(error.exit_code) from None
         except (KeyboardInterrupt, Exception) as error:
             _trace()
             parts, code = (
-                ({"kind": "interrupt", "what": f"{stopped()}; files already written are whole"}, INTERRUPTED)
+                ({"kind": "interrupt", "what": f"{stop_words()}; files already written are whole"}, INTERRUPTED)
                 if _by_ctrl_c(error)
                 else (_no_room(error) or _fault(error), 1)
             )
@@ -99,9 +99,9 @@ def _placed(error: FlexapodError, given: Mapping[str, object]) -> FlexapodError:
     return error.located(file=file) if re.split(r"[.\[]", error.key or "")[0] in _TABLES else error
 
 
-def show(error: FlexapodError, *, as_json: bool) -> None:
+def print_error(error: FlexapodError, *, as_json: bool) -> None:
     """An error on stderr: a line each for file, key, value, what is allowed and the next step; or one JSON object."""
-    print_parts(parts_of(error), error.exit_code, as_json=as_json)
+    print_parts(error_parts(error), error.exit_code, as_json=as_json)
 
 
 @contextmanager
@@ -136,13 +136,13 @@ def print_parts(parts: Mapping[str, str | None], exit_code: int, *, as_json: boo
     if as_json:
         text = _json.dumps({"error": {**parts, "exit_code": exit_code}}, ensure_ascii=False)
     else:
-        text = "\n".join(lines_of(parts))
+        text = "\n".join(error_lines(parts))
     with suppress(OSError):  # where stderr takes no more, the exit code says it
         print(text, file=sys.stderr, flush=True)
 
 
 def _by_ctrl_c(error: BaseException | None) -> bool:
-    """Whether Ctrl-C is at the root of an error: a library may turn it into one of its own."""
+    """Test whether Ctrl-C is at the root of an error: a library may turn it into one of its own."""
     while error is not None:
         if isinstance(error, KeyboardInterrupt) or KeyboardInterrupt.__name__ in str(error):
             return True
@@ -158,7 +158,7 @@ def _no_room(error: BaseException) -> dict[str, str | None] | None:
     return {"kind": "computation", "what": what, "next_step": "Make space, or write to another place"}
 
 
-def say_full(error: OSError) -> None:
+def report_output_error(error: OSError) -> None:
     """Say on stderr that stdout takes no more; who has closed it wants nothing said."""
     if not isinstance(error, BrokenPipeError):
         print_parts(_no_room(error) or _fault(error), 1, as_json=False)
@@ -174,6 +174,6 @@ def _fault(error: BaseException) -> dict[str, str | None]:
 
 
 def _trace() -> None:
-    """Where the error being handled arose, if asked for."""
+    """Print where the error being handled arose, if asked for."""
     if os.environ.get("FLEXAPOD_DEBUG", "") not in ("", "0"):
         traceback.print_exc()

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.common.errors import InputError
-from flexapod.common.files import check_name, scratch
+from flexapod.common.files import check_name, temporary_folder
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -85,7 +85,7 @@ def parse_formats(text: str) -> tuple[str, ...]:
 
 
 def results_folder(file: Path, command: str, out: Path | None) -> Path:
-    """Where results go: `out`, else beside the study file, ``robot-run``; refused where it cannot be written to."""
+    """Folder of the results: `out`, else beside the study file, ``robot-run``; refused if it cannot be written to."""
     folder = file.with_name(f"{file.stem}-{command}") if out is None else out
     check_writable(folder)
     return folder
@@ -98,7 +98,7 @@ def check_writable(folder: Path | None, key: str = "--out") -> None:
     check_name(folder.absolute(), key)
     existing = next(place for place in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(place))
     try:
-        with scratch(existing):
+        with temporary_folder(existing):
             pass
     except OSError as error:
         what = (
@@ -116,32 +116,32 @@ def write_data(data: Dataset, folder: Path) -> list[Path]:
 
 def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str]) -> list[Path]:
     """Data, figures in the formats asked for (none: no figures), ``report.html``; `report` is told what is written."""
-    from flexapod.output.report.figures import Drawn, drawing
+    from flexapod.output.report.figures import StoredFigure, concurrent_drawing
     from flexapod.output.report.report import write_report
     from flexapod.output.text import html
 
     if formats:
         _without_help()
     data.load()  # what nobody has asked for yet each copy of this process would make for itself
-    figures: list[Drawn] = []
+    figures: list[StoredFigure] = []
     processes = PROCESSES if data.sizes["time"] >= MANY else 1
-    with drawing(data, folder, formats, processes) if formats else nullcontext(list[Drawn]) as drawn:
+    with concurrent_drawing(data, folder, formats, processes) if formats else nullcontext(list[StoredFigure]) as drawn:
         report("writing results", 0.90)
         files = write_data(data, folder)
 
-        def waited() -> list[Drawn]:
+        def finish_figures() -> list[StoredFigure]:
             if formats:
                 html.library()  # while others draw
             report("drawing figures", 0.94)
             figures.extend(drawn())
             return figures
 
-        page = write_report(data, folder, waited)
+        page = write_report(data, folder, finish_figures)
     return [*files, *(path for figure in figures for path in figure.files), page]
 
 
 def _without_help() -> None:
-    """Matplotlib writes help on the keywords of each of its classes as it is imported: nobody reads it in a command."""
+    """Import matplotlib without the help that it writes on each of its classes: nobody reads it in a command."""
     from matplotlib.artist import Artist
 
     Artist._update_set_signature_and_docstring = classmethod(lambda _: None)  # type: ignore[attr-defined]

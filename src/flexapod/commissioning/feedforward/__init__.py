@@ -1,4 +1,4 @@
-"""Commands that a study should follow instead of its own: compensated, shaped, of least time."""
+"""Feedforward commands in place of a study's own: compensated, shaped, of least time."""
 
 from flexapod.commissioning.feedforward.compensation import compensate
 from flexapod.commissioning.feedforward.least_time import time_optimal

@@ -1,6 +1,6 @@
-"""A single actuator whose tip follows what its rigid beam would do, by (T20.25) and (T22.20).
+"""Commands of a single actuator whose tip follows its rigid beam, by (T20.25) and (T22.20)-(T22.22).
 
-Inputs that a linear system needs for a wanted output, bounded, before it moves and after, Eqs. (T22.20)-(T22.22).
+Inputs of a linear system for a wanted output are bounded; they act before the output moves, and after.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from flexapod import kinematics
 from flexapod.analysis.linear import linearize
-from flexapod.commissioning.feedforward.command_table import saved
+from flexapod.commissioning.feedforward.command_table import save_study
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.common.quantities import text
@@ -97,7 +97,7 @@ def inverse(system: StateSpace, moving: float, bend: Callable[[Array], Array]) -
 
 
 def _lasts(zeros: Complex) -> float:
-    """How long inputs of these zeros last [s]."""
+    """Duration of inputs with these zeros [s]."""
     return DECAY / float(np.abs(zeros.real).min()) if zeros.size else 0.0
 
 
@@ -117,7 +117,7 @@ def _bends(system: StateSpace, hz: Array) -> Complex:
     return found
 
 
-def answer(system: StateSpace, time: Array, value: Array) -> Array:
+def linear_response(system: StateSpace, time: Array, value: Array) -> Array:
     """Outputs (outputs, n) at even instants of a system at rest under an input, straight between them, (T22.22)."""
     from scipy.linalg import expm
 
@@ -152,12 +152,12 @@ class TipStudy:
 
     @property
     def longer(self) -> float:
-        """By how much longer the hub or its motor acts than the tip moves [s]."""
+        """Time that the hub or its motor acts beyond the motion of the tip [s]."""
         return self.inverse.before + self.inverse.after
 
     @property
     def sentence(self) -> str:
-        """Benefit, cost and effect in words."""
+        """Benefit, cost and effect as text."""
         what = "the hub's motor pushes" if self.drives == "force" else "the hub turns"
         early, late = (f"{text(x, 's')}" for x in (self.inverse.before, self.inverse.after))
         return (
@@ -180,14 +180,14 @@ def tip_inversion(study: ActuatorStudy, drives: Drives = "given", out: str | Pat
     wanted = kinematics.motion_law(law, np.clip(found.time, 0.0, moving))
     bend = np.where((found.time >= 0) & (found.time <= moving), wanted.acceleration, 0.0)
     own, new = (
-        np.abs(answer(system, found.time, value)[0] - length * wanted.position).max()
+        np.abs(linear_response(system, found.time, value)[0] - length * wanted.position).max()
         for system, value in ((turned, bend), (used, found.value))
     )
     made = TipStudy(study=study, drives=drives, inverse=found, miss=(float(own), float(new)))
-    return _told(made, law, out)
+    return _tip_result(made, law, out)
 
 
-def _told(made: TipStudy, law: MotionLaw, out: str | Path | None) -> TipStudy:
+def _tip_result(made: TipStudy, law: MotionLaw, out: str | Path | None) -> TipStudy:
     """The study that does it, with what it brings."""
     from scipy.interpolate import CubicSpline
 
@@ -204,7 +204,7 @@ def _told(made: TipStudy, law: MotionLaw, out: str | Path | None) -> TipStudy:
         motion, load = study.motion.replace(rotation=CsvLaw(time=time[some], value=angle[some])), study.load
     notes = (*study.notes, made.sentence)
     told = replace(made, study=study.replace(motion=motion, load=load, simulation=simulation, notes=notes))
-    return told if out is None else replace(told, study=saved(told.study, out))
+    return told if out is None else replace(told, study=save_study(told.study, out))
 
 
 def _refuse(study: ActuatorStudy, drives: str) -> tuple[MotionLaw, float]:

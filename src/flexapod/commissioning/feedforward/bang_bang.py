@@ -12,7 +12,7 @@ from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.common.quantities import number, text
 from flexapod.control import StateSpace
-from flexapod.control.norms import apart
+from flexapod.control.norms import split_spectrum
 
 PIECES = 200  # of constant input, by which the order of switches is found
 CLOSE = 1e-6  # of the time, up to which pieces are made shorter
@@ -45,7 +45,7 @@ class Switched:
 
     @property
     def sentence(self) -> str:
-        """Benefit, cost and effect in words."""
+        """Benefit, cost and effect as text."""
         also = ", whatever small error its frequencies have" if self.robust else ""
         return (
             f"the input switches {len(self.times)} times and is over after {text(self.duration, 's', 5)}: then nothing "
@@ -58,7 +58,7 @@ class Switched:
         return f"Switched({shown}, end {number(self.duration, 6)}: {self.sentence})"
 
 
-def switched(system: StateSpace, end: ArrayLike, limit: float = 1.0, *, robust: bool = False) -> Switched:
+def bang_bang_input(system: StateSpace, end: ArrayLike, limit: float = 1.0, *, robust: bool = False) -> Switched:
     """The least time from rest at 0 to rest where the outputs are `end`, of a system of one input within a limit.
 
     Parameters
@@ -126,7 +126,7 @@ def _rigid(A: Array, B: Array, target: Array) -> tuple[Array, Array, Array]:
     """The part of a system that does not oscillate."""
     scale = OSCILLATES * max(1.0, float(np.abs(A).max()))
     both = np.column_stack([B, target])
-    still, _ = apart(A, both, np.zeros((0, len(A))), lambda pole: abs(pole.imag) <= 1e3 * scale)
+    still, _ = split_spectrum(A, both, np.zeros((0, len(A))), lambda pole: abs(pole.imag) <= 1e3 * scale)
     return still.A, still.B[:, 0], still.B[:, 1]
 
 
@@ -153,7 +153,7 @@ def _least(A: Array, B: Array, target: Array) -> tuple[Array, int, float]:
 
 
 def _inside(u: Array | None, k: int, h: float) -> float:
-    """Where within a piece that is not full the sign changes."""
+    """Offset of a sign change from the boundary of its two pieces, by their distance from full input [s]."""
     if u is None:
         return 0.0
     left, right = abs(u[k]), abs(u[k + 1])

@@ -18,7 +18,7 @@ from flexapod.kinematics import Law
 from flexapod.kinematics.laws import spline, spline_law
 from flexapod.model import AXES, ActuatorStudy, CsvLaw, CsvMotion, Motion, Study, load
 from flexapod.model.motion import Axis
-from flexapod.model.stored import stored_tables
+from flexapod.model.stored_tables import stored_tables
 
 FEWEST, MOST = 100, 3200  # rows between first and last knot
 ENOUGH = 1e-5  # of the largest acceleration of each kind, by which that of the table may be off in the mean
@@ -27,7 +27,7 @@ NEAREST = (1e-3, 2e-4, 1e-5)  # s: rows beside a knot where the law's derivative
 GROWTH = 1.6  # of the distances of rows from there on: below the 2.6 up to which splines of graded rows stay near
 
 
-class Tabled(NamedTuple):
+class CommandTable(NamedTuple):
     """A motion as a table; `place`, `acceleration`: how much it is off, at most and in the mean, over the largest."""
 
     motion: CsvMotion
@@ -36,12 +36,12 @@ class Tabled(NamedTuple):
 
     @property
     def error(self) -> tuple[bool, float]:
-        """What makes one table better than another: accelerations, of laws whose rate jumps places."""
+        """Sort key of tables by their error: in accelerations, or in places for laws whose rate jumps."""
         jumps = self.acceleration > JUMPS
         return jumps, self.place if jumps else self.acceleration
 
 
-def tabled(
+def tabulate_law(
     law: Callable[[Array], Law],
     knots: Array,
     like: Motion,
@@ -50,7 +50,7 @@ def tabled(
     *,
     hold: float = 0.0,
     rows: Array | None = None,
-) -> Tabled:
+) -> CommandTable:
     """The table of a law: rows are doubled until the accelerations of the spline through them are those of the law.
 
     Parameters
@@ -70,7 +70,7 @@ def tabled(
     rows : ndarray, optional
         Instants of the rows, where they are chosen.
     """
-    best: Tabled | None = None
+    best: CommandTable | None = None
     count = FEWEST
     while rows is not None or count <= MOST:
         for time in (rows,) if rows is not None else _choices(knots, count):
@@ -86,7 +86,9 @@ def tabled(
     return best
 
 
-def _through(law: Callable[[Array], Law], time: Array, like: Motion, axes: Mask, length: float, hold: float) -> Tabled:
+def _through(
+    law: Callable[[Array], Law], time: Array, like: Motion, axes: Mask, length: float, hold: float
+) -> CommandTable:
     """The table with these rows, a turn counted at a `length` [m]."""
     pose = np.where(axes, law(time).position, 0.0)
     between = (time[:-1, None] + np.diff(time)[:, None] * np.array([0.25, 0.5, 0.75])).ravel()
@@ -100,11 +102,11 @@ def _through(law: Callable[[Array], Law], time: Array, like: Motion, axes: Mask,
     )  # fmt: skip
     least = max(change.max(), np.finfo(float).tiny)
     off = wrong.max() / least, (share * bent).sum() / max(most.max(), least / time[-1] ** 2)
-    motion = CsvMotion(time=time, pose=pose, hold=hold, pivot=like.pivot, independent=named(axes))
-    return Tabled(motion, float(off[0]), float(off[1]))
+    motion = CsvMotion(time=time, pose=pose, hold=hold, pivot=like.pivot, independent=axis_names(axes))
+    return CommandTable(motion, float(off[0]), float(off[1]))
 
 
-def named(axes: Mask) -> tuple[Axis, ...] | None:
+def axis_names(axes: Mask) -> tuple[Axis, ...] | None:
     """Names of the coordinates (6,) that are commanded; None of all."""
     return None if axes.all() else tuple(axis for axis, asked in zip(AXES, axes, strict=True) if asked)
 
@@ -142,7 +144,7 @@ S = TypeVar("S", bound=Study | ActuatorStudy)
 
 
 def check_out(study: Study | ActuatorStudy, path: FileLike) -> Path:
-    """Where a study is to be written; refused where that is no study file, or the one that is read."""
+    """Check the path of a study to be written; refuse one that is no study file, or the one that is read."""
     place = path_of(path, "out")
     if place.suffix != ".toml":
         raise InputError("is no name of a study file", key="out", value=str(path), allowed="NAME.toml")
@@ -166,8 +168,8 @@ def check_out(study: Study | ActuatorStudy, path: FileLike) -> Path:
     return place
 
 
-def saved(study: S, path: FileLike) -> S:
-    """The study as a file with the table of its commands beside it; the study that the file holds.
+def save_study(study: S, path: FileLike) -> S:
+    """Write the study as a file, with the table of its commands as another; return the study that it holds.
 
     Parameters
     ----------
@@ -178,7 +180,7 @@ def saved(study: S, path: FileLike) -> S:
     """
     place = check_out(study, path)
     beside = place.with_suffix(".csv")
-    written, key = _named(study, beside.name)
+    written, key = _name_table(study, beside.name)
     write_text(beside, table_text(stored_tables(written)[key].content))
     said = "".join(f"# {line}\n" for line in study.notes)
     write_text(place, said + written.source_text)
@@ -186,7 +188,7 @@ def saved(study: S, path: FileLike) -> S:
     return found.replace(notes=study.notes)  # type: ignore[return-value]
 
 
-def _named(study: S, name: str) -> tuple[S, str]:
+def _name_table(study: S, name: str) -> tuple[S, str]:
     """The study with the name of the table of its commands, and the key of that table."""
     if isinstance(study, Study):
         return study.replace(motion=cast("CsvMotion", study.motion).replace(file=name)), "motion.file"

@@ -1,7 +1,4 @@
-"""A motion that brings the loaded tool onto the path of the drawing, Eqs. (T22.1)-(T22.5).
-
-Studies whose commands make up for what elastic robots do: the call for all of them.
-"""
+"""Compensation of elastic robots: motions that keep the loaded tool on its nominal path, Eqs. (T22.1)-(T22.5)."""
 
 from __future__ import annotations
 
@@ -13,11 +10,23 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.analysis.checks.checks import check_path
-from flexapod.analysis.results.arguments import FileLike, RobotLike, as_study, read
+from flexapod.analysis.results.arguments import FileLike, RobotLike, as_study, read_subject
 from flexapod.commissioning.feedforward.actuator_inversion import tip_inversion
-from flexapod.commissioning.feedforward.command_table import Tabled, check_out, named, saved, tabled
-from flexapod.commissioning.feedforward.correction_series import knots_of, lasts, refuse, refuse_beyond, static_series
-from flexapod.commissioning.feedforward.loaded_path import LoadedPath, apart
+from flexapod.commissioning.feedforward.command_table import (
+    CommandTable,
+    axis_names,
+    check_out,
+    save_study,
+    tabulate_law,
+)
+from flexapod.commissioning.feedforward.correction_series import (
+    check_correctable,
+    check_workspace,
+    correction_knots,
+    is_permanent,
+    static_series,
+)
+from flexapod.commissioning.feedforward.loaded_path import LoadedPath, tool_miss
 from flexapod.commissioning.feedforward.stable_inversion import elastic_compensation
 from flexapod.common.arguments import flag
 from flexapod.common.arrays import Array
@@ -60,7 +69,7 @@ class Compensation:
 
     @property
     def sentence(self) -> str:
-        """Benefit, cost and effect in words."""
+        """Benefit, cost and effect as text."""
         what, own = "weight and load", "its inertia and its own vibration are left"
         if self.periods is not None:
             what = "weight, load and the inertia of its path"
@@ -88,52 +97,54 @@ def compensation(
     as_built: bool = True,
     out: str | Path | None = None,
 ) -> Compensation:
-    """As `compensate`, with what it brings."""
+    """Compensate the motion of a study, as `compensate` does, and return it with its effect."""
     study = as_study(study)
     known = study if as_built else study.replace(robot=study.robot.replace(geometry=None, heat=None))
-    refuse(known, corrections, inertia=order == 2)
+    check_correctable(known, corrections, inertia=order == 2)
     check_path(study)
     path = LoadedPath(known, inertia=order == 2)
-    until = study.motion.end_time - study.motion.hold if lasts(study) else study.duration
-    knots = knots_of(study, until)
+    until = study.motion.end_time - study.motion.hold if is_permanent(study) else study.duration
+    knots = correction_knots(study, until)
     series = static_series(path, corrections, knots)
 
     def law(t: Array) -> Law:
-        return Law(*(x + y for x, y in zip(path.wanted(t), series(t), strict=True)))
+        return Law(*(x + y for x, y in zip(path.target_law(t), series(t), strict=True)))
 
     periods = None if order == 0 else _periods(study, knots)
     rows = None if periods is None else np.linspace(0.0, until, max(FEWEST, int(ROWS * min(periods, MOST))) + 1)
-    hold = study.motion.hold if lasts(study) else 0.0
+    hold = study.motion.hold if is_permanent(study) else 0.0
     length = kinematics.rigid_limbs(study.robot).L_c
-    table = tabled(law, knots, study.motion, path.axes, length, hold=hold, rows=rows)
-    found = _told(study, path, series.tail, table, periods)
-    refuse_beyond(found.study)
-    return found if out is None else replace(found, study=saved(found.study, out))
+    table = tabulate_law(law, knots, study.motion, path.axes, length, hold=hold, rows=rows)
+    found = _compensation_result(study, path, series.tail, table, periods)
+    check_workspace(found.study)
+    return found if out is None else replace(found, study=save_study(found.study, out))
 
 
 def _periods(study: Study, knots: Array) -> float:
-    """How many periods of the first mode at its start the path lasts."""
+    """Number of periods of the first mode, at its start, that the path lasts."""
     start = kinematics.poses(study.robot, study.motion, np.zeros(1))
     still = kinematics.Poses.at_rest(start.position, start.rotation)
     modes = modes_of(locked_poses(study.robot, study.simulation, still, study.load))
     return float(modes.frequency[0, 0] * knots[-1])
 
 
-def _told(study: Study, path: LoadedPath, tail: float, table: Tabled, periods: float | None) -> Compensation:
-    """What the table brings, at instants between those at which it was made."""
+def _compensation_result(
+    study: Study, path: LoadedPath, tail: float, table: CommandTable, periods: float | None
+) -> Compensation:
+    """Result with the effect of the table at instants between those at which it was made."""
     motion = table.motion
     robot, axes, t = path.study.robot, path.axes, np.linspace(0.0, motion.time[-1], LOOKS)
-    law, commanded = path.wanted(t), kinematics.coordinates(motion, t)
-    wanted = path.rigid(law, t)
-    goal, found = path.seen(wanted), []
+    law, commanded = path.target_law(t), kinematics.coordinates(motion, t)
+    wanted = path.rigid_poses(law, t)
+    goal, found = path.tool_coordinates(wanted), []
     for there in (law.position, commanded.position):
-        loaded = path.loaded(Law(there, law.rate, law.acceleration), t)
-        off = np.where(axes, goal - path.seen(loaded), 0.0)
-        parts = *apart(robot, loaded, wanted), off[:, :3], off[:, 3:]
+        loaded = path.loaded_poses(Law(there, law.rate, law.acceleration), t)
+        off = np.where(axes, goal - path.tool_coordinates(loaded), 0.0)
+        parts = *tool_miss(robot, loaded, wanted), off[:, :3], off[:, 3:]
         found.append([float(np.linalg.norm(part, axis=1).max()) for part in parts])
     tool, turned, way, turn = zip(*found, strict=True)
     told = Compensation(
-        study=study, periods=periods, named=named(axes) or (), tool=tool, turned=turned, commanded=(way, turn),
+        study=study, periods=periods, named=axis_names(axes) or (), tool=tool, turned=turned, commanded=(way, turn),
         tail=tail, table=table.acceleration,
     )  # fmt: skip
     return replace(told, study=study.replace(motion=motion, notes=(*study.notes, told.sentence)))
@@ -219,7 +230,7 @@ def compensate(
     >>> print(ahead.notes[0])
     commands make up for what weight and load do ...: the tool misses the wanted path by ... in place of 20.4 µm, ...
     """
-    subject = read(study)
+    subject = read_subject(study)
     if not isinstance(order, str | int) or isinstance(order, bool) or order not in get_args(Order):
         raise InputError("is not known", key="order", value=order, allowed='0, 2, "stable-inversion"')
     if not isinstance(subject, Study | ActuatorStudy):

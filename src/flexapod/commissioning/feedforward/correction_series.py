@@ -1,6 +1,6 @@
-"""Corrections that bring the loaded tool onto a path, as series of time, Eqs. (T22.1), (T22.3).
+"""Corrections that bring the loaded tool onto a path, as Chebyshev series of time, Eqs. (T22.1), (T22.3).
 
-A function of time that takes long to compute, as Chebyshev series between its knots, Eq. (T22.3).
+Functions that take long to compute are expanded between their knots.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _TO_SERIES = np.linalg.inv(chebvander(_NODES, NODES - 1))
 
 @dataclass(frozen=True, kw_only=True)
 class CorrectionSeries:
-    """Of m functions: ``edges`` (n + 1,) [s], ``coefficients`` (n, NODES, m); ``tail``: the last over the largest."""
+    """Series of m functions: ``edges`` (n + 1,) [s], ``coefficients`` (n, NODES, m); ``tail``: last over largest."""
 
     edges: Array
     coefficients: Array
@@ -50,8 +50,10 @@ class CorrectionSeries:
         return Law(*found)
 
 
-def series_of(compute: Callable[[Array], Array], knots: Array, enough: float, least: float = 0.0) -> CorrectionSeries:
-    """Series of a function between knots (n,) [s]; pieces are halved until what is left out is `enough` of the largest.
+def chebyshev_series(
+    compute: Callable[[Array], Array], knots: Array, enough: float, least: float = 0.0
+) -> CorrectionSeries:
+    """Series of a function between knots (n,) [s]; pieces are halved until the residual is `enough` of the largest.
 
     Parameters
     ----------
@@ -86,19 +88,19 @@ LEAST = 1e-9  # m, rad: of corrections that are smaller rounding is a part
 
 
 def static_series(path: LoadedPath, corrections: int, knots: Array) -> CorrectionSeries:
-    """What to add to the coordinates of a path between knots [s]."""
-    return series_of(lambda t: _correction(path, t, corrections), knots, TAIL, LEAST)
+    """Series of the correction that is added to the coordinates of a path between knots [s]."""
+    return chebyshev_series(lambda t: _correction(path, t, corrections), knots, TAIL, LEAST)
 
 
-def lasts(study: Study) -> bool:
-    """Whether the correction stays what it is once the motion is at its end."""
+def is_permanent(study: Study) -> bool:
+    """Test whether the correction stays constant once the motion is at its end."""
     robot, wrench = study.robot, study.load.wrench
     heat = robot.heat is not None and robot.heat.time is not None
     tables = any(getattr(leg.drive, "time", None) is not None for leg in robot.legs)
     return (wrench is None or isinstance(wrench, ConstantWrench)) and not heat and not tables
 
 
-def knots_of(study: Study, until: float) -> Array:
+def correction_knots(study: Study, until: float) -> Array:
     """Instants between which corrections are smooth; tables are, four times over."""
     if isinstance(study.motion, CsvMotion):
         inner = [float(study.motion.time[-1])]
@@ -109,18 +111,18 @@ def knots_of(study: Study, until: float) -> Array:
 
 
 def _correction(path: LoadedPath, t: Array, count: int) -> Array:
-    """What to add to the coordinates (T, 6), Eq. (T22.1): each time what the loaded robot still misses."""
-    law = path.wanted(t)
-    goal, added = path.seen(path.rigid(law, t)), np.zeros_like(law.position)
-    by_command = path.gain(law, t)
+    """Correction of the coordinates (T, 6), Eq. (T22.1): each time the residual error of the loaded robot is added."""
+    law = path.target_law(t)
+    goal, added = path.tool_coordinates(path.rigid_poses(law, t)), np.zeros_like(law.position)
+    by_command = path.command_gain(law, t)
     for _ in range(count):
-        there = path.loaded(Law(law.position + added, law.rate, law.acceleration), t)
-        missing = (goal - path.seen(there))[:, path.axes, None]
+        there = path.loaded_poses(Law(law.position + added, law.rate, law.acceleration), t)
+        missing = (goal - path.tool_coordinates(there))[:, path.axes, None]
         added[:, path.axes] += np.linalg.solve(by_command, missing)[..., 0]
     return added
 
 
-def refuse(study: Study, corrections: object, *, inertia: bool) -> None:
+def check_correctable(study: Study, corrections: object, *, inertia: bool) -> None:
     """Refuse a study whose commands would have to jump, and what has no path.
 
     Raises
@@ -173,7 +175,7 @@ def _refuse_inertia(study: Study) -> None:
         )
 
 
-def refuse_beyond(study: Study) -> None:
+def check_workspace(study: Study) -> None:
     """Refuse commands that leave the workspace where the path that they are for does not.
 
     Raises

@@ -1,4 +1,4 @@
-"""The least time between two poses, drives within their limits and little vibration left, Eqs. (T22.14)-(T22.19)."""
+"""The least time between two poses, with drives within their limits and little vibration, Eqs. (T22.14)-(T22.19)."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from numpy.typing import ArrayLike
 from flexapod import kinematics
 from flexapod.analysis.checks.checks import check_path
 from flexapod.analysis.results.arguments import FileLike, PoseLike, RobotLike, as_pose, as_study
-from flexapod.analysis.results.poses import coordinates_of
-from flexapod.commissioning.feedforward.bang_bang import Switched, switched
-from flexapod.commissioning.feedforward.command_table import check_out, saved
-from flexapod.commissioning.feedforward.loaded_path import Given, limits_of
-from flexapod.commissioning.feedforward.modal_path import PERIODS, vibration_along
-from flexapod.commissioning.feedforward.straight_line import StraightWay
+from flexapod.analysis.results.poses import pose_coordinates
+from flexapod.commissioning.feedforward.bang_bang import Switched, bang_bang_input
+from flexapod.commissioning.feedforward.command_table import check_out, save_study
+from flexapod.commissioning.feedforward.loaded_path import Given, drive_limits
+from flexapod.commissioning.feedforward.modal_path import PERIODS, path_vibration
+from flexapod.commissioning.feedforward.straight_line import StraightLine
 from flexapod.common.arguments import flag, number
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
@@ -31,7 +31,7 @@ RESIDUAL = "1 um"  # how much vibration is left where nothing else is asked for
 
 
 @dataclass(frozen=True, kw_only=True)
-class Fastest:
+class LeastTime:
     """A study that goes from pose to pose in the least time, and what that costs.
 
     ``duration``, ``unbounded`` [s]: with and without the bound for vibration; ``residual`` [m]: what is left by the
@@ -51,7 +51,7 @@ class Fastest:
 
     @property
     def sentence(self) -> str:
-        """Benefit, cost and effect in words."""
+        """Benefit, cost and effect as text."""
         flexible = f" and {100 * self.marched:.0f} % of forces by the flexible one" if self.marched else ""
         longer = (
             f"; drives of a rigid robot would hold {text(self.stiff, 's', 4)}" if self.duration > self.stiff else ""
@@ -138,14 +138,14 @@ def time_optimal(
         for key, value in (limits | {"start": start, "out": out, "residual": residual}).items():
             if value is not None and not (key == "residual" and isinstance(value, str) and value == RESIDUAL):
                 raise InputError("is for robots", key=key, value=value, allowed="end, limit, robust of a linear system")
-        return switched(subject, end, limit, robust=robust)  # type: ignore[arg-type]
+        return bang_bang_input(subject, end, limit, robust=robust)  # type: ignore[arg-type]
     for key, value, usual in (("limit", number(limit, "limit"), 1.0), ("robust", robust, False)):
         if value != usual:
             raise InputError("is for linear systems", key=key, value=value, allowed="speed, acceleration, force")
-    return fastest(subject, start, end, residual=residual, out=out, **limits).study
+    return least_time(subject, start, end, residual=residual, out=out, **limits).study
 
 
-def fastest(
+def least_time(
     subject: RobotLike,
     start: PoseLike = None,
     end: PoseLike = None,
@@ -155,29 +155,29 @@ def fastest(
     acceleration: Given = None,
     force: Given = None,
     out: FileLike | None = None,
-) -> Fastest:
-    """As `time_optimal` of a robot, with what it costs."""
+) -> LeastTime:
+    """Find the least time between two poses, as `time_optimal` of a robot does, with its cost."""
     study = as_study(subject)
     if out is not None:
         check_out(study, out)
-    limits, bound = limits_of(study, speed, acceleration, force), quantity(residual, "length", key="residual")
+    limits, bound = drive_limits(study, speed, acceleration, force), quantity(residual, "length", key="residual")
     if bound <= 0:
         raise InputError("is not a bound", key="residual", value=residual, allowed="above 0 m")
-    way = StraightWay(study, limits, *_ends(study, start, end))
-    period = PERIODS / way.first  # refused at once where nothing vibrates
-    low, place = way.without_vibration()
-    rough = way.study(low, place)
-    stiff, place = way.bounded(low, place, bound)
-    duration, place, marched = way.held(stiff, place, bound)
-    own = way.study(duration, place)
+    way = StraightLine(study, limits, *_ends(study, start, end))
+    period = PERIODS / way.lowest_frequency  # refused at once where nothing vibrates
+    low, place = way.least_time_within_limits()
+    rough = way.motion_study(low, place)
+    stiff, place = way.least_time_within_vibration(low, place, bound)
+    duration, place, marched = way.least_time_of_flexible_drives(stiff, place, bound)
+    own = way.motion_study(duration, place)
     check_path(own)
-    left = [vibration_along(x, t, t + period).after(t) for x, t in ((own, duration), (rough, low))]
-    told = Fastest(
+    left = [path_vibration(x, t, t + period).largest_after(t) for x, t in ((own, duration), (rough, low))]
+    told = LeastTime(
         study=own, duration=duration, unbounded=low, residual=(left[0], left[1]), bound=bound,
-        used=way.used(duration, place), marched=marched, stiff=stiff,
+        used=way.largest_share(duration, place), marched=marched, stiff=stiff,
     )  # fmt: skip
     told = replace(told, study=own.replace(notes=(*study.notes, told.sentence)))
-    return told if out is None else replace(told, study=saved(told.study, Path(out)))
+    return told if out is None else replace(told, study=save_study(told.study, Path(out)))
 
 
 def _ends(study: Study, start: PoseLike, end: PoseLike) -> tuple[Array, Array]:
@@ -186,7 +186,7 @@ def _ends(study: Study, start: PoseLike, end: PoseLike) -> tuple[Array, Array]:
     if robot.platform_fixed:
         raise InputError("has a platform that is fixed: nothing moves", key="robot.platform.fixed", value=True)
     last = kinematics.coordinates(motion, np.array([motion.end_time])).position[0]
-    first, there = (coordinates_of(robot, as_pose(robot, pose), motion.pivot)[0] for pose in (start, end))
+    first, there = (pose_coordinates(robot, as_pose(robot, pose), motion.pivot)[0] for pose in (start, end))
     there = last if end is None else there
     if np.abs(there - first).max() < 1e-12:
         raise InputError("is where the way starts", key="end", value=str(end), allowed="another pose than the start")

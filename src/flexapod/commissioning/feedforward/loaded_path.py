@@ -1,6 +1,6 @@
-"""Where the loaded robot stands that is commanded a path, at rest or with its inertia, Eqs. (T22.1)-(T22.2).
+"""Poses of the loaded robot on a commanded path, and use of its drives' limits, Eqs. (T22.1)-(T22.2), (T22.17).
 
-What a path asks of the drives, over what they may do, Eq. (T22.17).
+The robot is at rest at each pose, or with the inertia of its path.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.analysis.checks.screws import motor_torque
-from flexapod.analysis.results.poses import BATCH, coordinates_of
+from flexapod.analysis.results.poses import BATCH, pose_coordinates
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.common.units import quantity
-from flexapod.kinematics import COORDINATES, DRIVEN, Law, Poses
+from flexapod.kinematics import COORDINATES, DRIVEN, Law, Poses, RigidPoses
 from flexapod.kinematics.rotations import difference, matrix, quaternion
 from flexapod.model import AXES, ConstantWrench, ForceDrive, Robot, Study
 from flexapod.solve.batch import RestStates, residual
@@ -46,15 +46,15 @@ class LoadedPath:
         """Coordinates that are commanded, (6,)."""
         return kinematics.commanded_axes(self.study.robot, self.study.motion)
 
-    def wanted(self, t: Array) -> Law:
+    def target_law(self, t: Array) -> Law:
         """Coordinates of the motion (T, 6)."""
         return kinematics.coordinates(self.study.motion, t)
 
-    def rigid(self, law: Law, t: Array) -> Poses:
+    def rigid_poses(self, law: Law, t: Array) -> Poses:
         """Poses of the rigid robot with these coordinates."""
         return kinematics.poses_of_law(self.study.robot, self.study.motion, law, t)
 
-    def loaded(self, law: Law, t: Array) -> Poses:
+    def loaded_poses(self, law: Law, t: Array) -> Poses:
         """Poses of the platform frame of the loaded robot that is commanded these coordinates (T, 6), at rest.
 
         Raises
@@ -62,20 +62,20 @@ class LoadedPath:
         ComputationError
             There is no equilibrium at an instant.
         """
-        path, at = self.rigid(law, t), []
+        path, at = self.rigid_poses(law, t), []
         for part in self._alike(t):
             at.append(self._at(path.part(part), t[part]))
         pose = np.concatenate(at)
         R = matrix(pose[:, 3:])
         return Poses.at_rest(pose[:, :3] - R @ self.study.robot.com, R)
 
-    def seen(self, path: Poses) -> Array:
+    def tool_coordinates(self, path: Poses) -> Array:
         """Coordinates (T, 6) in which a miss is measured: about the pivot, where not all are commanded at the tool."""
         robot = self.study.robot
-        return coordinates_of(robot, path, self.study.motion.pivot if self.axes.all() else robot.tool)
+        return pose_coordinates(robot, path, self.study.motion.pivot if self.axes.all() else robot.tool)
 
-    def gain(self, law: Law, t: Array) -> Array:
-        """How the `seen` coordinates of the rigid robot grow with those that are commanded, (T, m, m), Eq. (T22.1)."""
+    def command_gain(self, law: Law, t: Array) -> Array:
+        """Jacobian of the rigid robot's `tool_coordinates` by the commanded ones, (T, m, m), Eq. (T22.1)."""
         asked = np.flatnonzero(self.axes)
         if asked.size == 6:
             return np.broadcast_to(np.eye(6), (len(t), 6, 6))
@@ -97,7 +97,7 @@ class LoadedPath:
     def _shifted(self, law: Law, t: Array, k: int, way: float) -> Array:
         there = law.position.copy()
         there[:, k] += way
-        return self.seen(self.rigid(Law(there, law.rate, law.acceleration), t))
+        return self.tool_coordinates(self.rigid_poses(Law(there, law.rate, law.acceleration), t))
 
     def _alike(self, t: Array) -> list[slice]:
         """Instants that are computed together: of what changes with time each by itself."""
@@ -119,7 +119,7 @@ class LoadedPath:
         r, payload = inertia_forces(locked.system, locked.robot, states, path, locked.acts.wrench)
         nothing = np.zeros((len(t), *states.q.shape[1:]))
         step = arrow_solve(locked.system, locked.m, r, payload, np.zeros_like(states.lam), nothing)
-        return states.moved(step.dq, step.dy).pose
+        return states.displace(step.dq, step.dy).pose
 
 
 def refuse_missing(locked: LockedPoses, t: Array) -> None:
@@ -133,15 +133,15 @@ def refuse_missing(locked: LockedPoses, t: Array) -> None:
 
 
 def inertia_forces(system: System, robot: Robot, states: RestStates, path: Poses, wrench: Array) -> tuple[Array, Array]:
-    """What a rigid path (T,) adds by its rates to the balances of legs (T, legs, n) and payload (T, 6), Eq. (T22.2)."""
-    rates = rigid_motion(system, robot, path)[1]
+    """Inertial loads of a rigid path (T,) in the balances of legs (T, legs, n) and payload (T, 6), Eq. (T22.2)."""
+    rates = rigid_motion(system, RigidPoses(robot, path))[1]
     still = np.zeros((len(path), system.legs, system.ports.size))
     moving = residual(system, states, still, rates.v[..., system.ports], wrench, rates)
     resting = residual(system, states, still, still, wrench)
     return moving[0] - resting[0], moving[1] - resting[1]
 
 
-def apart(robot: Robot, path: Poses, wanted: Poses) -> tuple[Array, Array]:
+def tool_miss(robot: Robot, path: Poses, wanted: Poses) -> tuple[Array, Array]:
     """Displacement and rotation (P, 3) each of the tool from where it should be."""
     turned = difference(quaternion(path.rotation), quaternion(wanted.rotation))
     return path.place(robot.tool) - wanted.place(robot.tool), turned
@@ -161,8 +161,8 @@ class DriveLimits:
     acceleration: float | None
     force: float | None
 
-    def forces(self, robot: Robot) -> bool:
-        """Whether they bound forces or torques of the drives."""
+    def bounds_forces(self, robot: Robot) -> bool:
+        """Test whether the limits bound forces or torques of the drives."""
         return self.force is not None or _motors(robot)
 
     def shares(self, path: RigidPath, force: Array | None = None) -> tuple[Array, Array]:
@@ -192,7 +192,7 @@ class DriveLimits:
         return np.concatenate([none, *fast], axis=1), np.concatenate([none, *strong], axis=1)
 
 
-def limits_of(study: Study, speed: Given, acceleration: Given, force: Given) -> DriveLimits:
+def drive_limits(study: Study, speed: Given, acceleration: Given, force: Given) -> DriveLimits:
     """The limits that are given and those of the study.
 
     Raises
@@ -207,7 +207,7 @@ def limits_of(study: Study, speed: Given, acceleration: Given, force: Given) -> 
         if found[name] is not None and not found[name] > 0:  # type: ignore[operator]
             raise InputError("is not a limit", key=name, value=value, allowed="above 0")
     limits = DriveLimits(**found)
-    if limits.acceleration is None and not limits.forces(study.robot):
+    if limits.acceleration is None and not limits.bounds_forces(study.robot):
         raise InputError(
             "says nowhere what its drives may do: the least time would be 0",
             file=study.path,

@@ -1,4 +1,4 @@
-"""How a robot vibrates along a path, by its linear model with all modes, Eqs. (T22.12)-(T22.13)."""
+"""Vibration of a robot along a path, by its linear model with all modes, Eqs. (T22.12)-(T22.13)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.model import Study
 from flexapod.solve.batch import RestStates
-from flexapod.solve.linear.motions import on_motions
+from flexapod.solve.linear.motions import project_on_motions
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.modal.modes import ManyModes, modes_of
 from flexapod.solve.rigid_motion import rigid_rest
@@ -52,19 +52,19 @@ class LinearPath:
 
 @dataclass(frozen=True, kw_only=True)
 class PathVibration:
-    """Motion of the tool (T, 3) [m] beside where it rests at each pose, at instants (T,) [s]; without friction."""
+    """Motion of the tool (T, 3) [m] off its rest at each pose, at instants (T,) [s]; without friction."""
 
     time: Array
     tool: Array
 
-    def after(self, instant: float) -> float:
+    def largest_after(self, instant: float) -> float:
         """Largest distance of the tool from where it comes to rest, from an instant on [m]."""
         return float(np.linalg.norm(self.tool[self.time >= instant - 1e-9], axis=1).max(initial=0.0))
 
     @property
     def largest(self) -> float:
         """Largest distance in the whole time [m]."""
-        return self.after(0.0)
+        return self.largest_after(0.0)
 
 
 def linear_path(study: Study, t: Array, path: kinematics.Poses | None = None) -> LinearPath:
@@ -79,10 +79,10 @@ def linear_path(study: Study, t: Array, path: kinematics.Poses | None = None) ->
     _refuse_loops(study)
     locked = locked_poses(study.robot, study.simulation, path, study.load)
     refuse_missing(locked, t)
-    about = locked.shaken
+    about = locked.vibration_model
     each = np.broadcast_to(np.eye(about.motions.columns.size), (len(t),) + (about.motions.columns.size,) * 2)
     flat = about.motions.flat(about.system, each)
-    M, D, K = (flat.swapaxes(1, 2) @ part for part in on_motions(about.system, about.m, flat))
+    M, D, K = (flat.swapaxes(1, 2) @ part for part in project_on_motions(about.system, about.m, flat))
     hub = flat[:, about.system.legs * about.system.n :]
     tool = tool_motion(study.robot, locked.equilibria.states.pose)[:, :3] @ hub
     return LinearPath(time=t, locked=about, M=M, D=D, K=K, flat=flat, tool=tool, modes=modes_of(locked, shapes=True))
@@ -99,8 +99,8 @@ def _refuse_loops(study: Study) -> None:
         )
 
 
-def vibration_along(study: Study, moving: float, until: float) -> PathVibration:
-    """What the inertia of a study's path, which is at rest after `moving` [s], makes the tool do until an instant.
+def path_vibration(study: Study, moving: float, until: float) -> PathVibration:
+    """Vibration of the tool, until an instant, by the inertia of a study's path, at rest after `moving` [s].
 
     M z'' + D z' + K z = -flat^T f, (T22.12): matrices along the path by Gauss' formula of order 4, (T22.13), afterwards
     those of its end, exactly.
@@ -108,13 +108,15 @@ def vibration_along(study: Study, moving: float, until: float) -> PathVibration:
     from scipy.interpolate import CubicSpline
 
     at = linear_path(study, np.linspace(0.0, moving, POSES))
-    edges, x = followed(at, lambda t: forces(at, kinematics.poses(study.robot, study.motion, t))[..., None])
+    edges, x = integrate_modes(
+        at, lambda t: inertial_loads(at, kinematics.poses(study.robot, study.motion, t))[..., None]
+    )
     tool = np.einsum("txd,td->tx", CubicSpline(at.time, at.tool)(edges), x[:, 0, :, 0])
     later, rest = _at_rest(at, x[-1, 0, :, 0], x[-1, 1, :, 0], until - moving)
     return PathVibration(time=np.append(edges, moving + later), tool=np.concatenate([tool, rest]))
 
 
-def followed(at: LinearPath, acting: Callable[[Array], Array], least: int = LEAST) -> tuple[Array, Array]:
+def integrate_modes(at: LinearPath, acting: Callable[[Array], Array], least: int = LEAST) -> tuple[Array, Array]:
     """Instants (T,) and motions with rates (T, 2, d, c) along a path under each of c loads (T, N, c), Eq. (T22.13)."""
     from scipy.interpolate import CubicSpline
 
@@ -154,9 +156,9 @@ def _at_rest(at: LinearPath, z: Array, v: Array, until: float) -> tuple[Array, A
     return times, np.array(found)
 
 
-def forces(at: LinearPath, path: kinematics.Poses) -> Array:
-    """What a rigid path's rates ask for in all coordinates (T, N), at the undeformed robot, Eq. (T22.2)."""
+def inertial_loads(at: LinearPath, path: kinematics.Poses) -> Array:
+    """Inertial loads of a rigid path in all coordinates (T, N), at the undeformed robot, Eq. (T22.2)."""
     system, robot = at.locked.system, at.locked.robot
-    states: RestStates = rigid_rest(system, robot, path)
+    states: RestStates = rigid_rest(system, kinematics.RigidPoses(robot, path))
     legs, payload = inertia_forces(system, robot, states, path, at.locked.acts.wrench)
     return np.concatenate([legs.reshape(len(path), -1), payload], axis=1)

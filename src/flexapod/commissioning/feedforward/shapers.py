@@ -1,4 +1,4 @@
-"""Impulses that leave little vibration, and how much they leave elsewhere, Eqs. (T22.6)-(T22.11)."""
+"""Impulses of input shaping, and their residual vibration at other frequencies, Eqs. (T22.6)-(T22.11)."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ class Shaper:
 
     @property
     def duration(self) -> float:
-        """By how much longer a shaped motion takes [s]."""
+        """Time that shaping adds to a motion [s]."""
         return float(self.times[-1])
 
     def __mul__(self, other: Shaper) -> Shaper:
-        """One after the other: of both vibrations what each of them leaves, Eq. (T22.10)."""
+        """Shaper of two in sequence, whose residual vibrations multiply, Eq. (T22.10)."""
         times = np.add.outer(self.times, other.times).ravel()
         order = np.argsort(times, kind="stable")
         return Shaper(
             times=times[order], amplitudes=np.multiply.outer(self.amplitudes, other.amplitudes).ravel()[order]
         )
 
-    def left(self, frequency: ArrayLike, ratio: ArrayLike = 0.0) -> Array:
-        """Vibration that is left of a mode [Hz] over that of one impulse at the last one's instant, Eq. (T22.6)."""
+    def residual_share(self, frequency: ArrayLike, ratio: ArrayLike = 0.0) -> Array:
+        """Residual vibration of a mode [Hz] over that of one impulse at the last one's instant, Eq. (T22.6)."""
         w = 2 * np.pi * np.asarray(frequency, dtype=float)[..., None]
         z = np.asarray(ratio, dtype=float)[..., None]
         s = w * (-z + 1j * np.sqrt(1 - z**2))
@@ -109,17 +109,17 @@ def _of(kind: str, frequency: float, ratio: float) -> Shaper:
 
 
 def insensitivity(kind: str) -> float:
-    """Width over the frequency of the band around it in which no more than `TOLERATED` is left, undamped, (T22.11)."""
+    """Width over frequency of the band with at most `TOLERATED` of the vibration, undamped, Eq. (T22.11)."""
     made = shaper(kind, 1.0)
     return sum(_edge(made, way) for way in (1.0, -1.0))
 
 
 def _edge(made: Shaper, way: float) -> float:
-    """How far from 1 Hz on one side the vibration first rises above what is tolerated."""
+    """Distance from 1 Hz on one side at which the vibration first exceeds the tolerated one [Hz]."""
     from scipy.optimize import brentq
 
     def over(step: ArrayLike) -> Array:
-        return made.left(1.0 + way * np.asarray(step)) - TOLERATED - 1e-9  # the hump in the middle touches it
+        return made.residual_share(1.0 + way * np.asarray(step)) - TOLERATED - 1e-9  # the hump in the middle touches it
 
     steps = np.linspace(0.0, WIDE if way > 0 else 1.0, 4001)
     k = int(np.argmax(over(steps) > 0))

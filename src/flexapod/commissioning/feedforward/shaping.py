@@ -1,4 +1,4 @@
-"""Motions that leave little vibration behind: the pose's law, delayed and added up, Eqs. (T22.6), (T22.12)."""
+"""Motions with little residual vibration: the pose's law, delayed and summed, Eqs. (T22.6), (T22.12)."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.analysis.checks.checks import check_path
-from flexapod.analysis.results.arguments import FileLike, PoseLike, as_pose
-from flexapod.commissioning.feedforward.command_table import check_out, saved, tabled
-from flexapod.commissioning.feedforward.modal_path import PERIODS, POSES, vibration_along
+from flexapod.analysis.results.arguments import FileLike, PoseLike, RigidPose
+from flexapod.commissioning.feedforward.command_table import check_out, save_study, tabulate_law
+from flexapod.commissioning.feedforward.modal_path import PERIODS, POSES, path_vibration
 from flexapod.commissioning.feedforward.shapers import KINDS, Shaper, shaper
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import InputError, check_known
@@ -22,7 +22,7 @@ from flexapod.common.resources import one_thread
 from flexapod.common.units import quantity
 from flexapod.kinematics import Law
 from flexapod.model import ActuatorStudy, AxisMotion, CombinedMotion, CsvMotion, Motion, Study, WaypointMotion, load
-from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.modal.elastic_robot import ElasticRobot
 from flexapod.solve.modal.modes import modes_of
 
 ON_PATH = 1e-4  # of the way: a shaped path that is no farther beside the own one is on it
@@ -33,7 +33,7 @@ Modes = int | Sequence[int | float | str | tuple[float, float]]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Shaped:
+class ShapedStudy:
     """A shaped study and what it brings.
 
     ``impulses``: of its shaper; ``frequency``, ``ratio`` (modes,) for which they are made, ``ranges`` (modes, 2) [Hz]
@@ -55,12 +55,12 @@ class Shaped:
 
     @property
     def longer(self) -> float:
-        """By how much longer the motion takes [s]."""
+        """Time that shaping adds to the motion [s]."""
         return self.impulses.duration
 
     @property
     def sentence(self) -> str:
-        """Benefit, cost and effect in words."""
+        """Benefit, cost and effect as text."""
         modes = ", ".join(
             f"{number(f, 4)} Hz (on the path {number(low, 4)} to {number(high, 4)} Hz, at most {100 * rest:.1f} % left)"
             for f, (low, high), rest in zip(self.frequency, self.ranges, self.left, strict=True)
@@ -99,7 +99,7 @@ def shape(
     pose: PoseLike | str = "path",
     out: FileLike | None = None,
 ) -> Study | CsvMotion:
-    """The same motion, longer, that leaves modes at rest: the law of its pose, delayed and added up by impulses.
+    """Shape a motion so that it leaves modes at rest: the law of its pose is delayed and summed by impulses.
 
     The pose is shaped, never single legs, which would leave the path. Each kind takes more time and leaves less where
     frequencies are not those that it was made for: within the band in which at most 5 % are left, over the frequency,
@@ -144,20 +144,20 @@ def shape(
             "is a single actuator, whose law is no pose", key="motion", allowed="the study or the motion of a robot"
         )
     if isinstance(subject, Study):
-        return shaping(subject, kind, modes=modes, pose=pose, out=out).study
+        return shape_study(subject, kind, modes=modes, pose=pose, out=out).study
     if not isinstance(subject, AxisMotion | CombinedMotion | WaypointMotion | CsvMotion):
         raise InputError("is neither a study nor a motion", key="motion", value=subject)
     frequency, ratio = np.array(_of_motion(modes, pose, out), dtype=float).T
     return _delayed(subject, shaper(kind, frequency, ratio), np.ones(6, dtype=bool), 1.0)
 
 
-def shaping(
+def shape_study(
     study: Study, kind: str = "zv", *, modes: Modes = 1, pose: PoseLike | str = "path", out: FileLike | None = None
-) -> Shaped:
-    """As `shape` of a study, with what it brings."""
+) -> ShapedStudy:
+    """Shape the motion of a study, as `shape` does, and return it with its effect."""
     if out is not None:
         check_out(study, out)
-    for mode in _named(modes):
+    for mode in _mode_list(modes):
         _frequency(mode)
     check_path(study)
     robot, motion = study.robot, study.motion
@@ -172,16 +172,17 @@ def shaping(
     shaped = study.replace(motion=table, simulation=simulation)
     check_path(shaped)
     rest = max(PERIODS / ranges.min(), 1 / lowest)
-    own = vibration_along(study, moving, moving + rest)
-    new = vibration_along(shaped, moving + made.duration, moving + made.duration + rest)
+    own = path_vibration(study, moving, moving + rest)
+    new = path_vibration(shaped, moving + made.duration, moving + made.duration + rest)
     around = np.linspace(ranges[:, 0], ranges[:, 1], 101)
-    found = Shaped(
+    found = ShapedStudy(
         study=shaped, kind=kind, impulses=made, frequency=frequency, ratio=ratio, ranges=ranges,
-        left=made.left(around, ratio).max(axis=0), residual=(own.after(moving), new.after(moving + made.duration)),
-        largest=(own.largest, new.largest), beside=_beside(study, shaped, moving),
+        left=made.residual_share(around, ratio).max(axis=0),
+        residual=(own.largest_after(moving), new.largest_after(moving + made.duration)),
+        largest=(own.largest, new.largest), beside=_path_offset(study, shaped, moving),
     )  # fmt: skip
     told = replace(found, study=shaped.replace(notes=(*study.notes, found.sentence)))
-    return told if out is None else replace(told, study=saved(told.study, out))
+    return told if out is None else replace(told, study=save_study(told.study, out))
 
 
 def _of_motion(modes: Modes, pose: object, out: object) -> list[tuple[float, float] | None]:
@@ -189,7 +190,7 @@ def _of_motion(modes: Modes, pose: object, out: object) -> list[tuple[float, flo
     for key, value, usual in (("out", out, None), ("pose", pose, "path")):
         if value is not usual and not (isinstance(value, str) and value == usual):
             raise InputError("is for studies", key=key, value=value, next_step="Give the whole study, not its motion")
-    given = [] if isinstance(modes, int) else [_frequency(mode) for mode in _named(modes)]
+    given = [] if isinstance(modes, int) else [_frequency(mode) for mode in _mode_list(modes)]
     if not given or any(mode is None for mode in given):
         raise InputError(
             "are numbers of modes, and a motion alone has none",
@@ -210,7 +211,7 @@ def _frequency(mode: object) -> tuple[float, float] | None:
     return None if isinstance(mode, int | np.integer) else (quantity(mode, "frequency", key="modes"), 0.0)
 
 
-def _named(modes: Modes) -> list[object]:
+def _mode_list(modes: Modes) -> list[object]:
     """Modes one by one."""
     if isinstance(modes, int) and not isinstance(modes, bool):
         return list(range(1, modes + 1))
@@ -224,12 +225,12 @@ def _modes(study: Study, modes: Modes, pose: PoseLike | str, moving: float) -> t
     """Frequencies, damping ratios (m,) and ranges along the path (m, 2) of modes that are named; the lowest there."""
     robot = study.robot
     t = np.linspace(0.0, moving, POSES)
-    along = modes_of(locked_poses(robot, study.simulation, kinematics.poses(robot, study.motion, t), study.load),
-                     shapes=True)  # fmt: skip
+    elastic = ElasticRobot(robot, study.simulation, study.load)
+    along = modes_of(elastic.lock(kinematics.rigid_poses(robot, study.motion, t)), shapes=True)
     at, lowest = along, float(np.nanmin(along.frequency[:, 0]))
     if not (isinstance(pose, str) and pose == "path"):
-        at = modes_of(locked_poses(robot, study.simulation, as_pose(robot, pose), study.load), shapes=True)  # type: ignore[arg-type]
-    given = _named(modes)
+        at = modes_of(elastic.lock(RigidPose(robot, pose)), shapes=True)  # type: ignore[arg-type]
+    given = _mode_list(modes)
     found = []
     for mode in given:
         if (own := _frequency(mode)) is not None:
@@ -269,11 +270,11 @@ def _delayed(motion: Motion, made: Shaper, axes: Mask, length: float) -> CsvMoti
     moving = motion.end_time - motion.hold
     inner = np.array([0.0, moving]) if isinstance(motion, CsvMotion) else kinematics.path_knots(motion, moving)
     knots = np.unique(np.add.outer(made.times, inner).round(12))
-    return tabled(law, knots, motion, axes, length, hold=motion.hold).motion
+    return tabulate_law(law, knots, motion, axes, length, hold=motion.hold).motion
 
 
-def _beside(study: Study, shaped: Study, moving: float) -> float:
-    """How far the rigid tool is from the own path at most [m]; 0 where that is little of its way."""
+def _path_offset(study: Study, shaped: Study, moving: float) -> float:
+    """Largest distance of the rigid tool from the unshaped path [m]; 0 where small against the way."""
     from scipy.spatial import KDTree
 
     def tool(of: Study, until: float, count: int) -> Array:

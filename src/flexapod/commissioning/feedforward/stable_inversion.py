@@ -1,7 +1,4 @@
-"""Commands of a robot that make up for its elastic motion, before the path begins and after, Eqs. (T22.23)-(T22.24).
-
-A motion that brings the tool of an elastic robot onto its path in motion, Eqs. (T22.23)-(T22.24).
-"""
+"""Motions that compensate elastic motion, with commands before and after the path, Eqs. (T22.23)-(T22.24)."""
 
 from __future__ import annotations
 
@@ -13,10 +10,16 @@ from numpy.typing import NDArray
 from flexapod import kinematics
 from flexapod.analysis.checks.checks import check_path
 from flexapod.analysis.results.arguments import FileLike, RobotLike, as_study
-from flexapod.commissioning.feedforward.command_table import saved
-from flexapod.commissioning.feedforward.correction_series import knots_of, lasts, refuse, refuse_beyond, static_series
+from flexapod.commissioning.feedforward.command_table import save_study
+from flexapod.commissioning.feedforward.correction_series import (
+    check_correctable,
+    check_workspace,
+    correction_knots,
+    is_permanent,
+    static_series,
+)
 from flexapod.commissioning.feedforward.loaded_path import LoadedPath
-from flexapod.commissioning.feedforward.modal_path import LinearPath, followed, forces, linear_path
+from flexapod.commissioning.feedforward.modal_path import LinearPath, inertial_loads, integrate_modes, linear_path
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.common.quantities import text
@@ -39,7 +42,7 @@ Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Ahead:
+class ElasticCommands:
     """Corrections (n, 6) of the pose at even instants ``time`` (n,) [s], 0 where the path begins.
 
     ``before``, ``after`` (n, 6): what the tool misses without and with them, in coordinates of the pose, by the linear
@@ -54,8 +57,8 @@ class Ahead:
     late: float
 
 
-def elastic_commands(study: Study, moving: float) -> Ahead:
-    """What to add to a path that moves for so long [s], so that the tool of the linear robot does not leave it.
+def elastic_commands(study: Study, moving: float) -> ElasticCommands:
+    """Corrections of a path that moves for so long [s], which keep the tool of the linear robot on it.
 
     Elastic motion along the path, matrices as they change, is made up for by the inverse of its transfer in the
     middle of the path, (T22.23), anew until it is.
@@ -71,7 +74,7 @@ def elastic_commands(study: Study, moving: float) -> Ahead:
         pad *= 2
 
 
-def _converged(study: Study, middle: LinearPath, moving: float, pad: float, reach: float) -> Ahead:
+def _converged(study: Study, middle: LinearPath, moving: float, pad: float, reach: float) -> ElasticCommands:
     whole = moving + 2 * pad
     count = int(2 ** np.ceil(np.log2(whole * reach * EACH)))
     time = np.arange(count) * whole / count - pad
@@ -80,14 +83,14 @@ def _converged(study: Study, middle: LinearPath, moving: float, pad: float, reac
     s = (2j * np.pi * np.fft.rfftfreq(count, whole / count) + shift).astype(complex)
     inverse = _inverse(study, middle, 0.5 * moving, s, reach)
     fading = np.exp(-shift * (time - time[0]))[:, None]  # of what still rings at the end nothing is left
-    before = path.elastic(np.zeros((count, 6)))
+    before = path.elastic_motion(np.zeros((count, 6)))
     value = -path.at_rest() * path.window[:, None]
-    missed = path.elastic(value)
+    missed = path.elastic_motion(value)
     for _ in range(ROUNDS):
         wrong = np.fft.rfft(fading * (value + missed), axis=0)
         trial = value - np.fft.irfft(np.einsum("fij,fj->fi", inverse, wrong), count, axis=0) / fading
         trial = trial * path.window[:, None]
-        after = path.elastic(trial)
+        after = path.elastic_motion(trial)
         if _size(trial + after) > _size(value + missed):
             break
         value, missed = trial, after
@@ -95,7 +98,7 @@ def _converged(study: Study, middle: LinearPath, moving: float, pad: float, reac
             break
     acting = np.flatnonzero(np.abs(value).max(axis=1) > EDGE * np.abs(value).max())
     early, late = float(-time[acting[0]]), float(time[acting[-1]] - moving)
-    return Ahead(
+    return ElasticCommands(
         time=time, value=value, before=before, after=value + missed, early=max(0.0, early), late=max(0.0, late)
     )
 
@@ -125,18 +128,18 @@ class _Path:
         return kinematics.poses_of_law(self.study.robot, self.study.motion, law, t)
 
     def at_rest(self) -> Array:
-        """What the inertia of the path bends the robot by, without motion of its own, (n, 6)."""
+        """Quasi-static deflection of the robot by the inertia of the path, (n, 6)."""
         from scipy.interpolate import CubicSpline
 
         shifted, none = self.time - self.start, np.zeros((len(self.time), 6))
         parts = self.at.flat, self.at.K, _pose_rows(self.study, self.at)
         flat, K, rows = (CubicSpline(self.at.time, part)(shifted) for part in parts)
-        f = forces(self.at, self._poses(Law(none, none, none), shifted))
+        f = inertial_loads(self.at, self._poses(Law(none, none, none), shifted))
         there = (rows @ np.linalg.solve(K, -flat.swapaxes(1, 2) @ f[..., None]))[..., 0]
         there[:, 3:] = np.linalg.solve(turning_axes(self.law(shifted).position[:, 3:]), there[:, 3:, None])[..., 0]
         return there
 
-    def elastic(self, value: Array) -> Array:
+    def elastic_motion(self, value: Array) -> Array:
         """Elastic motion (n, 6) of the pose, in coordinates about the pivot, commands `value` (n, 6) added."""
         from scipy.interpolate import CubicSpline, make_interp_spline
 
@@ -145,9 +148,9 @@ class _Path:
         first, second = curve.derivative(), curve.derivative(2)
 
         def acting(t: Array) -> Array:
-            return forces(self.at, self._poses(Law(curve(t), first(t), second(t)), t))[..., None]
+            return inertial_loads(self.at, self._poses(Law(curve(t), first(t), second(t)), t))[..., None]
 
-        edges, x = followed(self.at, acting, len(self.time))
+        edges, x = integrate_modes(self.at, acting, len(self.time))
         to = CubicSpline(self.at.time, _pose_rows(self.study, self.at))(edges)
         there = np.einsum("txd,td->tx", to, x[:, 0, :, 0])
         there[:, 3:] = np.linalg.solve(turning_axes(self.law(edges).position[:, 3:]), there[:, 3:, None])[..., 0]
@@ -167,7 +170,7 @@ def _inverse(study: Study, at: LinearPath, instant: float, laplace: Complex, rea
     now = kinematics.coordinates(study.motion, np.array([instant]))
     none, each = np.zeros((6, 6)), np.eye(6)
     law = Law(np.repeat(now.position, 6, axis=0), none, each)
-    bend = forces(at, kinematics.poses_of_law(study.robot, study.motion, law, np.full(6, instant)))
+    bend = inertial_loads(at, kinematics.poses_of_law(study.robot, study.motion, law, np.full(6, instant)))
     force, rows = at.flat[0].T @ bend.T, _pose_rows(study, at)[0]
     rows[3:] = np.linalg.solve(turning_axes(now.position[:, 3:])[0], rows[3:])
     found, hz = np.zeros((len(laplace), 6, 6), dtype=complex), laplace.imag / (2 * np.pi)
@@ -183,8 +186,8 @@ RAMP = 0.2  # of the time kept before and after, in which commands begin and end
 
 
 @dataclass(frozen=True, kw_only=True)
-class Elastic:
-    """A study whose commands make up for weight, load and elastic motion, and what they bring.
+class ElasticCompensation:
+    """A study whose commands compensate weight, load and elastic motion, and their effect.
 
     ``miss`` (before, after) [m]: of the pivot in motion, beside its static deviation, at most, by the linear model with
     all modes; ``turned`` [rad] likewise; ``early``, ``late`` [s]: how long commands act before the path and after it.
@@ -198,7 +201,7 @@ class Elastic:
 
     @property
     def sentence(self) -> str:
-        """Benefit, cost and effect in words."""
+        """Benefit, cost and effect as text."""
         return (
             f"commands make up for what weight, load and the robot's elastic motion do: in motion it misses the "
             f"wanted path by {text(self.miss[1], 'm')} and {text(self.turned[1], 'rad')} at most in place of "
@@ -214,26 +217,26 @@ class Elastic:
 
 def elastic_compensation(
     study: RobotLike, *, corrections: int = 2, as_built: bool = True, out: FileLike | None = None
-) -> Elastic:
-    """As `compensate` by stable inversion, with what it brings."""
+) -> ElasticCompensation:
+    """Compensate the motion of a study by stable inversion, and return it with its effect."""
     study = as_study(study)
     known = study if as_built else study.replace(robot=study.robot.replace(geometry=None, heat=None))
-    refuse(known, corrections, inertia=True)
+    check_correctable(known, corrections, inertia=True)
     check_path(study)
     path = LoadedPath(known)
     _refuse_others(study, path)
     moving = study.motion.end_time - study.motion.hold
-    series = static_series(path, corrections, knots_of(study, moving))
+    series = static_series(path, corrections, correction_knots(study, moving))
     found = elastic_commands(study, moving)
-    time, value, early, late = _kept(found, moving)
+    time, value, early, late = _trim_commands(found, moving)
     inside = np.clip(time, 0.0, moving)
-    pose = path.wanted(inside).position + series(inside).position + value
+    pose = path.target_law(inside).position + series(inside).position + value
     motion = CsvMotion(time=time + early, pose=pose, hold=study.motion.hold, pivot=study.motion.pivot)
     duration = study.simulation.duration
     simulation = study.simulation.replace(duration=None if duration is None else duration + early + late)
     made = study.replace(motion=motion, simulation=simulation)
-    refuse_beyond(made)
-    told = Elastic(
+    check_workspace(made)
+    told = ElasticCompensation(
         study=made,
         miss=_largest(found, slice(0, 3)),
         turned=_largest(found, slice(3, 6)),
@@ -241,16 +244,16 @@ def elastic_compensation(
         late=late,
     )
     told = replace(told, study=made.replace(notes=(*study.notes, told.sentence)))
-    return told if out is None else replace(told, study=saved(told.study, out))
+    return told if out is None else replace(told, study=save_study(told.study, out))
 
 
-def _largest(found: Ahead, part: slice) -> tuple[float, float]:
+def _largest(found: ElasticCommands, part: slice) -> tuple[float, float]:
     """Largest size of a part of what is missed, without commands and with them."""
     before, after = (float(np.linalg.norm(x[:, part], axis=1).max()) for x in (found.before, found.after))
     return before, after
 
 
-def _kept(found: Ahead, moving: float) -> tuple[Array, Array, float, float]:
+def _trim_commands(found: ElasticCommands, moving: float) -> tuple[Array, Array, float, float]:
     """Instants from the first command on, ends included, corrections that begin and end there, and both times [s]."""
     step = found.time[1] - found.time[0]
     early, late = (np.ceil(x / (1 - RAMP) / step) * step for x in (found.early, found.late))
@@ -267,7 +270,7 @@ def _kept(found: Ahead, moving: float) -> tuple[Array, Array, float, float]:
 
 
 def _refuse_others(study: Study, path: LoadedPath) -> None:
-    wrong = {"robot.type": not path.axes.all(), "load": not lasts(study)}
+    wrong = {"robot.type": not path.axes.all(), "load": not is_permanent(study)}
     for key, bad in wrong.items():
         if bad:
             raise InputError(

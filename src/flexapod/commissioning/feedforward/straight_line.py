@@ -1,4 +1,4 @@
-"""A straight way from pose to pose whose law is free: what drives use, what vibrates then, Eqs. (T22.17)-(T22.19)."""
+"""A straight way between poses with a free law: use of the drives, and vibration by it, Eqs. (T22.17)-(T22.19)."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import numpy as np
 from flexapod import kinematics
 from flexapod.analysis.results.leg_results import drive_forces
 from flexapod.analysis.results.rigid_path import RigidPath
-from flexapod.analysis.simulation import simulated
-from flexapod.commissioning.feedforward.command_table import named
+from flexapod.analysis.simulation import run_simulation
+from flexapod.commissioning.feedforward.command_table import axis_names
 from flexapod.commissioning.feedforward.loaded_path import DriveLimits
-from flexapod.commissioning.feedforward.modal_path import LinearPath, followed, forces, linear_path
+from flexapod.commissioning.feedforward.modal_path import LinearPath, inertial_loads, integrate_modes, linear_path
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import ComputationError
 from flexapod.kinematics import Law
@@ -31,7 +31,7 @@ HELD = 2e-2  # of the time in which they do
 SHARE = 0.9  # of the bound for vibration that the way is made for: linear in its places
 
 
-class StraightWay:
+class StraightLine:
     """A way from pose to pose: its law, drives along it, what it makes the robot do."""
 
     origin: Study
@@ -61,32 +61,32 @@ class StraightWay:
         return kinematics.poses_of_law(self.origin.robot, self.origin.motion, law, t)
 
     def shares(self, share: Law, t: Array) -> tuple[Array, Array]:
-        """Of the drives' limits, as `DriveLimits.shares`."""
+        """Shares of the drives' limits that a law uses, as `DriveLimits.shares` returns them."""
         return self.limits.shares(RigidPath(self.origin, t, self.poses(share, t)))
 
-    def used(self, T: float, c: Array) -> float:
+    def largest_share(self, T: float, c: Array) -> float:
         """Largest share of the limits."""
         found = self.shares(self.law(c, T, self.looks), T * self.looks)
         return float(max(np.abs(x).max() for x in found))
 
-    def study(self, T: float, c: Array) -> Study:
+    def motion_study(self, T: float, c: Array) -> Study:
         """The study that goes this way."""
         time = np.linspace(0.0, T, ROWS + 1)
         pose = self.first_pose + np.multiply.outer(self.law(c, T, time / T).position, self.change)
         own = self.origin.motion
         pose = np.where(self.axes, pose, 0.0)
-        motion = CsvMotion(time=time, pose=pose, hold=own.hold, pivot=own.pivot, independent=named(self.axes))
+        motion = CsvMotion(time=time, pose=pose, hold=own.hold, pivot=own.pivot, independent=axis_names(self.axes))
         simulation = self.origin.simulation.replace(duration=None)
         return self.origin.replace(motion=motion, simulation=simulation)
 
-    def smooth(self) -> Array:
+    def quintic_coefficients(self) -> Array:
         """Coefficients of a quintic way, to start from."""
         tau = np.linspace(0.0, 1.0, 4 * ROWS)
         wanted = 60 * tau * (1 - tau) * (1 - 2 * tau)
         return np.linalg.lstsq(self.bases[2](tau), wanted, rcond=None)[0]
 
-    def rows(self, T: float, c: Array) -> tuple[Array, Array]:
-        """What drives use, |G c + g| of their limits about a way, Eq. (T22.17)."""
+    def limit_rows(self, T: float, c: Array) -> tuple[Array, Array]:
+        """Matrix G and vector g of the drives' shares |G c + g| of their limits, linear about a way, Eq. (T22.17)."""
         now, t = self.law(c, T, self.looks), T * self.looks
         _, strong = self.shares(now, t)
         more, none = now._replace(acceleration=now.acceleration + 1 / T**2), np.zeros_like(now.rate)
@@ -97,11 +97,13 @@ class StraightWay:
         G = [fast[:, None] * self.bases[1](self.looks), *(part[:, None] * bend for part in slope.T)]
         return np.concatenate(G), np.concatenate([none, *rest.T])
 
-    def solved(self, T: float, c: Array, effect: tuple[Array, Array] | None = None, bound: float = 0.0) -> Array:
+    def minimax_coefficients(
+        self, T: float, c: Array, effect: tuple[Array, Array] | None = None, bound: float = 0.0
+    ) -> Array:
         """Coefficients that use least of the limits, with no more vibration than the bound, Eqs. (T22.17), (T22.19)."""
         from scipy.optimize import linprog
 
-        G, g = self.rows(T, c)
+        G, g = self.limit_rows(T, c)
         n, m = G.shape[1], 0 if effect is None else len(effect[0])
         ends = np.pad([self.bases[1](1.0), self.bases[0](1.0)], ((0, 0), (0, m + 1)))
         width = ((0, 0), (0, m))
@@ -122,19 +124,19 @@ class StraightWay:
             raise ComputationError(f"the way was not found: {found.message}")
         return found.x[:n]
 
-    def keeps(self, T: float, c: Array) -> Array | None:
+    def within_limits(self, T: float, c: Array) -> Array | None:
         """A way within the limits in a time, from another one; None where there is none."""
         for _ in range(ROUNDS):
-            c = self.solved(T, c)
-            if self.used(T, c) <= WITHIN:
+            c = self.minimax_coefficients(T, c)
+            if self.largest_share(T, c) <= WITHIN:
                 return c
         return None
 
-    def without_vibration(self) -> tuple[float, Array]:
+    def least_time_within_limits(self) -> tuple[float, Array]:
         """The least time and its way, whatever vibrates."""
-        c = self.smooth()
+        c = self.quintic_coefficients()
         high = 0.1
-        while self.used(high, c) > 1.0:
+        while self.largest_share(high, c) > 1.0:
             high *= 2
             if high > 1e4:
                 raise ComputationError(
@@ -144,42 +146,42 @@ class StraightWay:
         low, best = 0.0, (high, c)
         while high - low > FINE * high:
             T = 0.5 * (low + high)
-            found = self.keeps(T, best[1])
+            found = self.within_limits(T, best[1])
             low, high = (T, high) if found is None else (low, T)
             best = best if found is None else (T, found)
         return best
 
     @cached_property
-    def first(self) -> float:
+    def lowest_frequency(self) -> float:
         """Lowest frequency at both ends [Hz]."""
-        return float(np.nanmin(self.at(1.0, self.smooth()).modes.frequency[:, 0]))
+        return float(np.nanmin(self.linear_model(1.0, self.quintic_coefficients()).modes.frequency[:, 0]))
 
-    def at(self, T: float, c: Array) -> LinearPath:
+    def linear_model(self, T: float, c: Array) -> LinearPath:
         """The linear model along a way."""
         t = np.linspace(0.0, T, POSES)
         return linear_path(self.origin, t, self.poses(self.law(c, T, t / T), t))
 
-    def effect(self, T: float, c: Array) -> tuple[Array, Array]:
+    def residual_amplitudes(self, T: float, c: Array) -> tuple[Array, Array]:
         """Amplitudes at the tool (modes, any) [m] left by each coefficient, and by rates, at the end, Eq. (T22.19)."""
-        at = self.at(T, c)
+        at = self.linear_model(T, c)
 
         def acting(t: Array) -> Array:
             now = self.law(c, T, t / T)
             none = np.zeros_like(now.rate)
-            bend = forces(at, self.poses(Law(now.position, none, none + 1.0), t))
-            rate = forces(at, self.poses(Law(now.position, now.rate, none), t))
+            bend = inertial_loads(at, self.poses(Law(now.position, none, none + 1.0), t))
+            rate = inertial_loads(at, self.poses(Law(now.position, now.rate, none), t))
             return np.concatenate([bend[..., None] * (self.bases[2](t / T) / T**2)[:, None], rate[..., None]], axis=2)
 
-        z, v = followed(at, acting)[1][-1]
+        z, v = integrate_modes(at, acting)[1][-1]
         return _amplitudes(at, z, v)
 
-    def bounded(self, low: float, c: Array, bound: float) -> tuple[float, Array]:
+    def least_time_within_vibration(self, low: float, c: Array, bound: float) -> tuple[float, Array]:
         """The least time and its way with at most so much vibration left."""
-        best = self.quiet(low, c, bound)
+        best = self.within_vibration(low, c, bound)
         if best is not None:
             return low, best
-        high, step = low + 0.5 / self.first, 0.5 / self.first
-        while (found := self.quiet(high, c, bound)) is None:
+        high, step = low + 0.5 / self.lowest_frequency, 0.5 / self.lowest_frequency
+        while (found := self.within_vibration(high, c, bound)) is None:
             low, step = high, 1.5 * step
             high = low + step
             if high > 1e4:
@@ -187,17 +189,17 @@ class StraightWay:
         best = (high, found)
         while high - low > FINE * high:
             T = 0.5 * (low + high)
-            found = self.quiet(T, best[1], bound)
+            found = self.within_vibration(T, best[1], bound)
             low, high = (T, high) if found is None else (low, T)
             best = best if found is None else (T, found)
         return best
 
-    def marched(self, T: float, c: Array) -> float:
+    def simulated_load_share(self, T: float, c: Array) -> float:
         """Largest share of the limits of forces and torques in the march of the flexible robot; 0 without such."""
         robot = self.origin.robot
-        if not self.limits.forces(robot):
+        if not self.limits.bounds_forces(robot):
             return 0.0
-        found = simulated(self.study(T, c))
+        found = run_simulation(self.motion_study(T, c))
         if found.record.failure is not None:
             raise ComputationError(f"the way cannot be marched through: {found.record.failure}")
         forces, path = drive_forces(robot, found.march.system, found.record), found.path.at(found.record.time)
@@ -209,9 +211,9 @@ class StraightWay:
                 used.append(given / leg.screw.rotor.ratio / torque)
         return float(max(np.abs(x).max() for x in used))
 
-    def held(self, T: float, c: Array, bound: float) -> tuple[float, Array, float]:
+    def least_time_of_flexible_drives(self, T: float, c: Array, bound: float) -> tuple[float, Array, float]:
         """The least time, not below another one, in which flexible drives keep limits, its way and their share."""
-        best = (T, c, self.marched(T, c))
+        best = (T, c, self.simulated_load_share(T, c))
         low, high = T, T
         while best[2] > WITHIN:
             low, high = high, high * min(MORE, max(LESS, best[2] ** 0.5))
@@ -220,22 +222,22 @@ class StraightWay:
                     f"drives of the flexible robot use {100 * best[2]:.0f} % of their limits in {high:.3g} s as well",
                     next_step="Raise the limits, or take weight off.",
                 )
-            found = self.quiet(high, best[1], bound)
-            best = best if found is None else (high, found, self.marched(high, found))
+            found = self.within_vibration(high, best[1], bound)
+            best = best if found is None else (high, found, self.simulated_load_share(high, found))
         while high - low > HELD * high:
             between = 0.5 * (low + high)
-            found = self.quiet(between, best[1], bound)
-            used = np.inf if found is None else self.marched(between, found)
+            found = self.within_vibration(between, best[1], bound)
+            used = np.inf if found is None else self.simulated_load_share(between, found)
             low, high = (low, between) if used <= WITHIN else (between, high)
             best = (between, found, used) if found is not None and used <= WITHIN else best
         return best
 
-    def quiet(self, T: float, c: Array, bound: float) -> Array | None:
+    def within_vibration(self, T: float, c: Array, bound: float) -> Array | None:
         """A way within limits and bound in a time; None where there is none."""
-        effect = self.effect(T, c)
+        effect = self.residual_amplitudes(T, c)
         for _ in range(ROUNDS):
-            c = self.solved(T, c, effect, SHARE * bound)
-            effect, used = self.effect(T, c), self.used(T, c)
+            c = self.minimax_coefficients(T, c, effect, SHARE * bound)
+            effect, used = self.residual_amplitudes(T, c), self.largest_share(T, c)
             if used <= WITHIN and np.abs(effect[0] @ c + effect[1]).sum() <= bound:
                 return c
             if used > HOPELESS:

@@ -245,7 +245,7 @@ def _array(data: memoryview, order: str, wanted: Wanted, depth: int) -> tuple[st
 
 
 def _next(parts: Iterator[tuple[int, memoryview]], kinds: tuple[int, ...] | None) -> tuple[int, memoryview]:
-    """What comes next, of one of some kinds."""
+    """Next piece, of one of some kinds."""
     kind, data = next(parts, (0, memoryview(b"")))
     if kind == 0 or (kinds is not None and kind not in kinds):
         raise ValueError("an array in it lacks a part")

@@ -1,4 +1,4 @@
-"""What all model classes share: frozen, SI floats with limits, read-only arrays, errors in the user's words."""
+"""Base of all model classes: frozen, SI floats with limits, read-only arrays, errors in the user's words."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from pydantic import (
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from flexapod.common.arrays import Array, floats
-from flexapod.common.errors import InputError, check_known, closest
+from flexapod.common.errors import InputError, check_known, suggest_word
 from flexapod.common.quantities import number
 from flexapod.common.units import DIMENSIONS, number_and_unit, quantities, to_si
 
@@ -45,7 +45,7 @@ _LIMIT_WORDS = {
 
 
 class Key:
-    """What a key of a table is, for the reference: `why`, in words.
+    """Words for a key of a table, for the reference: `why` says what it is.
 
     `usual`: what holds where it is left out, in words, where its default does not say it. `short`: "number" or "text"
     where one may stand for the value.
@@ -65,12 +65,12 @@ class Key:
 class FileKey(Key):
     """A key that names a file, or holds "" where the table was given in Python.
 
-    What the file holds stands in other fields of the class, its `derived` ones; `Table.tabled` gives it back.
+    What the file holds stands in other fields of the class, its `derived` ones; `Table.file_content` gives it back.
     """
 
 
 class Quantity(Key):
-    """What the number or the array of a field measures: its size lies in the range of that dimension.
+    """Quantity that the number or the array of a field measures: its size lies in the range of that dimension.
 
     ``Annotated[float | None, Quantity("length", above=0, why="of the screw")]``; of several dimensions, where another
     field decides which, the widest range counts. The lower end concerns numbers that cannot be 0: what may be 0 may be
@@ -157,6 +157,17 @@ def array_of(shape: tuple[int | None, ...]) -> Callable[[object], Array]:
     return convert
 
 
+def one_or_each(count: int | None) -> Callable[[object], Array]:
+    """A converter to an array of one number for all, or of `count` numbers (None: one, or one for each leg)."""
+    several = array_of((count,))
+
+    def convert(value: object) -> Array:
+        return several([value] * (count or 1) if isinstance(value, int | float) else value)
+
+    convert.each = count or 0  # type: ignore[attr-defined]
+    return convert
+
+
 #: Context of `model_dump_json` in which a hash stands for a long table: of a thousand points each writes it.
 SHORT = {"tables": "hashes"}
 
@@ -192,7 +203,7 @@ class Frozen(BaseModel):
                 type(self).model_rebuild()
         follow = type(self)._following(fields)
         for name, value in follow.items():
-            if (given := fields.get(name)) is not None and not agree(given, value):
+            if (given := fields.get(name)) is not None and not nearly_same(given, value):
                 raise InputError(
                     f"is not what follows from {self._source}",
                     key=name,
@@ -263,7 +274,7 @@ class Frozen(BaseModel):
         return tuple(_comparable(getattr(self, name)) for name in type(self).model_fields)
 
     def _shown(self) -> Mapping[str, str]:
-        """What `repr` and notebooks show: names and words; all fields that are given where a class chooses none."""
+        """Names and words that `repr` and notebooks show; all fields that are given where a class chooses none."""
         fields = {name: getattr(self, name) for name in type(self).model_fields}
         return {name: _brief(value) for name, value in fields.items() if value is not None}
 
@@ -308,12 +319,12 @@ def _brief(value: object) -> str:
 
 
 def same(one: object, other: object) -> bool:
-    """Whether two values of a field are the same."""
+    """Tell whether two values of a field are the same."""
     return one is other or _comparable(one) == _comparable(other)
 
 
-def agree(one: Any, other: Any) -> bool:
-    """Whether two values are the same but for rounding."""
+def nearly_same(one: Any, other: Any) -> bool:
+    """Tell whether two values are the same but for rounding."""
     if isinstance(one, bool) or not isinstance(one, int | float | np.ndarray | list | tuple):
         return same(one, other)
     try:
@@ -334,7 +345,7 @@ def _comparable(value: object) -> object:
 
 
 def _largest(value: Any) -> Any:
-    """Of a table or a vector the number of the largest size, else the value."""
+    """Number of the largest size in a table or a vector, else the value."""
     if not isinstance(value, list | tuple | np.ndarray) or any(isinstance(x, str) for x in value):
         return value
     flat = np.asarray(value, dtype=float).ravel()
@@ -349,7 +360,7 @@ def _input_error(error: ValidationError, model: type[Frozen]) -> InputError:
     if kind == "extra_forbidden":
         names = [*model.model_fields, *model.model_computed_fields]
         return InputError(
-            "unknown key", key=key, allowed=", ".join(names), next_step=closest(str(first["loc"][-1]), names)
+            "unknown key", key=key, allowed=", ".join(names), next_step=suggest_word(str(first["loc"][-1]), names)
         )
     if kind == "missing":
         return InputError("is missing", key=key, next_step=f"Add {key}")
@@ -358,7 +369,7 @@ def _input_error(error: ValidationError, model: type[Frozen]) -> InputError:
         return InputError("is out of range", key=key, value=value, allowed=f"{words} {context[name]:g}")
     if kind == "literal_error":
         names = re.findall(r"'([^']*)'", str(context["expected"]))
-        hint = closest(value, names) if isinstance(value, str) else None
+        hint = suggest_word(value, names) if isinstance(value, str) else None
         allowed = ", ".join(names) or str(context["expected"])
         return InputError("is not known", key=key, value=value, allowed=allowed, next_step=hint)
     if kind in ("size", "unit"):

@@ -1,4 +1,4 @@
-"""What a table of a study file may hold, from the fields of the model's class that it fills."""
+"""Keys that a table of a study file may hold, from the fields of the model's class that it fills."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pydantic.fields import FieldInfo
 from flexapod.common.tables.base import FileKey, Key, Quantity
 from flexapod.common.tables.table import Table
 
-Kind = Literal["number", "vector", "rows", "whole", "text", "words", "flag", "table", "other"]
+Kind = Literal["number", "vector", "each", "rows", "matrix", "whole", "text", "words", "flag", "table", "other"]
 
 
 _LIMITS = {"gt": "above", "ge": "at least", "le": "at most", "lt": "below"}
@@ -36,7 +36,8 @@ NO_BOUNDS = Bounds()
 class Column:
     """One key of a table.
 
-    `kind` of its value; `dimensions` that a number may have, another key deciding which; `size`: numbers of a vector;
+    `kind` of its value, "each" of a number for all or one for each; `dimensions` that a number may have, another key
+    deciding which; `size`: numbers of a vector, or of a row of each leg;
     `choices` of a text; `models`: classes of a table, of which the text under `type` or `law` names one; a number may
     stand in place of a table where both are possible; `default` where it is a number; `why`, `usual`: its words and
     those of its default, where it has some; `short`: "number" or "text" that may stand for it; `file`: its text is the
@@ -78,14 +79,17 @@ def _column(name: str, info: FieldInfo) -> Column:
         found["default"] = info.default
     models = tuple(kind for kind in kinds if issubclass(kind, Table))
     shape = next((part.shape for part in parts if hasattr(part, "shape") and not isinstance(part, type)), None)
+    each = next((part.each for part in parts if hasattr(part, "each") and not isinstance(part, type)), None)
     choices = [part for part in parts if isinstance(part, str)]
     if models:
         return Column(kind="table", models=models, dimensions=("number",) * (float in kinds), **found)
     if choices:
-        return Column(kind="text", choices=tuple(choices), **found)
+        return Column(kind="words" if tuple in kinds else "text", choices=tuple(choices), **found)
+    if each is not None:
+        return Column(kind="each", dimensions=dimensions, size=each, **found)
     if shape is not None:
-        rows = len(shape) == 2
-        return Column(kind="rows" if rows else "vector", dimensions=dimensions, size=shape[-1] or 0, **found)
+        kind = "vector" if len(shape) == 1 else "matrix" if shape[0] else "rows"
+        return Column(kind=kind, dimensions=dimensions, size=shape[-1] or 0, **found)  # type: ignore[arg-type]
     for kind, word in ((bool, "flag"), (int, "whole"), (float, "number"), (str, "text")):
         if kind in kinds:
             return Column(kind=word, dimensions=dimensions if kind is float else (), **found)  # type: ignore[arg-type]
@@ -100,6 +104,8 @@ def _flat(parts: list[Any]) -> Any:
             yield from (choice if isinstance(choice, str) else type(choice) for choice in get_args(part))
         elif origin in (Annotated, Union, UnionType):
             yield from _flat(list(get_args(part)))
+        elif origin is tuple and get_origin(get_args(part)[0]) is Literal:
+            yield from (tuple, *_flat([get_args(part)[0]]))
         elif isinstance(part, FieldInfo):
             yield from _flat([part.annotation, *part.metadata] if part.annotation else part.metadata)
         elif hasattr(part, "func"):  # a validator by a function

@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from flexapod.common.arrays import Array
-from flexapod.common.errors import LONGEST_QUOTE, InputError, closest, quoted
+from flexapod.common.errors import LONGEST_QUOTE, InputError, quote_text, suggest_word
 from flexapod.common.files import LARGEST_TABLE, read_text
-from flexapod.common.tables.named_files import Content, Unreadable
+from flexapod.common.tables.named_files import Content, UnreadableFile
 from flexapod.common.units import DIMENSIONS, to_si
 
 POSE = {"surge": "length", "sway": "length", "heave": "length", "roll": "angle", "pitch": "angle", "yaw": "angle"}
@@ -97,8 +97,8 @@ def table_lines(path: Path | None, text: str) -> list[tuple[int, list[str]]]:
     return [(n, row) for n, row in rows if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#")]
 
 
-def _unreadable(path: Path | None, why: str) -> Unreadable:
-    return Unreadable(f"cannot be read: {why}", file=path, next_step="Give its place relative to the study file")
+def _unreadable(path: Path | None, why: str) -> UnreadableFile:
+    return UnreadableFile(f"cannot be read: {why}", file=path, next_step="Give its place relative to the study file")
 
 
 def _header(path: Path, line: int, cells: list[str], dimensions: Mapping[str, str]) -> dict[str, float]:
@@ -109,17 +109,17 @@ def _header(path: Path, line: int, cells: list[str], dimensions: Mapping[str, st
             raise InputError(
                 "has no unit in the header",
                 file=path,
-                key=f"line {line}, column {quoted(cell.strip())}",
+                key=f"line {line}, column {quote_text(cell.strip())}",
                 allowed="name [unit]",
             )
         name, unit = match[1], match[2]
         if name not in dimensions:
             raise InputError(
-                f"has an unknown column {quoted(name)}",
+                f"has an unknown column {quote_text(name)}",
                 file=path,
                 key=f"line {line}",
                 allowed=", ".join(dimensions),
-                next_step=closest(name[:LONGEST_QUOTE], dimensions),
+                next_step=suggest_word(name[:LONGEST_QUOTE], dimensions),
             )
         if len(unit) > LONGEST_UNIT:
             raise InputError(
@@ -190,7 +190,7 @@ def _check_times(path: Path, time: Array, lines: list[int], jumps: bool) -> None
         )
 
 
-def forces(count: int, dimension: str = "force") -> dict[str, str]:
+def force_columns(count: int, dimension: str = "force") -> dict[str, str]:
     """Columns of a table of the drive forces, or of cranks the torques, of so many legs."""
     return {f"leg {i}": dimension for i in range(1, count + 1)}
 
@@ -207,6 +207,6 @@ def table_text(content: Content) -> str:
     return "\n".join([first, *(",".join(map(repr, row)) for row in rows)]) + "\n"
 
 
-def beside(table: Mapping[str, Array], names: Iterable[str]) -> Array:
+def stack_columns(table: Mapping[str, Array], names: Iterable[str]) -> Array:
     """Columns of a table side by side; 0 where there is none."""
     return np.column_stack([table.get(name, np.zeros_like(table["time"])) for name in names])

@@ -1,4 +1,4 @@
-"""What is asked while a study is read: keys, dimensions, choices, bounds."""
+"""Notes on what is asked while a study is read: keys, dimensions, choices, bounds."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class NotedField:
 
     @property
     def name(self) -> str:
-        """Its name in that table, ``diameter``."""
+        """Name in that table, ``diameter``."""
         return self.key.rpartition(".")[2]
 
     @property
@@ -85,7 +85,7 @@ class Notes:
             if known is not None and known.kind in ("number", "whole"):
                 self.fields[known.key] = replace(known, bounds=column.bounds, default=column.default)
 
-    def taken(self, table: str, built: Table) -> None:
+    def record_defaults(self, table: str, built: Table) -> None:
         """The object was made: what it has for keys that are absent."""
         for name in type(built).model_fields:
             known = self.fields.get(_path(table, name))

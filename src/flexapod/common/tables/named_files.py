@@ -15,13 +15,13 @@ Content = Mapping[str, tuple[str, Any]]
 LONGEST = 100  # letters of a name in a folder that is all there is
 
 
-class Unreadable(InputError):
+class UnreadableFile(InputError):
     """A file that cannot be read as a table, whatever is in it."""
 
 
 @dataclass(frozen=True)
 class Stored:
-    """What stands for a file: the `name` that its key holds, "" of arrays given in Python, and its `content`."""
+    """Table that stands for a file: the `name` that its key holds, "" of arrays given in Python, and its `content`."""
 
     name: str
     content: Content
@@ -29,7 +29,7 @@ class Stored:
 
 @dataclass(frozen=True)
 class NamedFiles:
-    """Where the files are that a study names.
+    """Places of the files that a study names.
 
     Parameters
     ----------
@@ -47,12 +47,12 @@ class NamedFiles:
     stored: Mapping[str, Stored] = field(default_factory=lambda: MappingProxyType({}))
 
     def content(self, key: str, name: str) -> Content | None:
-        """What stands for the file that a key names; None where it is to be read."""
+        """Content that stands for the file that a key names; None where it is to be read."""
         found = self.stored.get(key)
         return None if found is None or found.name != name else found.content
 
     def place(self, name: str) -> Path:
-        """Where a file is.
+        """Place of a file.
 
         Raises
         ------
@@ -61,26 +61,26 @@ class NamedFiles:
         """
         path = self.folder / name
         if self.closed and not self._holds(name):
-            raise Unreadable(
+            raise UnreadableFile(
                 "is a table that was not sent",
                 allowed="the plain name of a table that was uploaded before; no other file is read",
                 next_step="Upload the table first, then the study",
             )
         if not name:
-            raise Unreadable(
+            raise UnreadableFile(
                 "names no file: its table was given in Python, and is not here",
                 next_step="Take the study out of its results with `flexapod.load`, or write the table into a file",
             )
         return path
 
     def _holds(self, name: str) -> bool:
-        """Whether a name is that of a regular file in the folder itself."""
+        """Tell whether a name is that of a regular file in the folder itself."""
         path = self.folder / name
         return self.folder != Path() and _is_plain(name) and not path.is_symlink() and path.is_file()
 
 
 def _is_plain(name: str) -> bool:
-    """Whether a name is that of a file in a folder, on any system."""
+    """Tell whether a name is that of a file in a folder, on any system."""
     return 0 < len(name) <= LONGEST and name.isprintable() and name[0] not in ".~" and not {*name} & {*'/\\:*?"<>|'}
 
 

@@ -1,4 +1,4 @@
-"""What a study file may contain, with an example for everything: the source of the page and of messages about keys."""
+"""Reference of study files with an example for everything: the source of the page and of messages about keys."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from flexapod.common.errors import nearest
+from flexapod.common.errors import closest_word
 from flexapod.common.tables.toml import toml_value
 
 _VARIANT = ("type", "law")
@@ -28,7 +28,7 @@ class Entry:
 
     @property
     def data(self) -> dict[str, Any]:
-        """What the example has at its table; of a list of tables the keys of all, the first ones first."""
+        """Data that the example has at its table; of a list of tables the keys of all, the first ones first."""
         found = [tomllib.loads(self.example)]
         for name in self.table.split("."):
             inner = [table[name] for table in found if name in table]
@@ -77,10 +77,10 @@ def example_line(table: str, name: str, like: Mapping[str, Any] | None = None) -
 
 
 def advice(table: str, wrong: str, allowed: Iterable[str], data: Mapping[str, Any]) -> str | None:
-    """What to write in place of a wrong key: the nearest right one, the one that takes it inside, or a missing one."""
+    """Advice for a wrong key: the nearest right one, the one that takes it inside, or a missing one."""
     allowed = tuple(allowed)
     lines = {name: line for name in allowed if (line := example_line(table, name, data))}
-    if near := nearest(wrong, allowed):
+    if near := closest_word(wrong, allowed):
         return f"Did you mean {near!r}?" + (f" For example: {lines[near]}" if near in lines else "")
     inside = [name for name, line in lines.items() if re.search(rf"\b{re.escape(wrong)}\b", line)]
     for name in (*inside, *(name for name in lines if name not in data)):

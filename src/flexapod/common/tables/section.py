@@ -9,11 +9,11 @@ from typing import Any, TypeVar
 import numpy as np
 
 from flexapod.common.arrays import Array
-from flexapod.common.errors import InputError, quoted
+from flexapod.common.errors import InputError, quote_text
 from flexapod.common.tables.axes import NO_PLACE, WORDS, axis_of
 from flexapod.common.tables.columns import Column, columns_of
 from flexapod.common.tables.csv_tables import read_table
-from flexapod.common.tables.named_files import Content, Unreadable
+from flexapod.common.tables.named_files import Content, UnreadableFile
 from flexapod.common.tables.systems import read_system
 from flexapod.common.tables.table import Table
 from flexapod.common.tables.values import Values
@@ -47,10 +47,12 @@ class Section(Values):
             Gives the fields that are not read key by key; asked once the keys are known to be right.
         """
         columns = [column for name, column in columns_of(model).items() if name not in model.derived]
-        self.only(*(column.name for column in columns), *model.also, *also)
-        others = {**model.resolved(self), **({} if then is None else then(self))}
+        self.check_keys(*(column.name for column in columns), *model.also, *also)
+        several = {column.name: self._value(column, among) for column in columns if column.kind in ("each", "rows")}
+        others = several | {**model.fields_from_section(self), **({} if then is None else then(self))}
+        columns.sort(key=lambda column: column.kind != "words")  # these first, the others in the order of the class
         values = {column.name: self._value(column, among) for column in columns if column.name not in others}
-        return self.build(model, **values, **others).keep(self.written)
+        return self.build(model, **values, **others).attach_source(self.source_table)
 
     def _value(self, column: Column, among: tuple[str, ...]) -> object:
         name = column.name
@@ -61,11 +63,19 @@ class Section(Values):
         if column.kind == "vector":  # of any length
             given = self.data.get(name)
             return self.vector(name, *column.dimensions * (len(given) if isinstance(given, list) else 1))
+        if column.kind == "each":
+            many = isinstance(self.data.get(name), list)
+            count = (column.size or self.leg[1]) if many else 1
+            return (self.vector if many else self.number)(name, *column.dimensions * count)
+        if column.kind == "rows":
+            return self.rows(name, *(column.dimensions * column.size,) * self.leg[1]) if name in self else None
+        if column.kind == "words":
+            return self.words(name, column.choices or ())
         if column.kind == "text":
             found = self.text(name, column.choices)
             return None if column.file and not found else found  # a table that was given in Python has no file
         if column.kind == "whole":
-            return self.whole(name)
+            return self.integer(name)
         if column.kind == "flag":
             return self.flag(name)
         if column.kind != "table":
@@ -91,7 +101,7 @@ class Section(Values):
         if len(models) > 1:
             key = next(name for name in _KINDS if name in columns_of(model))
             if default is None:
-                self.need(key)
+                self.require_keys(key)
             kinds = {kind: one for one in models for kind in columns_of(one)[key].choices or ()}
             model = kinds.get(str(self.text(key, tuple(kinds))), default or model)
         reader = (readers or {}).get(model)
@@ -122,8 +132,8 @@ class Section(Values):
             return self._columns(name, found, {along: along, **columns})
         try:
             return read_table(self.place(name), columns, needed=needed, jumps=jumps, along=along)
-        except Unreadable as error:
-            raise self.refused(name, error) from None
+        except UnreadableFile as error:
+            raise self.file_error(name, error) from None
 
     def linear_system(self, name: str = "file") -> dict[str, Any]:
         """The linear system in the file under `file` or another name (`schema.systems`)."""
@@ -132,30 +142,30 @@ class Section(Values):
             return {part: value for part, (_, value) in found.items()}
         try:
             return read_system(self.place(name))
-        except Unreadable as error:
-            raise self.refused(name, error) from None
+        except UnreadableFile as error:
+            raise self.file_error(name, error) from None
 
     def place(self, name: str) -> Path:
-        """Where the file is that a key names: the only way from a text of a study to a file.
+        """Place of the file that a key names: the only way from a text of a study to a file.
 
         Raises
         ------
         InputError
             It is missing, or no file that this study may name.
         """
-        self.need(name)
+        self.require_keys(name)
         try:
             return self.files.place(str(self.text(name)))
-        except Unreadable as error:
-            raise self.refused(name, error) from None
+        except UnreadableFile as error:
+            raise self.file_error(name, error) from None
 
-    def refused(self, name: str, error: InputError) -> InputError:
-        """What is wrong with the file that a key names, told of the key."""
+    def file_error(self, name: str, error: InputError) -> InputError:
+        """Error of the file that a key names, told of the key."""
         return self.error(error.what, name, allowed=error.allowed, next_step=error.next_step)
 
     def _stored(self, name: str) -> Content | None:
-        """What stands for the file that a key names, if anything does."""
-        self.need(name)
+        """Content that stands for the file that a key names, if any does."""
+        self.require_keys(name)
         path = self.key(name)
         if path.startswith("leg."):  # of a table for all legs that of each
             path = f"leg[{self.leg[0]}]{path[3:]}"
@@ -166,7 +176,7 @@ class Section(Values):
         for column, (dimension, _) in content.items():
             if dimensions.get(column) != dimension:
                 raise self.error(
-                    f"stands for a table with the column {quoted(column)}, {dimension}",
+                    f"stands for a table with the column {quote_text(column)}, {dimension}",
                     name,
                     allowed=", ".join(f"{column} ({dimension})" for column, dimension in dimensions.items()),
                     next_step="Write a table with these columns into a file, and name that",

@@ -13,14 +13,14 @@ from flexapod.common.arrays import Array, floats
 from flexapod.common.errors import InputError
 from flexapod.common.files import LARGEST_TABLE, read_bytes
 from flexapod.common.tables.array_files import json_arrays, mat_arrays, npz_arrays, texts_of
-from flexapod.common.tables.named_files import Content, Unreadable
+from flexapod.common.tables.named_files import Content, UnreadableFile
 
 MATRICES, NAMES = ("A", "B", "C", "D"), ("inputs", "outputs")
 MOST_CHANNELS = 10_000
 
 
 def read_system(path: Path) -> dict[str, Any]:
-    """What `StateSpace.save` writes: A (n, n), B (n, m), C (p, n), D (p, m), `inputs`, `outputs`, `sample` [s] or None.
+    """Read A (n, n), B (n, m), C (p, n), D (p, m), `inputs`, `outputs`, `sample` [s] or None of `StateSpace.save`.
 
     Raises
     ------
@@ -29,17 +29,17 @@ def read_system(path: Path) -> dict[str, Any]:
     """
     reader = SYSTEM_FILES.get(path.suffix.lower())
     if reader is None:
-        raise Unreadable("is not a format of linear systems", next_step=f"Write it as {', '.join(SYSTEM_FILES)}")
+        raise UnreadableFile("is not a format of linear systems", next_step=f"Write it as {', '.join(SYSTEM_FILES)}")
     try:
         content = read_bytes(path, LARGEST_TABLE)
     except OSError as error:
-        raise Unreadable(
+        raise UnreadableFile(
             f"cannot be read: {error.strerror}", next_step="Give its place relative to the study file"
         ) from None
     try:
         data = reader(content, {*MATRICES, *NAMES, "sample"}.__contains__)
     except ValueError as error:
-        raise Unreadable(f"cannot be read: {error}", next_step="Write it with StateSpace.save") from None
+        raise UnreadableFile(f"cannot be read: {error}", next_step="Write it with StateSpace.save") from None
     try:
         return _checked(data)
     except InputError as error:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from flexapod.common.tables.base import FileKey, Frozen, same
-from flexapod.common.tables.toml import Written, together
+from flexapod.common.tables.toml import SourceTable, merge_source
 
 if TYPE_CHECKING:
     from flexapod.common.tables.named_files import Content
@@ -19,14 +19,14 @@ _HELD = "held"  # where a study keeps that its tables are all there is
 
 @dataclass(frozen=True)
 class Place:
-    """Where a table of a study stands: its `key`, the number of its `leg`; `cranks`: of which legs the drive turns."""
+    """Place of a table of a study: its `key`, the number of its `leg`; `cranks`: of which legs the drive turns."""
 
     key: str = ""
     leg: int = 1
     cranks: frozenset[int] = frozenset()
 
     def force(self, leg: int) -> str:
-        """What the drive of a leg pushes with: "force", or "torque" of a crank."""
+        """Effort of the drive of a leg: "force", or "torque" of a crank."""
         return "torque" if leg in self.cranks else "force"
 
 
@@ -37,8 +37,8 @@ class Table(Frozen):
     """Base of what a table of a study file fills: the class says what may stand there, the object what does.
 
     Fields are keys, ``Annotated[float | None, Quantity("length", above=0, why="of the screw")]``, `Key` of what is no
-    number. What stands in a file in another way a class reads by `resolved`, or whole by `from_table`, and writes by
-    `told`.
+    number. What stands in a file in another way a class reads by `fields_from_section`, or whole by `from_table`, and
+    writes by `si_values`.
     """
 
     #: Fields that are no keys of a study file: a table in a file of its own has them, or they follow from the others
@@ -56,7 +56,7 @@ class Table(Frozen):
 
     @classmethod
     def from_table(cls, section: "Section", among: tuple[str, ...] = ()) -> Self:
-        """What a table says; `among`: dimensions that count for numbers which may be of several."""
+        """Object that a table describes; `among`: dimensions that count for numbers which may be of several."""
         return section.read(cls, among=cls.measuring(section, among))
 
     @classmethod
@@ -65,15 +65,15 @@ class Table(Frozen):
         return among
 
     @classmethod
-    def resolved(cls, section: "Section") -> Mapping[str, object]:
+    def fields_from_section(cls, section: "Section") -> Mapping[str, object]:
         """Fields that are not read key by key; asked once the keys are known to be right."""
         return {}
 
-    def tabled(self, place: "Place") -> "Content":
-        """What the file under its `FileKey` holds, or would hold; nothing where it has no such table."""
+    def file_content(self, place: "Place") -> "Content":
+        """Content that the file under its `FileKey` holds, or would hold; nothing where it has no such table."""
         return {}
 
-    def told(self) -> dict[str, object]:
+    def si_values(self) -> dict[str, object]:
         """All that it has to say in a file, by key, in SI; what is None or follows from the rest is left out.
 
         A file whose table was given in Python is "": no text names a file that never was.
@@ -82,23 +82,23 @@ class Table(Frozen):
         infos = {name: info for name, info in type(self).model_fields.items() if name not in left_out}
         fields = {name: getattr(self, name) for name in infos}
         fields = {name: x for name, x in fields.items() if name not in self.silent or x != infos[name].default}
-        if "file" in fields and fields["file"] is None and self.tabled(ANYWHERE):
+        if "file" in fields and fields["file"] is None and self.file_content(ANYWHERE):
             fields["file"] = ""
         return {name: value for name, value in fields.items() if value is not None}
 
     @property
-    def written(self) -> Written | None:
+    def source_table(self) -> SourceTable | None:
         """The table that it was read from, and what was changed since; None of an object made in Python."""
         return vars(self).get(_WRITTEN)
 
-    def keep(self, written: Written) -> Self:
+    def attach_source(self, written: SourceTable) -> Self:
         """Itself, with the table that says the same."""
         vars(self)[_WRITTEN] = written
         return self
 
     @property
     def holds_tables(self) -> bool:
-        """Whether no file stands behind its tables any more: it comes from results, which held them."""
+        """Tell whether no file stands behind its tables any more: it comes from results, which held them."""
         return _HELD in vars(self)
 
     def hold_tables(self) -> Self:
@@ -106,9 +106,9 @@ class Table(Frozen):
         vars(self)[_HELD] = True
         return self
 
-    def still_says(self, key: str) -> bool:
-        """Whether what was written under a key still says what the object has."""
-        return self.written is not None and self.written.changed.isdisjoint(self.spells.get(key, (key,)))
+    def is_unchanged(self, key: str) -> bool:
+        """Tell whether what was written under a key still says what the object has."""
+        return self.source_table is not None and self.source_table.changed.isdisjoint(self.spells.get(key, (key,)))
 
     def replace(self, **changes: Any) -> Self:
         """A copy with some fields changed, validated again.
@@ -132,24 +132,24 @@ class Table(Frozen):
         """A changed object with what still holds of the table of this one."""
         if self.holds_tables:
             changed.hold_tables()
-        if self.written is None:
+        if self.source_table is None:
             return changed
         fields = (name for name in type(self).model_fields if name not in self.untold)
         names = {name for name in fields if not same(getattr(self, name), getattr(changed, name))}
-        return changed.keep(Written(self.written.data, self.written.changed | names))
+        return changed.attach_source(SourceTable(self.source_table.data, self.source_table.changed | names))
 
     def data(self, fields: dict[str, object] | None = None) -> dict[str, object]:
-        """Its keys as they were written where that still holds, else in SI; `fields`: those in place of `told`."""
-        fields = self.told() if fields is None else fields
-        if self.written is None:
+        """Keys as they were written where that still holds, else in SI; `fields`: those in place of `si_values`."""
+        fields = self.si_values() if fields is None else fields
+        if self.source_table is None:
             return fields
-        data, placed = self.written.data, self.placed
-        said = {*data, *self.written.changed, *placed}
+        data, placed = self.source_table.data, self.placed
+        said = {*data, *self.source_table.changed, *placed}
         usual = {name: info.default for name, info in type(self).model_fields.items() if name not in said}
         given = {name: value for name, value in fields.items() if not _is(value, usual.get(name))}
         vectors = [name for name in placed if isinstance(fields.get(name), np.ndarray)]  # say the same anywhere
-        kept = (key for key in data if self.still_says(key) and (key not in placed or key in vectors))
-        return together(given, data, {key: data[key] for key in kept})
+        kept = (key for key in data if self.is_unchanged(key) and (key not in placed or key in vectors))
+        return merge_source(given, data, {key: data[key] for key in kept})
 
     def __copy__(self) -> Self:
         copy = super().__copy__()
@@ -164,17 +164,17 @@ class Table(Frozen):
 _OF_TABLES = {name for name in vars(Table) if not name.startswith("_")} - {"replace"}
 
 
-def plain(value: object) -> Any:
+def to_plain_data(value: object) -> Any:
     """A value as data of a study file."""
     if isinstance(value, Table):
-        if value.written is not None and not value.written.changed and not value.placed:
-            return value.written.data
+        if value.source_table is not None and not value.source_table.changed and not value.placed:
+            return value.source_table.data
         value = value.data()
     if isinstance(value, Mapping):
-        return {name: plain(item) for name, item in value.items()}
+        return {name: to_plain_data(item) for name, item in value.items()}
     if isinstance(value, np.ndarray):
         return value.tolist()
-    return [plain(item) for item in value] if isinstance(value, list | tuple) else value
+    return [to_plain_data(item) for item in value] if isinstance(value, list | tuple) else value
 
 
 def _is(value: object, usual: object) -> bool:

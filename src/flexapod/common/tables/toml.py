@@ -23,7 +23,7 @@ class Letters(float):
     text: str
 
     def __new__(cls, text: str) -> Letters:
-        """Of its letters in a file."""
+        """Make it of its letters in a file."""
         found = super().__new__(cls, text)
         found.text = text
         return found
@@ -39,14 +39,14 @@ def as_float(text: str) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Written:
+class SourceTable:
     """A table as it was written: `data`, keys in their order; `changed`: fields of its object that are others now."""
 
     data: Mapping[str, Any]
     changed: frozenset[str] = frozenset()
 
 
-def together(fields: Mapping[str, object], order: Iterable[str], kept: Mapping[str, Any]) -> dict[str, object]:
+def merge_source(fields: Mapping[str, object], order: Iterable[str], kept: Mapping[str, Any]) -> dict[str, object]:
     """The keys of a table, as they were written where that still holds.
 
     Parameters
@@ -64,7 +64,7 @@ def together(fields: Mapping[str, object], order: Iterable[str], kept: Mapping[s
 
 
 def _fits(text: object, value: object) -> bool:
-    """Whether what was written has as many numbers: one of two in a plane, or of one for all, says more elsewhere."""
+    """Tell whether a text has as many numbers: one of two in a plane, or of one for all, says more elsewhere."""
     if not isinstance(value, np.ndarray):
         return True
     return isinstance(text, list) and np.shape(np.array(text, dtype=object)) == value.shape
@@ -90,7 +90,7 @@ _PIECES = re.compile(
 )
 
 
-def parsed(text: str, file: str) -> dict[str, Any]:
+def parse_toml(text: str, file: str) -> dict[str, Any]:
     """The data of a TOML text.
 
     Parameters

@@ -7,14 +7,17 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, Self, TypeVar
 
-from flexapod.common.errors import InputError, Malformed, closest
+import numpy as np
+
+from flexapod.common.arrays import Array
+from flexapod.common.errors import InputError, Malformed, suggest_word
 from flexapod.common.tables.axes import plane_order
 from flexapod.common.tables.columns import Kind
 from flexapod.common.tables.field_help import Notes
 from flexapod.common.tables.named_files import NamedFiles
 from flexapod.common.tables.reference import advice, example_line
 from flexapod.common.tables.table import Table
-from flexapod.common.tables.toml import Written
+from flexapod.common.tables.toml import SourceTable
 from flexapod.common.units import to_si
 
 M = TypeVar("M", bound=Table)
@@ -70,9 +73,9 @@ class Values:
         self.data: Mapping[str, Any] = data
 
     @property
-    def written(self) -> Written:
+    def source_table(self) -> SourceTable:
         """The table, for the object that is read from it."""
-        return Written(self.data)
+        return SourceTable(self.data)
 
     def key(self, name: str) -> str:
         """Full key path of `name` in this section."""
@@ -84,13 +87,15 @@ class Values:
             what, file=self.file, key=self.key(name), value=self.data.get(name), allowed=allowed, next_step=next_step
         )
 
-    def malformed(self, what: str, name: str, *, allowed: str | None = None, next_step: str | None = None) -> Malformed:
+    def malformed_error(
+        self, what: str, name: str, *, allowed: str | None = None, next_step: str | None = None
+    ) -> Malformed:
         """An error about the value of `name` that no study file may have."""
         return Malformed(
             what, file=self.file, key=self.key(name), value=self.data.get(name), allowed=allowed, next_step=next_step
         )
 
-    def only(self, *names: str) -> None:
+    def check_keys(self, *names: str) -> None:
         """Refuse every key that is not in `names`."""
         if self.notes is not None:
             self.notes.allow(self.path, names)
@@ -104,13 +109,13 @@ class Values:
                     next_step=advice(self.path, name, names, self.data),
                 )
 
-    def any_names(self) -> None:
+    def accept_any_keys(self) -> None:
         """Take every key: they are names."""
-        self.only(*self.data)
+        self.check_keys(*self.data)
         if self.notes is not None:
             self.notes.named.add(self.path)
 
-    def need(self, *names: str) -> None:
+    def require_keys(self, *names: str) -> None:
         """Refuse a section without these keys."""
         for name in names:
             if name not in self.data:
@@ -124,13 +129,13 @@ class Values:
         self._note(name, "number", (dimension,))
         return None if name not in self.data else self._si(self.data[name], dimension, self.key(name))
 
-    def whole(self, name: str) -> int | None:
+    def integer(self, name: str) -> int | None:
         """A whole number, or None if absent."""
         self._note(name, "whole", ("number",))
         value = self.data.get(name)
         if value is None or (isinstance(value, int) and not isinstance(value, bool)):
             return value
-        raise self.malformed("is not a whole number", name)
+        raise self.malformed_error("is not a whole number", name)
 
     def flag(self, name: str) -> bool | None:
         """True or false, or None if absent."""
@@ -138,7 +143,7 @@ class Values:
         value = self.data.get(name)
         if value is None or isinstance(value, bool):
             return value
-        raise self.malformed("is neither true nor false", name, allowed="true, false")
+        raise self.malformed_error("is neither true nor false", name, allowed="true, false")
 
     def words(self, name: str, allowed: tuple[str, ...]) -> tuple[str, ...] | None:
         """A list of texts, each one of `allowed`, or None if absent."""
@@ -147,7 +152,7 @@ class Values:
         if value is None:
             return None
         if not isinstance(value, list) or any(word not in allowed for word in value):
-            raise self.malformed("is not a list of these words", name, allowed=", ".join(allowed))
+            raise self.malformed_error("is not a list of these words", name, allowed=", ".join(allowed))
         return tuple(value)
 
     def text(self, name: str, allowed: tuple[str, ...] | None = None) -> str | None:
@@ -158,13 +163,13 @@ class Values:
             return None
         words = ", ".join(allowed) if allowed else "a text in quotes"
         if not isinstance(value, str):
-            raise self.malformed("is not a text", name, allowed=words)
+            raise self.malformed_error("is not a text", name, allowed=words)
         if allowed and value not in allowed:
-            raise self.malformed("is not known", name, allowed=words, next_step=closest(value, allowed))
+            raise self.malformed_error("is not known", name, allowed=words, next_step=suggest_word(value, allowed))
         return value
 
     def vector(self, name: str, *dimensions: str) -> list[float] | None:
-        """As many numbers in SI as `dimensions`, or None if absent."""
+        """Numbers in SI, as many as `dimensions`, or None if absent."""
         value = self.data.get(name)
         self._note(name, "vector", self._in_plane(value, dimensions))
         return None if value is None else self._vector(value, dimensions, self.key(name))
@@ -175,11 +180,20 @@ class Values:
         first = value[0] if isinstance(value, list) and value else None
         self._note(name, "rows", self._in_plane(first, rows[0]))
         if not isinstance(value, list) or len(value) != len(rows):
-            raise self.malformed(
+            raise self.malformed_error(
                 f"is not a list of {len(rows)} rows", name, allowed=f"{len(rows)} rows of {len(rows[0])} numbers"
             )
         places = enumerate(zip(value, rows, strict=True), start=1)
         return [self._vector(row, dimensions, f"{self.key(name)}[{i}]") for i, (row, dimensions) in places]
+
+    def matrix(self, name: str, along: str, mixed: str = "", about: str = "") -> list[list[float]] | Array | None:
+        """A matrix by its diagonal or by its rows, None if absent: (6, 6), of one dimension (3, 3)."""
+        value, three = self.data.get(name), (along,) * 3
+        if isinstance(value, list) and any(isinstance(row, list) for row in value):
+            halves = (three + (mixed,) * 3, (mixed,) * 3 + (about,) * 3) if mixed else (three,)
+            return self.rows(name, *(row for row in halves for _ in range(3)))
+        diagonal = self.vector(name, *three, *(about,) * 3 * bool(about))
+        return None if diagonal is None else np.diag(diagonal)
 
     def section(self, name: str) -> Self | None:
         """The table under `name`, or None if absent."""
@@ -199,7 +213,7 @@ class Values:
         except InputError as error:
             raise self.locate(error) from None
         if self.notes is not None:
-            self.notes.taken(self.path, built)
+            self.notes.record_defaults(self.path, built)
         return built
 
     def locate(self, error: InputError) -> InputError:

@@ -1,4 +1,4 @@
-"""How results converge with step, shapes and elements, and the cheapest setting that keeps an accuracy."""
+"""Convergence of results with step, shapes and elements, and the cheapest setting that keeps an accuracy."""
 
 from flexapod.design.convergence.plan import estimate
 from flexapod.design.convergence.search import ConvergenceStopped, converge

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from flexapod.common.arrays import Array
+from flexapod.common.quantities import fill_template
 from flexapod.design.convergence.trials import Trial
 
 HIGHEST = 40.0  # orders beyond it are not orders
@@ -74,7 +75,7 @@ def finest_error(size: float, finest: float, error: float, order: float) -> floa
 
 
 def shape_factor(counts: Sequence[int], errors: Sequence[float]) -> float | None:
-    """What each shape more divides the error by, where that describes it better than a power of the count, Eq. (T12.4).
+    """Factor by which each further shape divides the error, where it fits better than a power, Eq. (T12.4).
 
     Parameters
     ----------
@@ -135,7 +136,7 @@ class Family:
         """Relative difference of each run to the reference; NaN of failed ones, 0 of the reference."""
         found = self.reference
         return np.array(
-            [np.nan if t.failure or found is None else relative_difference(*t.common(found, quantity))
+            [np.nan if t.failure or found is None else relative_difference(*t.common_values(found, quantity))
              for t in self.trials]
         )  # fmt: skip
 
@@ -173,7 +174,7 @@ class Family:
         return float(known[-1]) if known.size else float("nan")
 
     def factor(self, quantity: str) -> float | None:
-        """What each shape more divides the error by; None where the fall is algebraic."""
+        """Factor by which each further shape divides the error; None where the fall is algebraic."""
         if self.name != "shapes" or self.reference is None:
             return None
         most = self.reference.setting.shapes / 2  # nearer to the reference its own error would count
@@ -185,7 +186,7 @@ class Family:
         return shape_factor([k for k, _ in used], [e for _, e in used])
 
     def rate(self, quantity: str) -> str:
-        """How the error falls, in words."""
+        """Rate at which the error falls, as text."""
         factor, order, theory = self.factor(quantity), self.order(quantity), FAMILIES[self.name][1]
         if factor is not None:
             return f"spectral: each shape more divides the error by about {factor:.2g}"
@@ -202,6 +203,21 @@ class Family:
 TYPICAL_FLOOR = 1e-9  # where it cannot be measured: Newton's residual test leaves 2e-10 to 4e-10
 LEAST_FLOOR = 1e-12  # rounding of thousands of steps, where two runs happen to round alike
 FLOOR_MARGIN = 3.0  # one difference of two runs is a sample of what rounding does, not its bound
+_NONE = "No setting is recommended"
+_FOR = _NONE + " for an accuracy of {accuracy:g}: "
+_ELSE = ". Ask for less, or look at the table."
+NOTES = {
+    "missed": _FOR + "the checked combinations miss it" + _ELSE,
+    "nothing to try": _FOR + "no combination keeps it" + _ELSE,
+    "too few runs": _NONE + ": too few runs succeeded.",
+    "no reference": _NONE + ": the reference failed ({failure}).",
+    "coarse step": (
+        "The step was halved no further than {step:~3 s}: the next run would take about {cost:.0f} s. Errors of steps "
+        "are as uncertain as the finest one's own error."
+    ),
+    "rigid legs": "The file's legs are rigid and have no deviation: steps are studied with assumed modes.",
+}
+"""Words of notes by kind."""
 
 
 @dataclass(kw_only=True)
@@ -229,6 +245,10 @@ class Findings:
         """Keep a run."""
         self.trials.setdefault(family, []).append(trial)
 
+    def note(self, kind: str, **numbers: object) -> None:
+        """Keep a note, one of `NOTES`, with its numbers."""
+        self.notes.append(fill_template(NOTES[kind], **numbers))
+
     def family(self, name: str) -> Family:
         """The runs of a family, coarse to fine."""
         return Family(name=name, trials=tuple(self.trials.get(name, ())), floor=self.floor)
@@ -238,7 +258,7 @@ class Findings:
         if one.failure or other.failure:
             return
         for quantity in self.quantities:
-            gap = relative_difference(*other.common(one, quantity))
+            gap = relative_difference(*other.common_values(one, quantity))
             if gap == gap:  # not NaN: the quantity is zero throughout
                 self.floor[quantity] = max(FLOOR_MARGIN * gap, LEAST_FLOOR)
 
@@ -250,8 +270,8 @@ class Findings:
         """Relative difference to the best run of all; NaN of a failed one or without reference."""
         if trial.failure or self.reference is None:
             return float("nan")
-        return relative_difference(*trial.common(self.reference, quantity))
+        return relative_difference(*trial.common_values(self.reference, quantity))
 
     def error_with_own(self, trial: Trial, quantity: str) -> float:
-        """That difference with the reference's own error added."""
+        """Relative difference to the best run of all plus the reference's own error."""
         return self.error(trial, quantity) + self.reference_error

@@ -13,7 +13,7 @@ from flexapod.analysis.results.time_history import Report
 from flexapod.common.errors import InputError
 from flexapod.common.units import quantities
 from flexapod.design.convergence.family import relative_difference
-from flexapod.design.convergence.plan import checked_trials, not_uniform
+from flexapod.design.convergence.plan import checked_trials, nonuniform_key
 from flexapod.design.convergence.search import ConvergenceStopped
 from flexapod.design.convergence.table import SettingRow, reference_words, rows_dataset
 from flexapod.design.convergence.trials import QUANTITIES, Setting, Trial, Trials, setting_of
@@ -93,7 +93,7 @@ def ladder(
 
 def rungs(study: Study | ActuatorStudy, step: float | None = None) -> tuple[list[Setting], Setting, Setting]:
     """Settings of the rungs that a study has, of the reference, and of the one that bounds its error."""
-    if name := not_uniform(study):
+    if name := nonuniform_key(study):
         raise InputError(
             "is not known to half of the fidelities",
             key=f"leg.piston.{name}",
@@ -145,4 +145,4 @@ def _dataset(trials: Trials, done: list[Trial], best: Trial, near: Trial, *, par
 def _error(trial: Trial, reference: Trial, quantity: str) -> float:
     if trial.failure or reference.failure:
         return float("nan")
-    return relative_difference(*trial.common(reference, quantity))
+    return relative_difference(*trial.common_values(reference, quantity))

@@ -1,4 +1,4 @@
-"""What a convergence study runs, whether it may, and how long it is expected to take."""
+"""Plan of a convergence study: its runs, whether they can be run, and the time they are expected to take."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 from flexapod.analysis.checks.checks import check_actuator_path, check_path
-from flexapod.analysis.results.arguments import FileLike, read
+from flexapod.analysis.results.arguments import FileLike, read_subject
 from flexapod.analysis.results.time_history import Report
 from flexapod.common.errors import InputError
 from flexapod.design.convergence.trials import Setting, Trials, setting_of
@@ -56,14 +56,14 @@ def check_accuracy(accuracy: object) -> None:
 def checked_trials(
     study: Study | ActuatorStudy | FileLike, trials: Trials | None, progress: Report | None = None
 ) -> Trials:
-    """Runs of a study that can be run, which tell `progress`.
+    """Check that a study can be run, and return its runs, which report to `progress`.
 
     Raises
     ------
     InputError
         What `flexapod.run` would refuse, or a fixed platform.
     """
-    study = read(study) if trials is None else trials.study
+    study = read_subject(study) if trials is None else trials.study
     if isinstance(study, ActuatorStudy):
         check_actuator_path(study)
     elif isinstance(study, Study):
@@ -87,7 +87,7 @@ def checked_trials(
 
 
 def base_setting(study: Study | ActuatorStudy) -> Setting:
-    """What the step is studied with: the file's fidelity, or shapes where its legs are rigid."""
+    """Setting of the step study: that of the file, or assumed modes where its legs are rigid."""
     own = setting_of(study)
     modes = own.modes or 3
     return replace(own, fidelity="assumed-modes", modes=modes) if own.fidelity == "rigid" else own
@@ -103,7 +103,7 @@ def discretisations(study: Study | ActuatorStudy, base: Setting, step: float) ->
 
     Pistons of sections, and those that shear, have no elements and segments.
     """
-    alone = base.fidelity == SOLID or bool(not_uniform(study))
+    alone = base.fidelity == SOLID or bool(nonuniform_key(study))
     fidelity = {"shapes": _shaped(base), "elements": "beam-fem", "segments": "finite-segment"}
     per = {"elements": 2}  # shapes of an element
     return [
@@ -114,7 +114,7 @@ def discretisations(study: Study | ActuatorStudy, base: Setting, step: float) ->
     ]
 
 
-def not_uniform(study: Study | ActuatorStudy) -> str | None:
+def nonuniform_key(study: Study | ActuatorStudy) -> str | None:
     """Key by which pistons are other than uniform beams, which half of the fidelities do not know; None of others."""
     pistons = [leg.piston for leg in study.robot.legs] if isinstance(study, Study) else []
     return next((name for name in ("sections", "shear") if any(getattr(one, name) for one in pistons)), None)
@@ -125,6 +125,6 @@ def _shaped(base: Setting) -> str:
     return SOLID if base.fidelity == SOLID else "assumed-modes"
 
 
-def largest(base: Setting) -> Setting:
+def finest_basis(base: Setting) -> Setting:
     """The setting with the most shapes."""
     return replace(base, fidelity=_shaped(base), modes=max(COUNTS["shapes"]))

@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING
 from flexapod.analysis.results.arguments import FileLike
 from flexapod.analysis.results.time_history import Report
 from flexapod.common.errors import ComputationError, InputError
-from flexapod.common.quantities import text
 from flexapod.design.convergence.family import ABOVE, FAMILIES, Findings
 from flexapod.design.convergence.plan import (
     base_setting,
     check_accuracy,
     checked_trials,
     discretisations,
+    finest_basis,
     first_step,
-    largest,
 )
 from flexapod.design.convergence.table import as_dataset
 from flexapod.design.convergence.trials import Setting, Trial, Trials, setting_of
@@ -103,10 +102,7 @@ def choose(trials: Trials, found: Findings) -> None:
         if found.error_with_own(trial, main) <= found.accuracy:
             found.add("recommended", trial)
             return
-    words = "no combination keeps it" if not tried else "the checked combinations miss it"
-    found.notes.append(
-        f"No setting is recommended for an accuracy of {found.accuracy:g}: {words}. Ask for less, or look at the table."
-    )
+    found.note("missed" if tried else "nothing to try", accuracy=found.accuracy)
 
 
 def _step_choices(found: Findings) -> list[StepChoice]:
@@ -136,7 +132,7 @@ def _shape_choices(found: Findings) -> list[Discretisation]:
 def _best(trials: Trials, steps: list[StepChoice], shapes: list[Discretisation], found: Findings) -> Trial | None:
     """The finest step with the cheapest discretisation whose error does not count beside the accuracy."""
     if not (steps and shapes):
-        found.notes.append("No setting is recommended: too few runs succeeded.")
+        found.note("too few runs")
         return None
     good = [d for d in shapes if d.error <= found.accuracy / ENOUGH] or [min(shapes, key=lambda d: d.error)]
     finest = min(s.step for s in steps)
@@ -144,7 +140,7 @@ def _best(trials: Trials, steps: list[StepChoice], shapes: list[Discretisation],
     cheapest = min(known or good, key=lambda d: (d.per_step, d.error)).setting
     trial = trials.run(replace(cheapest, step=finest))
     if trial.failure:
-        found.notes.append(f"No setting is recommended: the reference failed ({trial.failure}).")
+        found.note("no reference", failure=trial.failure)
         return None
     return trial
 
@@ -182,10 +178,7 @@ def halve_steps(trials: Trials, base: Setting, found: Findings) -> None:
             return
         ahead = replace(setting, step=(setting.step or 0.0) / 2)
         if count == MOST or trials.cost(ahead) > LONGEST_RUN:
-            found.notes.append(
-                f"The step was halved no further than {text(setting.step or 0.0, 's')}: the next run would take about "
-                f"{trials.cost(ahead):.0f} s. Errors of steps are as uncertain as the finest one's own error."
-            )
+            found.note("coarse step", step=setting.step or 0.0, cost=trials.cost(ahead))
             return
 
 
@@ -210,7 +203,7 @@ def _fine_enough(found: Findings) -> bool:
     return at_floor or (own * FINER <= found.accuracy and abs(order - 2.0) <= NEAR)
 
 
-def step_of_shapes(trials: Trials, base: Setting, found: Findings) -> float:
+def shape_study_step(trials: Trials, base: Setting, found: Findings) -> float:
     """The coarsest step that uses half of the accuracy, or what the time allows with the largest number of shapes."""
     family, main = found.family("step"), found.quantities[0]
     known = [
@@ -225,7 +218,7 @@ def step_of_shapes(trials: Trials, base: Setting, found: Findings) -> float:
             next_step="See `flexapod run`, or give a shorter output_step.",
         )
     step = max(good) if good else min(step for step, _ in known)
-    most = largest(base)
+    most = finest_basis(base)
     while step < base.output_step and trials.steps(replace(most, step=step)) * trials.per_step(most) > LONGEST_SHAPES:
         step *= 2
     return step
@@ -298,9 +291,9 @@ def _search(trials: Trials, found: Findings) -> None:
     own = setting_of(trials.study)
     base = replace(base_setting(trials.study), tolerance=None)
     if base.fidelity != own.fidelity:
-        found.notes.append("The file's legs are rigid and have no deviation: steps are studied with assumed modes.")
+        found.note("rigid legs")
     halve_steps(trials, base, found)
-    found.shape_step = step_of_shapes(trials, base, found)
+    found.shape_step = shape_study_step(trials, base, found)
     settings = discretisations(trials.study, base, found.shape_step)
     trials.plan([*(setting for _, setting in settings), own])
     for family, setting in settings:

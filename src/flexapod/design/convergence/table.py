@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod.analysis.results.attributes import attributes
-from flexapod.common.files import replacing
+from flexapod.common.files import replace_file
 from flexapod.design.convergence.family import FAMILIES, Family, Findings
 from flexapod.design.convergence.trials import QUANTITIES, Setting, Trial
 from flexapod.model import ActuatorStudy, Study
@@ -32,7 +32,7 @@ class SettingRow:
 
 
 def as_dataset(study: Study | ActuatorStudy, found: Findings, *, partial: bool = False) -> Dataset:
-    """All that was found; ``partial = 1`` in the attributes if the user stopped it."""
+    """Dataset of all findings; ``partial = 1`` in the attributes if the user stopped it."""
     rows = [row for name in FAMILIES if found.trials.get(name) for row in _family_rows(found, name)]
     for name in ("file", "recommended"):
         for trial in found.trials.get(name, ()):
@@ -76,7 +76,7 @@ def _family_rows(found: Findings, name: str) -> list[SettingRow]:
 
 def rows_dataset(rows: list[SettingRow], quantities: Iterable[str], attrs: Mapping[str, object]) -> Dataset:
     """Rows as a Dataset along ``setting``."""
-    from flexapod.common.datasets import composed
+    from flexapod.common.datasets import build_dataset
 
     def column(values: Iterable[object], unit: str, words: str) -> tuple[str, object, dict[str, str]]:
         return "setting", np.array(list(values)), {"units": unit, "long_name": words}
@@ -101,12 +101,12 @@ def rows_dataset(rows: list[SettingRow], quantities: Iterable[str], attrs: Mappi
         data[f"peak_{q}"] = column((t.peak(q) for t in trials), "m", f"largest {words}")
         data[f"error_{q}"] = column((row.error[q] for row in rows), "1", f"relative error of the {words}")
         data[f"order_{q}"] = column((row.order[q] for row in rows), "1", f"observed order of the {words}")
-    return composed(data, attrs=attrs)
+    return build_dataset(data, attrs=attrs)
 
 
 def _groups(found: Findings) -> Dataset:
-    """What each family tells, along ``group``."""
-    from flexapod.common.datasets import composed
+    """Findings of each family along ``group``: reference, rate, order, error of the reference."""
+    from flexapod.common.datasets import build_dataset
 
     families = [found.family(name) for name in FAMILIES if found.trials.get(name)]
     main = found.quantities[0]
@@ -118,7 +118,7 @@ def _groups(found: Findings) -> Dataset:
     for q in found.quantities:
         own = np.array([f.own_error(q) for f in families])
         data[f"own_error_{q}"] = ("group", own, {"units": "1", "long_name": f"{QUANTITIES[q]}: error of the reference"})
-    return composed(data, {"group": [f.name for f in families]})
+    return build_dataset(data, {"group": [f.name for f in families]})
 
 
 def _reference(family: Family) -> str:
@@ -130,7 +130,7 @@ def _rate(family: Family, quantity: str) -> str:
 
 
 def reference_words(setting: Setting) -> str:
-    """A setting in words."""
+    """Setting as text."""
     return f"{setting.label}, {setting.time_words}"
 
 
@@ -146,7 +146,7 @@ def _basis(setting: Setting) -> str:
 
 
 def save_table(data: Dataset, path: Path) -> Path:
-    """Write what varies along ``setting`` to a CSV file, a setting a row, numbers that there are not left empty.
+    """Write what varies along ``setting`` to a CSV file, a setting a row; missing numbers stay empty.
 
     Raises
     ------
@@ -156,7 +156,7 @@ def save_table(data: Dataset, path: Path) -> Path:
     names = [str(name) for name, values in data.data_vars.items() if values.dims == ("setting",)]
     head = [_head(name, data[name].attrs.get("units", "1")) for name in names]
     columns = [data[name].values for name in names]
-    with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+    with replace_file(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(head)
         writer.writerows([_cell(column[i]) for column in columns] for i in range(data.sizes["setting"]))

@@ -33,7 +33,7 @@ TOLERANCE_STEPS = 40  # steps per stored result that a tolerance is guessed to t
 
 @dataclass(frozen=True, kw_only=True)
 class Setting:
-    """What varies: fidelity, basis, shapes per plane, fixed `step` or else `tolerance`; `output_step` [s]."""
+    """Setting of a run: fidelity, basis, shapes per plane, `step` or else `tolerance`, `output_step` [s]."""
 
     fidelity: str
     basis: str
@@ -49,7 +49,7 @@ class Setting:
 
     @property
     def label(self) -> str:
-        """Fidelity and what it is made of, in words."""
+        """Fidelity and its shapes, elements or segments, as text."""
         n = self.shapes
         words = {
             "finite-segment": f"{n} segment{'s' * (n > 1)}",
@@ -61,7 +61,7 @@ class Setting:
 
     @property
     def time_words(self) -> str:
-        """Step or tolerance in words."""
+        """Step or tolerance as text."""
         return f"tolerance {self.tolerance:g}" if self.step is None else f"step {text(self.step, 's', 5)}"
 
     def lines(self) -> list[str]:
@@ -102,7 +102,7 @@ class Trial:
         """Largest size [m]; NaN of a failed run."""
         return float(np.linalg.norm(self.curves[quantity], axis=-1).max()) if not self.failure else float("nan")
 
-    def common(self, other: Trial, quantity: str) -> tuple[Array, Array]:
+    def common_values(self, other: Trial, quantity: str) -> tuple[Array, Array]:
         """Values of both at the instants that both have."""
         spacing = float(other.time[1] - other.time[0])
         at = np.rint(self.time / spacing).astype(int)
@@ -128,7 +128,7 @@ class Trials:
 
     @property
     def quantities(self) -> tuple[str, ...]:
-        """What is compared; the accuracy is asked of the first."""
+        """Names of the compared quantities; the accuracy is asked of the first."""
         return ("tip",) if isinstance(self.study, ActuatorStudy) else ("deviation", "tip")
 
     def __contains__(self, setting: Setting) -> bool:

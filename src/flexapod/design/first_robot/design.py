@@ -13,10 +13,10 @@ from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.errors import InputError
 from flexapod.common.quantities import text
 from flexapod.design.first_robot import sizing
-from flexapod.design.first_robot.electric_choice import electric
-from flexapod.design.first_robot.hydraulic import hydraulic
+from flexapod.design.first_robot.electric_choice import electric_robot
+from flexapod.design.first_robot.hydraulic import hydraulic_robot
 from flexapod.design.first_robot.sizing import OPTION, Body, Joints, Request, SizedLeg
-from flexapod.design.first_robot.study_text import Plan, written
+from flexapod.design.first_robot.study_text import Plan, write_study_text
 
 LARGEST = {"m": 0.5, "rad": math.radians(30)}  # amplitude, of the home height along an axis, about one
 LEAST_SINGULAR = 0.1  # singular value of the scaled Jacobian on the path
@@ -41,18 +41,18 @@ def first_robot(request: Request) -> str:
     InputError
         No robot of these proportions does it; the message names the number to change.
     """
-    joints = sizing.joints_of(request)
-    body, stroke = sizing.body_of(request, joints), sizing.stroke_of(request)
+    joints = sizing.size_joints(request)
+    body, stroke = sizing.size_body(request, joints), sizing.leg_stroke(request)
     if request.drive == "electric":
-        return written(electric(_moved(request, joints, body, stroke)))
+        return write_study_text(electric_robot(_moved(request, joints, body, stroke)))
     if request.drive == "hydraulic":
-        return written(hydraulic(_moved(request, joints, body, stroke)))
-    return written(_ideal(request, joints, body, stroke))
+        return write_study_text(hydraulic_robot(_moved(request, joints, body, stroke)))
+    return write_study_text(_ideal(request, joints, body, stroke))
 
 
 def _moved(request: Request, joints: Joints, body: Body, stroke: float) -> Plan:
     """The robot with legs of any thickness: its motion depends on their strokes alone."""
-    leg = sizing.leg_of(joints, stroke, sizing.RODS[0])
+    leg = sizing.size_leg(joints, stroke, sizing.RODS[0])
     if leg is None:
         raise _no_stroke(request, joints, stroke, sizing.RODS[0])
     return _plan(request, joints, body, leg)
@@ -62,7 +62,7 @@ def _ideal(request: Request, joints: Joints, body: Body, stroke: float) -> Plan:
     """The robot with ideal legs: the thinnest standard piston."""
     safety = diameter = 0.0
     for diameter in _diameters(request, joints, stroke):
-        leg = sizing.leg_of(joints, stroke, diameter)
+        leg = sizing.size_leg(joints, stroke, diameter)
         if leg is None:
             raise _no_stroke(request, joints, stroke, diameter)
         found = _plan(request, joints, body, leg)
@@ -74,7 +74,7 @@ def _ideal(request: Request, joints: Joints, body: Body, stroke: float) -> Plan:
 
 def _diameters(request: Request, joints: Joints, stroke: float) -> list[float]:
     """Diameters to try, thinnest first."""
-    room = sizing.fitting(joints)
+    room = sizing.fitting_diameters(joints)
     if request.diameter is not None:
         most = joints.gap / 1.25 / sizing.OUTER
         if request.diameter > most:
@@ -95,15 +95,15 @@ def _diameters(request: Request, joints: Joints, stroke: float) -> list[float]:
 
 
 def _slender(joints: Joints, stroke: float, diameter: float) -> bool:
-    """Whether a piston is stout enough outside its cylinder; of a stroke that does not fit, as much as does is seen."""
-    leg = sizing.leg_of(joints, min(stroke, 0.99 * sizing.longest_stroke(joints, diameter)), diameter)
+    """Test whether a piston is stout enough outside its cylinder; a stroke that does not fit is cut to what fits."""
+    leg = sizing.size_leg(joints, min(stroke, 0.99 * sizing.longest_stroke(joints, diameter)), diameter)
     return leg is None or leg.longest - leg.mouth <= sizing.SLENDER * diameter
 
 
 def _plan(request: Request, joints: Joints, body: Body, leg: SizedLeg) -> Plan:
     """The robot with this leg, and a motion that it can follow."""
     still = Plan(request=request, joints=joints, body=body, leg=leg, amplitude=0.0, duration=1.0)
-    amplitude = _amplitude(request, model.loads(written(still)), leg)  # type: ignore[arg-type]
+    amplitude = _amplitude(request, model.loads(write_study_text(still)), leg)  # type: ignore[arg-type]
     radius = joints.platform if request.motion in model.AXES[3:] else 1.0
     needed = math.sqrt(10 / math.sqrt(3) * amplitude * radius / ACCELERATION)  # the quintic's largest acceleration
     duration = request.duration or max(FASTEST, math.ceil(100 * needed) / 100)
@@ -111,7 +111,7 @@ def _plan(request: Request, joints: Joints, body: Body, leg: SizedLeg) -> Plan:
 
 
 def _amplitude(request: Request, study: model.Study, leg: SizedLeg) -> float:
-    """How far from home the motion goes: `SHARE` of the half stroke, well away from singular poses."""
+    """Amplitude of the motion from home: `SHARE` of the half stroke, well away from singular poses."""
     robot, axis = study.robot, model.AXES.index(request.motion)
     turning = axis >= 3
     amplitudes = np.linspace(0.0, 1.0, 401) * (LARGEST["rad"] if turning else LARGEST["m"] * request.home)
@@ -154,8 +154,8 @@ def _nice(value: float, *, turning: bool) -> float:
 
 
 def _safety(plan: Plan) -> float:
-    """How many times the loads of the path a leg bears before it yields, or buckles at its longest."""
-    study: model.Study = model.loads(written(plan))  # type: ignore[assignment]
+    """Safety factor of a leg under the loads of the path, against yield and against buckling at its longest."""
+    study: model.Study = model.loads(write_study_text(plan))  # type: ignore[assignment]
     legs = describe_legs(RigidPath(study))
     first = study.robot.legs[0]
     euler = float(buckling_load(first, np.array([plan.leg.longest - plan.leg.mouth]))[0])

@@ -9,8 +9,8 @@ from flexapod.common.quantities import number
 from flexapod.design.first_robot import sizing
 from flexapod.design.first_robot.catalogue import BORE, FASTEST, Screw, joint_stiffness, motor_inertia, motor_mass
 from flexapod.design.first_robot.sizing import Joints, SizedLeg
-from flexapod.design.first_robot.study_text import Plan, given, length, material_words, words
-from flexapod.design.first_robot.warm import tables
+from flexapod.design.first_robot.study_text import Plan, comment_lines, length_text, material_words, value_origin
+from flexapod.design.first_robot.warm import accuracy_tables
 from flexapod.model import MATERIALS
 
 TUBE = 1.7  # diameter of the piston over that of its screw, at least
@@ -36,17 +36,17 @@ def electric_leg(joints: Joints, stroke: float, screw: Screw, diameter: float) -
     if stroke > longest_stroke(joints, screw, diameter):
         return None
     digit = joints.digit
-    shortest = sizing.down(joints.length - stroke / 2, digit)
-    longest = sizing.up(joints.length + stroke / 2, digit)
+    shortest = sizing.round_down(joints.length - stroke / 2, digit)
+    longest = sizing.round_up(joints.length + stroke / 2, digit)
     least = longest - shortest + GUIDED * diameter + (POSITION + NUT) * screw.nominal
-    mouth = sizing.down(max(min(sizing.MOUTH * joints.length, shortest - FREE * diameter), least), digit)
-    piston = sizing.up(longest - mouth + GUIDED * diameter, digit)
+    mouth = sizing.round_down(max(min(sizing.MOUTH * joints.length, shortest - FREE * diameter), least), digit)
+    piston = sizing.round_up(longest - mouth + GUIDED * diameter, digit)
     return SizedLeg(shortest=shortest, longest=longest, mouth=mouth, piston=piston, diameter=diameter)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Electric:
-    """What is chosen: a `screw`, the rated `torque` [N m] of its motor, the `preload` [N] of its nut.
+class ElectricDrive:
+    """Electric drive as chosen: a `screw`, the rated `torque` [N m] of its motor, the `preload` [N] of its nut.
 
     `load`: thrust on a leg at rest at home [N]; `leg`: its lengths.
     """
@@ -59,7 +59,7 @@ class Electric:
 
     @property
     def sources(self) -> tuple[str, ...]:
-        """Where numbers of parts are from."""
+        """Sources of the values of the parts, as text."""
         return (
             f"The legs are electric cylinders with ball screws {self.screw.name}; catalogue values are in the data "
             "sheets that are named. What is chosen besides is in proportion to the preset machine-hexapod.",
@@ -69,18 +69,18 @@ class Electric:
     def inner(self) -> float:
         """Inner diameter of the piston [m]: the screw turns in it."""
         most = max(HOLLOW[0] * self.screw.nominal, HOLLOW[1] * self.leg_.diameter)
-        return sizing.up(most, BORE) if most > 0.01 else sizing.up(most, BORE / 2)
+        return sizing.round_up(most, BORE) if most > 0.01 else sizing.round_up(most, BORE / 2)
 
     @property
     def position(self) -> float:
-        """Of the bearing, from the base joint [m]."""
+        """Position of the bearing, from the base joint [m]."""
         return round(POSITION * self.screw.nominal, 6)
 
     @property
     def shaft(self) -> float:
         """Length of the screw from its bearing [m]."""
         leg = self.leg_
-        return sizing.up(leg.longest - leg.piston - self.position + ROOM * self.screw.nominal, 1e-3)
+        return sizing.round_up(leg.longest - leg.piston - self.position + ROOM * self.screw.nominal, 1e-3)
 
     @property
     def drag(self) -> float:
@@ -114,12 +114,12 @@ class Electric:
                 *_joints(self, plan), *_bodies(self, plan), "", *_drive(self)]  # fmt: skip
 
     def tables(self, plan: Plan) -> list[str]:
-        """How warm and how exact the machine is."""
-        return tables(plan, {"piston": (22, "warmed through the nut"), "cylinder": (22, "as the piston"),
+        """Tables of temperatures and tolerances of the machine."""
+        return accuracy_tables(plan, {"piston": (22, "warmed through the nut"), "cylinder": (22, "as the piston"),
                              "screw": (25, "THK A-715 corrects leads for 2 to 5 K")}, lead=True)  # fmt: skip
 
 
-def per_um(stiffness: float, digits: int = 3) -> str:
+def stiffness_text(stiffness: float, digits: int = 3) -> str:
     """A stiffness in N/um."""
     return f"{number(1e-6 * stiffness, digits)} N/um"
 
@@ -127,42 +127,43 @@ def per_um(stiffness: float, digits: int = 3) -> str:
 def joint_lines(bore: float, load: float, friction: str) -> tuple[list[str], float]:
     """Joints on needle bearings, with `friction` at the base; the stiffness of one along the leg [N/m]."""
     bearings, whole = joint_stiffness(bore, load)
-    stiffness = f'stiffness = {{ axial = "{per_um(whole, 2)}", radial = "{per_um(0.75 * whole, 2)}", loss = 0.03 }}'
+    along, across = stiffness_text(whole, 2), stiffness_text(0.75 * whole, 2)
+    stiffness = f'stiffness = {{ axial = "{along}", radial = "{across}", loss = 0.03 }}'
     return [
         f"base_joint     = {{ {stiffness}{friction} }}",
         f"platform_joint = {{ {stiffness} }}",
-        *words(
-            f"stiffness: computed; needle bearings of bore {length(bore)} in two yokes have {per_um(bearings)} along "
-            f"the leg under the {number(load, 3)} N at rest ({SECANT}); pins, forks and bolts give way as much again; "
-            "across the leg it is three quarters"
+        *comment_lines(
+            f"stiffness: computed; needle bearings of bore {length_text(bore)} in two yokes have "
+            f"{stiffness_text(bearings)} along the leg under the {number(load, 3)} N at rest ({SECANT}); "
+            "pins, forks and bolts give way as much again; across the leg it is three quarters"
         ),
     ], whole
 
 
 def plate_lines(plan: Plan) -> list[str]:
-    """Plates that give way at the joints."""
+    """Lines of the study file for compliant plates at the joints."""
     ends = {"base_plate": (plan.joints.base / 0.6, "base"), "top_plate": (plan.joints.platform / 0.35, "platform")}
     springs = ", ".join(
-        f'{name} = {{ stiffness = "{per_um(1e9 * size, 2)}", at = "{at}", loss = 0.03 }}'
+        f'{name} = {{ stiffness = "{stiffness_text(1e9 * size, 2)}", at = "{at}", loss = 0.03 }}'
         for name, (size, at) in ends.items()
     )
     return [
         f"springs = {{ {springs} }}",
-        *words(
+        *comment_lines(
             "springs: chosen, plates where forks are bolted to them; those of machine-hexapod with 1000 N/um, in "
             "proportion to their radii"
         ),
     ]
 
 
-def _joints(self: Electric, plan: Plan) -> list[str]:
+def _joints(self: ElectricDrive, plan: Plan) -> list[str]:
     bore = self.screw.bore
     seals = 0.1 * (bore / 0.03) ** 2
-    friction = f', friction = {{ M0 = "{number(seals, 2)} N m", f1 = 0.0005, diameter = "{length(1.2 * bore)}" }}'
+    friction = f', friction = {{ M0 = "{number(seals, 2)} N m", f1 = 0.0005, diameter = "{length_text(1.2 * bore)}" }}'
     lines, _ = joint_lines(bore, self.load, friction)
     return [
         *lines,
-        *words(
+        *comment_lines(
             "friction: f1 of needle bearings (HR 1, p. 55); M0 chosen for seals and preload, 0.1 N m at a bore of 30 "
             "mm, as its square; joints at the platform would add as much again"
         ),
@@ -170,67 +171,71 @@ def _joints(self: Electric, plan: Plan) -> list[str]:
     ]
 
 
-def _bodies(self: Electric, plan: Plan) -> list[str]:
+def _bodies(self: ElectricDrive, plan: Plan) -> list[str]:
     leg, request = self.leg_, plan.request
     mass, com, across, along = self.cylinder()
-    diameter = given(
+    diameter = value_origin(
         request.diameter,
         f"at least {TUBE:g} times the screw that turns inside, {sizing.SAFETY:g} times safe against buckling at its "
         f"longest and against yield, no longer outside than {sizing.SLENDER:g} times its width",
     )
     shear = leg.shortest - leg.mouth < SLENDER * leg.diameter
     return [
-        f'cylinder = {{ mass = "{mass:.4g} kg", com = "{length(sizing.rounded(com))}", inertia = {across:.4g}, '
-        f'mouth = "{length(leg.mouth)}", axial_inertia = {along:.3g} }}',
-        *words(
+        f'cylinder = {{ mass = "{mass:.4g} kg", com = "{length_text(sizing.round_significant(com))}", '
+        f'inertia = {across:.4g}, mouth = "{length_text(leg.mouth)}", axial_inertia = {along:.3g} }}',
+        *comment_lines(
             f"mouth: computed, {sizing.MOUTH:g} of the leg at home, but as deep as stroke, bearing and nut need when "
             "drawn in, and one and a half widths of the piston stay outside"
         ),
-        *words(
+        *comment_lines(
             f"mass, com, inertia, axial_inertia: computed for a steel tube {number(1e3 * OUTER * leg.diameter, 3)}/"
             f"{number(1e3 * INSIDE * leg.diameter, 3)} mm up to the mouth, the screw, and a motor with brake of "
             f"{number(motor_mass(self.torque), 2)} kg beside the bearing"
         ),
-        f'piston = {{ diameter = "{length(leg.diameter)}", inner_diameter = "{length(self.inner)}", '
-        f'length = "{length(leg.piston)}", material = "{request.material}"{", shear = true" if shear else ""} }}',
-        *words(f"diameter: {diameter}"),
-        *words("inner_diameter: chosen, the screw turns inside; length: computed, one width stays guided"),
-        *words(f"{material_words(request)}{'; shear: it is short and thick' if shear else ''}"),
-        f'stroke = {{ min = "{length(leg.shortest)}", max = "{length(leg.longest)}" }}   # joint to joint',
-        *words(f"stroke: {given(request.stroke, f'{sizing.STROKE:g} of the home height')}; half of it either way"),
+        f'piston = {{ diameter = "{length_text(leg.diameter)}", inner_diameter = "{length_text(self.inner)}", '
+        f'length = "{length_text(leg.piston)}", material = "{request.material}"{", shear = true" if shear else ""} }}',
+        *comment_lines(f"diameter: {diameter}"),
+        *comment_lines("inner_diameter: chosen, the screw turns inside; length: computed, one width stays guided"),
+        *comment_lines(f"{material_words(request)}{'; shear: it is short and thick' if shear else ''}"),
+        f'stroke = {{ min = "{length_text(leg.shortest)}", max = "{length_text(leg.longest)}" }}   # joint to joint',
+        *comment_lines(
+            f"stroke: {value_origin(request.stroke, f'{sizing.STROKE:g} of the home height')}; half of it either way"
+        ),
         "damping = 0.005              # chosen: usual for bare metal; joints, nut and bearing damp more",
     ]
 
 
-def _drive(self: Electric) -> list[str]:
+def _drive(self: ElectricDrive) -> list[str]:
     screw, torque, drag = self.screw, self.torque, self.drag
     loss = "0.03 in all springs: with it the lowest frequencies are damped by 1 to 2 %, as in machines"
     return [
         "[leg.drive]",
         'type = "screw"',
-        f'lead = "{length(screw.lead)}"',
-        f'root_diameter = "{length(screw.root)}"',
-        *words(f"{screw.shaft}; the thinnest that carries thrust and speed of the path, and a 33rd of the leg at least "
-               "where one fits and legs weigh no more than three payloads: such machines are sized for stiffness"),
-        f'length = "{length(self.shaft)}"   # computed: the way of the nut, and room',
+        f'lead = "{length_text(screw.lead)}"',
+        f'root_diameter = "{length_text(screw.root)}"',
+        *comment_lines(f"{screw.shaft}; the thinnest that carries thrust and speed of the path, and a 33rd of the leg "
+               "at least where one fits and legs weigh no more than three payloads: such machines are sized for "
+               "stiffness"),
+        f'length = "{length_text(self.shaft)}"   # computed: the way of the nut, and room',
         'material = "steel"',
         "efficiency = 0.9             # THK's examples; HIWIN: 0.85 to 0.95",
         'mounting = "fixed-free"      # chosen: the far end turns inside the piston, as in all electric cylinders',
-        f'bearing = {{ stiffness = "{per_um(screw.bearing)}", position = "{length(self.position)}", loss = 0.03 }}',
-        *words(f"{screw.support}; position: chosen, behind the joint's fork; loss: chosen, {loss}"),
-        f'nut = {{ rigidity = "{per_um(screw.rigidity)}", preload = "{number(self.preload, 4)} N", '
+        f'bearing = {{ stiffness = "{stiffness_text(screw.bearing)}", position = "{length_text(self.position)}", '
+        "loss = 0.03 }",
+        *comment_lines(f"{screw.support}; position: chosen, behind the joint's fork; loss: chosen, {loss}"),
+        f'nut = {{ rigidity = "{stiffness_text(screw.rigidity)}", preload = "{number(self.preload, 4)} N", '
         f'dynamic_load = "{number(screw.dynamic_load, 4)} N", loss = 0.03 }}',
-        *words(f"{screw.nut}; preload: computed, {100 * self.preload / screw.dynamic_load:.3g} % of the load rating (a "
-               "tenth is the most, HIWIN 3.6): no thrust of the path unloads half of the nut"),
+        *comment_lines(f"{screw.nut}; preload: computed, {100 * self.preload / screw.dynamic_load:.3g} % of the load "
+               "rating (a tenth is the most, HIWIN 3.6): no thrust of the path unloads half of the nut"),
         f'rotor = {{ inertia = "{motor_inertia(torque):.2g} kg m^2", ratio = 1 }}',
-        *words(f"rotor: chosen, a servo motor of {number(torque)} N m with brake and coupling, by size from the one of "
-               "machine-hexapod"),
+        *comment_lines(f"rotor: chosen, a servo motor of {number(torque)} N m with brake and coupling, by size from "
+               "the one of machine-hexapod"),
         f'friction = {{ torque = "{number(drag, 2)} N m", viscous = "{drag / FASTEST:.2g} N m s/rad" }}',
-        *words("friction: computed, the preload by THK eq. 5 (A-688), bearing and seals chosen; viscous: grease, as "
-               "much again at 3000 rpm"),
+        *comment_lines("friction: computed, the preload by THK eq. 5 (A-688), bearing and seals chosen; viscous: "
+               "grease, as much again at 3000 rpm"),
         f'limits = {{ speed = "3000 rpm", torque = "{number(3 * torque)} N m", rms_torque = "{number(torque)} N m" }}',
-        *words("limits: chosen, the smallest servo motor of makers' steps that moves the path; three times its torque "
-               "for a short time"),
+        *comment_lines("limits: chosen, the smallest servo motor of makers' steps that moves the path; three times its "
+               "torque for a short time"),
         f'brake = {{ torque = "{number(torque)} N m" }}   # chosen: usual for such a motor',
         'command = "position"         # chosen: a stiff position loop; its errors are not those of this study',
     ]  # fmt: skip

@@ -1,4 +1,4 @@
-"""Which electric cylinder of the catalogue a first robot gets: one that carries loads and speeds of its path."""
+"""Choice of the electric cylinder of a first robot: one that carries loads and speeds of its path."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from flexapod.common.errors import InputError
 from flexapod.common.quantities import text
 from flexapod.design.first_robot import sizing
 from flexapod.design.first_robot.catalogue import MOTORS, SCREWS, Screw, speed_limit
-from flexapod.design.first_robot.electric import OUTER, TUBE, Electric, electric_leg, longest_stroke
+from flexapod.design.first_robot.electric import OUTER, TUBE, ElectricDrive, electric_leg, longest_stroke
 from flexapod.design.first_robot.sizing import OPTION, Joints, Request, SizedLeg
-from flexapod.design.first_robot.study_text import Plan, written
+from flexapod.design.first_robot.study_text import Plan, write_study_text
 from flexapod.model.leg.screw import HIGHEST, UNLOADS
 
 STIFF = 33.0  # leg at home over diameter of its screw, at most where one fits: 28 in machine-hexapod
@@ -38,7 +38,7 @@ Described = tuple[tuple[LegDescription, ...], tuple[ScrewDescription, ...], floa
 
 
 @dataclass(frozen=True, kw_only=True)
-class Tried:
+class ElectricTrial:
     """A plan, how many times what it is asked for exceeds what it bears, by kind, its largest thrust [N].
 
     `cost`: 1 where legs are as light and the motion as fast as they should be, more otherwise.
@@ -55,7 +55,7 @@ class Tried:
         return max(self.excess.values())
 
 
-def electric(ideal: Plan) -> Plan:
+def electric_robot(ideal: Plan) -> Plan:
     """The robot with electric cylinders.
 
     Parameters
@@ -68,16 +68,16 @@ def electric(ideal: Plan) -> Plan:
     InputError
         No cylinder of the catalogue fits or carries it; the message names the number to change.
     """
-    request, joints, stroke = ideal.request, ideal.joints, sizing.stroke_of(ideal.request)
+    request, joints, stroke = ideal.request, ideal.joints, sizing.leg_stroke(ideal.request)
     fitting = [screw for screw in SCREWS if _diameters(request, joints, screw)]
     if not fitting:
         raise _no_room(request, joints)
     stiff = [screw for screw in fitting if STIFF * screw.nominal >= joints.length]
     order = stiff + [screw for screw in reversed(fitting) if screw not in stiff]
-    tried: list[Tried] = []
+    tried: list[ElectricTrial] = []
     for screw in order:
         for leg in _legs(request, joints, stroke, screw):
-            tried.append(_tried(ideal, screw, leg))
+            tried.append(_try_leg(ideal, screw, leg))
             if tried[-1].worst <= 1:
                 if tried[-1].cost <= 1:
                     return tried[-1].plan
@@ -106,9 +106,9 @@ def _legs(request: Request, joints: Joints, stroke: float, screw: Screw) -> Iter
     yield from stout or there[-1:]
 
 
-def _tried(ideal: Plan, screw: Screw, leg: SizedLeg) -> Tried:
+def _try_leg(ideal: Plan, screw: Screw, leg: SizedLeg) -> ElectricTrial:
     """The robot with a screw and a leg: preload by the thrust, duration by the speed, then the motor by its torque."""
-    parts = Electric(screw=screw, torque=MOTORS[0], preload=PRELOAD * screw.dynamic_load, load=1.0, leg_=leg)
+    parts = ElectricDrive(screw=screw, torque=MOTORS[0], preload=PRELOAD * screw.dynamic_load, load=1.0, leg_=leg)
     plan = _slowed(replace(ideal, leg=leg, parts=parts))
     found = _described(plan)
     for _ in MOTORS:
@@ -121,12 +121,12 @@ def _tried(ideal: Plan, screw: Screw, leg: SizedLeg) -> Tried:
     thrust = max(one.thrust.value for one in screws)
     weight = sum(x.piston.mass + x.cylinder.mass for x in _study(plan).robot.legs)
     heavy, slow = weight / (HEAVY * ideal.request.payload), plan.duration / (SLOW * ideal.duration)
-    return Tried(
+    return ElectricTrial(
         plan=plan, excess=_excess(plan, parts, legs, screws), thrust=thrust, cost=max(heavy, 1.0) * max(slow, 1.0)
     )
 
 
-def _chosen(parts: Electric, found: Described) -> Electric:
+def _chosen(parts: ElectricDrive, found: Described) -> ElectricDrive:
     """The cylinder with a preload and a motor for the loads that were found; its motor no smaller than before."""
     _, screws, rest = found
     thrust, rating = max(one.thrust.value for one in screws), parts.screw.dynamic_load
@@ -134,7 +134,7 @@ def _chosen(parts: Electric, found: Described) -> Electric:
     needed = max(max(s.rms_torque, s.torque.value / 3, s.back_torque) for s in screws)
     larger = [torque for torque in MOTORS if torque >= max(SPARE * needed, parts.torque)]
     torque = larger[0] if larger else MOTORS[-1]
-    return replace(parts, torque=torque, preload=sizing.rounded(preload), load=sizing.rounded(rest))
+    return replace(parts, torque=torque, preload=sizing.round_significant(preload), load=sizing.round_significant(rest))
 
 
 def _slowed(plan: Plan) -> Plan:
@@ -153,13 +153,13 @@ def _slowed(plan: Plan) -> Plan:
 
 def _allowed(plan: Plan) -> float:
     """Speed of the screw [rad/s] that motor, nut and shaft allow."""
-    parts: Electric = plan.parts  # type: ignore[assignment]
+    parts: ElectricDrive = plan.parts  # type: ignore[assignment]
     drive = _study(plan).robot.legs[0].screw
     return min(speed_limit(parts.screw), critical_speed(drive))  # type: ignore[arg-type]
 
 
 def _study(plan: Plan) -> model.Study:
-    return model.loads(written(plan))  # type: ignore[return-value]
+    return model.loads(write_study_text(plan))  # type: ignore[return-value]
 
 
 def _described(plan: Plan) -> Described:
@@ -171,9 +171,9 @@ def _described(plan: Plan) -> Described:
 
 
 def _excess(
-    plan: Plan, parts: Electric, legs: tuple[LegDescription, ...], screws: tuple[ScrewDescription, ...]
+    plan: Plan, parts: ElectricDrive, legs: tuple[LegDescription, ...], screws: tuple[ScrewDescription, ...]
 ) -> dict[str, float]:
-    """What the path asks for over what the cylinder bears, by kind."""
+    """Ratio of what the path demands to what the cylinder bears, by kind of load."""
     thrust = max(s.thrust.value for s in screws)
     stress = max(leg.stress.total.value / (leg.stress.yield_stress or np.inf) for leg in legs if leg.stress is not None)
     return {
@@ -224,9 +224,9 @@ def _no_stroke(request: Request, joints: Joints, stroke: float, screw: Screw) ->
     )
 
 
-def _too_much(request: Request, tried: Tried) -> InputError:
+def _too_much(request: Request, tried: ElectricTrial) -> InputError:
     kind, ratio = max(tried.excess.items(), key=lambda item: item[1])
-    parts: Electric = tried.plan.parts  # type: ignore[assignment]
+    parts: ElectricDrive = tried.plan.parts  # type: ignore[assignment]
     if request.duration is not None and kind in ("speed", "torque of the motor"):
         least = tried.plan.duration * (ratio if kind == "speed" else math.sqrt(ratio))
         return InputError(

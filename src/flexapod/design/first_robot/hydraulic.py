@@ -17,8 +17,15 @@ from flexapod.design.first_robot import sizing
 from flexapod.design.first_robot.catalogue import CYLINDERS
 from flexapod.design.first_robot.electric import SLENDER, joint_lines, plate_lines
 from flexapod.design.first_robot.sizing import OPTION, SizedLeg
-from flexapod.design.first_robot.study_text import Plan, given, length, material_words, words, written
-from flexapod.design.first_robot.warm import tables
+from flexapod.design.first_robot.study_text import (
+    Plan,
+    comment_lines,
+    length_text,
+    material_words,
+    value_origin,
+    write_study_text,
+)
+from flexapod.design.first_robot.warm import accuracy_tables
 from flexapod.model import MATERIALS
 
 SUPPLY = 140e5  # pressure [Pa]
@@ -31,7 +38,7 @@ STEEL = MATERIALS["steel"].density
 
 
 @dataclass(frozen=True, kw_only=True)
-class Hydraulic:
+class HydraulicDrive:
     """A cylinder of a `bore` [m] with its leg; `load`: thrust at rest [N]."""
 
     bore: float
@@ -44,7 +51,7 @@ class Hydraulic:
 
     @property
     def area(self) -> float:
-        """On which oil pushes out [m^2]."""
+        """Area on which the oil pushes the piston out [m^2]."""
         return math.pi / 4 * self.bore**2
 
     def cylinder(self) -> tuple[float, float, float, float]:
@@ -60,12 +67,12 @@ class Hydraulic:
                 *_leg(self, plan), "", *_drive(self)]  # fmt: skip
 
     def tables(self, plan: Plan) -> list[str]:
-        """How warm and how exact the machine is."""
+        """Tables of temperatures and tolerances of the machine."""
         warm = {"piston": (25, "between the oil and the hall"), "cylinder": (30, "warmed by its oil of some 40 degC")}
-        return tables(plan, warm, lead=False)
+        return accuracy_tables(plan, warm, lead=False)
 
 
-def hydraulic(ideal: Plan) -> Plan:
+def hydraulic_robot(ideal: Plan) -> Plan:
     """The robot with hydraulic cylinders.
 
     Parameters
@@ -78,15 +85,15 @@ def hydraulic(ideal: Plan) -> Plan:
     InputError
         No cylinder fits or carries it; the message names the number to change.
     """
-    joints, stroke, given_ = ideal.joints, sizing.stroke_of(ideal.request), ideal.request.diameter
+    joints, stroke, given_ = ideal.joints, sizing.leg_stroke(ideal.request), ideal.request.diameter
     worst: tuple[float, str, Plan] | None = None
     for bore, rod in CYLINDERS:
         if 1.25 * WALL * bore > joints.gap or (given_ is not None and rod != given_):
             continue
-        leg = sizing.leg_of(joints, stroke, rod)
+        leg = sizing.size_leg(joints, stroke, rod)
         if leg is None:
             continue
-        plan, excess = _tried(ideal, leg, bore)
+        plan, excess = _try_bore(ideal, leg, bore)
         ratio, kind = max((value, name) for name, value in excess.items())
         if ratio <= 1:
             return plan
@@ -95,13 +102,13 @@ def hydraulic(ideal: Plan) -> Plan:
     raise _unfit(ideal, worst)
 
 
-def _tried(ideal: Plan, leg: SizedLeg, bore: float) -> tuple[Plan, dict[str, float]]:
+def _try_bore(ideal: Plan, leg: SizedLeg, bore: float) -> tuple[Plan, dict[str, float]]:
     """The robot with a cylinder, and what its path asks for over what it bears, by kind."""
-    plan = _slowed(replace(ideal, leg=leg, parts=Hydraulic(bore=bore, leg_=leg)))
+    plan = _slowed(replace(ideal, leg=leg, parts=HydraulicDrive(bore=bore, leg_=leg)))
     path = _path(plan)
     oil, legs = describe_hydraulics(path), describe_legs(path)
     rest = float(np.abs(np.einsum("li,li->l", path.forces.joint_force[0], path.axes[0])).max())
-    parts = Hydraulic(bore=bore, leg_=leg, load=sizing.rounded(rest))
+    parts = HydraulicDrive(bore=bore, leg_=leg, load=sizing.round_significant(rest))
     stress = max(x.stress.total.value / (x.stress.yield_stress or np.inf) for x in legs if x.stress is not None)
     return replace(plan, parts=parts), {
         "pressure": max(x.pressure.value for x in oil) / (SHARE * SUPPLY),
@@ -113,11 +120,11 @@ def _tried(ideal: Plan, leg: SizedLeg, bore: float) -> tuple[Plan, dict[str, flo
 
 
 def _path(plan: Plan) -> RigidPath:
-    study: model.Study = model.loads(written(plan))  # type: ignore[assignment]
+    study: model.Study = model.loads(write_study_text(plan))  # type: ignore[assignment]
     return RigidPath(study, np.linspace(0.0, study.duration, INSTANTS))
 
 
-def _speed(oil: tuple[HydraulicDescription, ...], parts: Hydraulic) -> float:
+def _speed(oil: tuple[HydraulicDescription, ...], parts: HydraulicDrive) -> float:
     return max(x.flow.value for x in oil) / parts.area
 
 
@@ -130,12 +137,12 @@ def _slowed(plan: Plan) -> Plan:
     return replace(plan, duration=math.ceil(100 * plan.duration * fast) / 100, slow=slow)
 
 
-def _leg(self: Hydraulic, plan: Plan) -> list[str]:
+def _leg(self: HydraulicDrive, plan: Plan) -> list[str]:
     leg, request = self.leg_, plan.request
     mass, com, across, along = self.cylinder()
     joints, _ = joint_lines(max(round(JOINT * self.bore, 3), 0.003), self.load, "")
     shear = leg.shortest - leg.mouth < SLENDER * leg.diameter
-    diameter = given(
+    diameter = value_origin(
         request.diameter,
         f"the rod of the cylinder, {sizing.SAFETY:g} times safe against buckling and yield, no longer outside than "
         f"{sizing.SLENDER:g} times its width",
@@ -143,43 +150,45 @@ def _leg(self: Hydraulic, plan: Plan) -> list[str]:
     return [
         *joints,
         *plate_lines(plan),
-        f'cylinder = {{ mass = "{mass:.4g} kg", com = "{length(com)}", inertia = {across:.4g}, '
-        f'mouth = "{length(leg.mouth)}", axial_inertia = {along:.3g} }}',
-        *words(
+        f'cylinder = {{ mass = "{mass:.4g} kg", com = "{length_text(com)}", inertia = {across:.4g}, '
+        f'mouth = "{length_text(leg.mouth)}", axial_inertia = {along:.3g} }}',
+        *comment_lines(
             f"mouth: computed, {sizing.MOUTH:g} of the leg at home, but as deep as the rod needs when drawn in; mass: "
-            f"a steel tube with a wall of {length(round((WALL - 1) / 2 * self.bore, 6))}, ends, manifold and oil as "
-            "much again; com, inertia: of such a rod"
+            f"a steel tube with a wall of {length_text(round((WALL - 1) / 2 * self.bore, 6))}, ends, manifold and oil "
+            "as much again; com, inertia: of such a rod"
         ),
-        f'piston = {{ diameter = "{length(leg.diameter)}", length = "{length(leg.piston)}", '
+        f'piston = {{ diameter = "{length_text(leg.diameter)}", length = "{length_text(leg.piston)}", '
         f'material = "{request.material}"{", shear = true" if shear else ""} }}',
-        *words(
+        *comment_lines(
             f"diameter: {diameter}; length: as far as it comes out and two widths that stay guided; "
             f"{material_words(request)}{'; shear: it is short and thick' if shear else ''}"
         ),
-        f'stroke = {{ min = "{length(leg.shortest)}", max = "{length(leg.longest)}" }}   # joint to joint',
-        *words(f"stroke: {given(request.stroke, f'{sizing.STROKE:g} of the home height')}; half of it either way"),
+        f'stroke = {{ min = "{length_text(leg.shortest)}", max = "{length_text(leg.longest)}" }}   # joint to joint',
+        *comment_lines(
+            f"stroke: {value_origin(request.stroke, f'{sizing.STROKE:g} of the home height')}; half of it either way"
+        ),
         "damping = 0.005              # chosen: usual for bare metal; the oil damps more",
     ]  # fmt: skip
 
 
-def _drive(self: Hydraulic) -> list[str]:
+def _drive(self: HydraulicDrive) -> list[str]:
     leg = self.leg_
     swept = 1e3 * self.area * (leg.longest - leg.shortest)
     return [
         "[leg.drive]",
         'type = "hydraulic"',
-        f'bore = "{length(self.bore)}"',
-        *words(f"bore: computed, the smallest usual one that carries the path with a quarter of the supply's "
+        f'bore = "{length_text(self.bore)}"',
+        *comment_lines(f"bore: computed, the smallest usual one that carries the path with a quarter of the supply's "
                f"{SUPPLY / 1e5:g} bar: the valve keeps most, and the oil is stiff"),
-        f'rod = "{length(leg.diameter)}"   # as the piston: half of the area, as usual',
-        f'stroke = "{length(round(leg.longest - leg.shortest, 9))}"   # as leg.stroke',
+        f'rod = "{length_text(leg.diameter)}"   # as the piston: half of the area, as usual',
+        f'stroke = "{length_text(round(leg.longest - leg.shortest, 9))}"   # as leg.stroke',
         f'dead_volume = ["{0.05 * swept:.3g} l", "{0.09 * swept:.3g} l"]',
-        *words("dead_volume: chosen, ports, cushions and pipes: a twentieth of what the head sweeps, and more at the "
-               "rod's end, as in motion-base"),
+        *comment_lines("dead_volume: chosen, ports, cushions and pipes: a twentieth of what the head sweeps, and more "
+               "at the rod's end, as in motion-base"),
         'bulk_modulus = "1.4 GPa"     # industrialmonitordirect.com: the lower end, of oil without free air',
         f'leakage = "{2e-12 * self.bore / 0.1:.2g} m^3/(s Pa)"   # chosen: by the gap, from motion-base',
         f'limits = {{ pressure = "{SUPPLY / 1e5:g} bar", flow = "{6e4 * self.area * FASTEST:.3g} l/min" }}',
-        *words("limits: chosen, a supply of 2000 psi, and pistons of 1 m/s"),
+        *comment_lines("limits: chosen, a supply of 2000 psi, and pistons of 1 m/s"),
     ]  # fmt: skip
 
 
@@ -193,7 +202,7 @@ def _unfit(ideal: Plan, worst: tuple[float, str, Plan] | None) -> InputError:
     bore, rod = CYLINDERS[0]
     if worst is None and 1.25 * WALL * bore <= joints.gap and request.diameter is None:
         most = sizing.longest_stroke(joints, rod)
-        larger = 1.05 * request.home * sizing.stroke_of(request) / max(most, 0.05 * joints.length)
+        larger = 1.05 * request.home * sizing.leg_stroke(request) / max(most, 0.05 * joints.length)
         return InputError(
             "does not fit into legs of this length", key=f"{OPTION} stroke", value=request.texts.get("stroke"),
             allowed=f"at most {text(0.995 * most, 'm')}",

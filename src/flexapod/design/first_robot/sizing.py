@@ -1,4 +1,4 @@
-"""What a first robot is asked for, a few quantities as typed, and its sizes."""
+"""Requirements on a first robot, a few quantities as typed, and its sizes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from flexapod.common.arrays import Array
-from flexapod.common.errors import InputError, closest
+from flexapod.common.errors import InputError, suggest_word
 from flexapod.common.quantities import text
 from flexapod.common.units import quantity
 from flexapod.model import AXES, MATERIALS, base_circle, platform_circle
@@ -36,7 +36,7 @@ _NUMBERS = {  # key: dimension, least, most [SI]
 
 @dataclass(frozen=True, kw_only=True)
 class Request:
-    """What is given, SI; None is computed.
+    """Requirements on a first robot, SI; None is computed.
 
     `home`: height of the platform's joints above the base's; `payload`: mass with the platform; `stroke`: of a leg,
     from its shortest to its longest; `base`, `platform`: radii of the joints' circles; `diameter`: of the pistons;
@@ -71,7 +71,7 @@ def parse_request(text: str) -> Request:
         key = key.lower()
         if key not in (*_NUMBERS, *CHOICES):
             names = ", ".join((*_NUMBERS, *CHOICES))
-            hint = closest(key, (*_NUMBERS, *CHOICES)) or f'For example {OPTION} "{EXAMPLE}"'
+            hint = suggest_word(key, (*_NUMBERS, *CHOICES)) or f'For example {OPTION} "{EXAMPLE}"'
             raise InputError("unknown key", key=OPTION, value=key, allowed=names, next_step=hint)
         if not equals or not value or key in given:
             what = "is given twice" if key in given else "has no value"
@@ -96,7 +96,7 @@ def _number(key: str, value: str) -> float:
 
 def _choice(key: str, value: str) -> str:
     if value not in CHOICES[key]:
-        hint = closest(value, CHOICES[key])
+        hint = suggest_word(value, CHOICES[key])
         words = ", ".join(CHOICES[key])
         raise InputError("is not known", key=f"{OPTION} {key}", value=value, allowed=words, next_step=hint)
     return value
@@ -136,7 +136,7 @@ class Joints:
 
     @property
     def digit(self) -> float:
-        """What lengths are rounded to: a hundred-thousandth of the leg or a little more [m]."""
+        """Unit to which lengths are rounded: a hundred-thousandth to a ten-thousandth of the leg [m]."""
         return 10.0 ** (math.floor(math.log10(self.length)) - 4)
 
 
@@ -166,10 +166,10 @@ class SizedLeg:
     diameter: float
 
 
-def joints_of(request: Request) -> Joints:
+def size_joints(request: Request) -> Joints:
     """Circles in proportion to the home height where they are not given."""
-    base = request.base or rounded(BASE * (request.home if request.platform is None else _wider(request)))
-    platform = request.platform or rounded(PLATFORM * base)
+    base = request.base or round_significant(BASE * (request.home if request.platform is None else _wider(request)))
+    platform = request.platform or round_significant(PLATFORM * base)
     half = math.radians(HALF_ANGLE)
     across = platform_circle(platform, half) - base_circle(base, half)
     length = float(np.hypot(np.linalg.norm(across[0]), request.home))
@@ -181,7 +181,7 @@ def _wider(request: Request) -> float:
     return max(request.home, (request.platform or 0.0) / (BASE * PLATFORM))
 
 
-def body_of(request: Request, joints: Joints) -> Body:
+def size_body(request: Request, joints: Joints) -> Body:
     """A body as wide as the platform, or as high as wide where it would be higher otherwise.
 
     Raises
@@ -201,9 +201,9 @@ def body_of(request: Request, joints: Joints) -> Body:
             allowed=f"at most {most:.3g} kg with home = {text(request.home, 'm')}",
             next_step=f"Give a larger home, {text(1.01 * compact / WIDEST / BASE, 'm')} or more, or a smaller payload",
         )
-    radius = rounded(max(compact, joints.platform))
+    radius = round_significant(max(compact, joints.platform))
     height = max(m / (math.pi * DENSITY * radius**2), FLATTEST * radius)
-    return Body(mass=m, radius=radius, height=rounded(height))
+    return Body(mass=m, radius=radius, height=round_significant(height))
 
 
 def longest_stroke(joints: Joints, diameter: float) -> float:
@@ -215,46 +215,46 @@ def longest_stroke(joints: Joints, diameter: float) -> float:
     return (joints.length - (GUIDED + SPARE + FREE) * diameter) / 1.5
 
 
-def leg_of(joints: Joints, stroke: float, diameter: float) -> SizedLeg | None:
+def size_leg(joints: Joints, stroke: float, diameter: float) -> SizedLeg | None:
     """Lengths of a leg for a stroke about home; None if it does not fit."""
     if stroke > longest_stroke(joints, diameter):
         return None
     digit = joints.digit
-    shortest = down(joints.length - stroke / 2, digit)
-    longest = up(joints.length + stroke / 2, digit)
+    shortest = round_down(joints.length - stroke / 2, digit)
+    longest = round_up(joints.length + stroke / 2, digit)
     least, most = longest - shortest + (GUIDED + SPARE) * diameter, shortest - FREE * diameter
-    mouth = down(max(min(MOUTH * joints.length, most), least), digit)
-    piston = up(longest - mouth + GUIDED * diameter, digit)
+    mouth = round_down(max(min(MOUTH * joints.length, most), least), digit)
+    piston = round_up(longest - mouth + GUIDED * diameter, digit)
     return SizedLeg(shortest=shortest, longest=longest, mouth=mouth, piston=piston, diameter=diameter)
 
 
-def stroke_of(request: Request) -> float:
+def leg_stroke(request: Request) -> float:
     """Stroke of a leg [m]: given, or a share of the home height."""
-    return request.stroke or rounded(STROKE * request.home)
+    return request.stroke or round_significant(STROKE * request.home)
 
 
-def cylinder_of(leg: SizedLeg, density: float) -> tuple[float, float, float]:
+def cylinder_inertia(leg: SizedLeg, density: float) -> tuple[float, float, float]:
     """Mass [kg], centre of mass [m] and transverse inertia [kg m^2] of a tube from the base joint to the mouth."""
     outer, bore = OUTER * leg.diameter / 2, BORE * leg.diameter / 2
     mass = density * math.pi * (outer**2 - bore**2) * leg.mouth
     return mass, leg.mouth / 2, mass * (3 * (outer**2 + bore**2) + leg.mouth**2) / 12
 
 
-def fitting(joints: Joints) -> Array:
+def fitting_diameters(joints: Joints) -> Array:
     """Diameters that leave the cylinders of a pair a quarter of their width between them, (n,) [m]."""
     return np.array([d for d in RODS if 1.25 * OUTER * d <= joints.gap])
 
 
-def rounded(value: float) -> float:
-    """To three digits."""
+def round_significant(value: float) -> float:
+    """Round to three significant digits."""
     return float(f"{value:.3g}")
 
 
-def down(value: float, digit: float) -> float:
-    """To a multiple of `digit`, downwards."""
+def round_down(value: float, digit: float) -> float:
+    """Round down to a multiple of `digit`."""
     return round(math.floor(value / digit) * digit, 12)
 
 
-def up(value: float, digit: float) -> float:
-    """To a multiple of `digit`, upwards."""
+def round_up(value: float, digit: float) -> float:
+    """Round up to a multiple of `digit`."""
     return round(math.ceil(value / digit) * digit, 12)

@@ -16,7 +16,7 @@ WIDTH = 110  # of a comment
 
 
 class Parts(Protocol):
-    """What legs are made of, where they are more than ideal."""
+    """Components of the legs, where these are more than ideal."""
 
     sources: tuple[str, ...]
 
@@ -25,7 +25,7 @@ class Parts(Protocol):
         ...
 
     def tables(self, plan: Plan) -> list[str]:
-        """Further tables, each behind an empty line: how warm and how exact the machine is."""
+        """Further tables, each behind an empty line: temperatures and tolerances of the machine."""
         ...
 
 
@@ -46,17 +46,17 @@ class Plan:
     slow: str = "joints of the platform accelerate by 1 m/s^2 at most"
 
 
-def written(plan: Plan) -> str:
+def write_study_text(plan: Plan) -> str:
     """The commented study file."""
     asked = ", ".join(f"{key}={value}" for key, value in plan.request.texts.items())
     parts = plan.parts
     return "\n".join([
-        *words(f'A first robot, from "{asked}".'),
-        *words(
+        *comment_lines(f'A first robot, from "{asked}".'),
+        *comment_lines(
             "Values are marked as given, computed or chosen, with the reason. It is a beginning: put in what you know "
             "better, then `flexapod check` says what it means. Numbers are in SI units; text carries its unit."
         ),
-        *(line for source in (parts.sources if parts else ()) for line in words(source)),
+        *(line for source in (parts.sources if parts else ()) for line in comment_lines(source)),
         "", *_robot(plan), "", *_payload(plan.body), "", *(parts.leg(plan) if parts else _leg(plan)), "",
         *_motion(plan), "", *(parts.tables(plan) if parts else ()),
         "[simulation]",
@@ -67,28 +67,28 @@ def written(plan: Plan) -> str:
     ])  # fmt: skip
 
 
-def words(text: str) -> list[str]:
+def comment_lines(text: str) -> list[str]:
     """Lines of comment."""
     return [f"# {line}" for line in wrap(text, WIDTH)]
 
 
-def given(value: object, computed: str) -> str:
-    """Whether a value was given, or how it was computed."""
+def value_origin(value: object, computed: str) -> str:
+    """Origin of a value as text: given, or how it was computed."""
     return "given" if value else f"computed, {computed}"
 
 
 def _robot(plan: Plan) -> list[str]:
     request, joints = plan.request, plan.joints
-    base = given(request.base, f"{sizing.BASE:g} of the home height: legs lean and hold sideways as well")
-    platform = given(request.platform, f"{sizing.PLATFORM:g} of the base's radius")
+    base = value_origin(request.base, f"{sizing.BASE:g} of the home height: legs lean and hold sideways as well")
+    platform = value_origin(request.platform, f"{sizing.PLATFORM:g} of the base's radius")
     angle = f'half_angle = "{sizing.HALF_ANGLE:g} deg"'
     return [
         "[robot]",
         'type = "6-UPS"               # universal joint on the base, prismatic leg, spherical joint on the platform',
-        f'base     = {{ radius = "{length(joints.base)}", {angle} }}   # {base}',
-        f'platform = {{ radius = "{length(joints.platform)}", {angle} }}   # {platform}',
-        *words("half_angle: chosen, joints in close pairs are far from the singular arrangement at 30 deg"),
-        f'home_height = "{length(joints.height)}"   # given; legs are then {1e3 * joints.length:.4g} mm long',
+        f'base     = {{ radius = "{length_text(joints.base)}", {angle} }}   # {base}',
+        f'platform = {{ radius = "{length_text(joints.platform)}", {angle} }}   # {platform}',
+        *comment_lines("half_angle: chosen, joints in close pairs are far from the singular arrangement at 30 deg"),
+        f'home_height = "{length_text(joints.height)}"   # given; legs are then {1e3 * joints.length:.4g} mm long',
         "gravity = [0, 0, -9.81]      # m/s^2, z up",
     ]
 
@@ -96,52 +96,52 @@ def _robot(plan: Plan) -> list[str]:
 def _payload(body: Body) -> list[str]:
     moments = ", ".join(f"{moment:.4g}" for moment in body.inertia)
     density = body.mass / (math.pi * body.radius**2 * body.height)
-    shape = f"{length(2 * body.radius)} wide and {length(body.height)} high ({density:.3g} kg/m^3)"
+    shape = f"{length_text(2 * body.radius)} wide and {length_text(body.height)} high ({density:.3g} kg/m^3)"
     return [
         "[payload]                    # the platform and all it carries",
         f'mass = "{body.mass:.10g} kg"   # given',
-        *words(f"inertia, com, tool: computed for a solid cylinder that stands on the platform, {shape}"),
+        *comment_lines(f"inertia, com, tool: computed for a solid cylinder that stands on the platform, {shape}"),
         f"inertia = [{moments}]   # kg m^2 about the centre of mass",
-        f'com = [0, 0, "{length(body.height / 2)}"]   # the middle, from the platform\'s centre',
-        f'tool = [0, 0, "{length(body.height)}"]   # the top: the point you care about',
+        f'com = [0, 0, "{length_text(body.height / 2)}"]   # the middle, from the platform\'s centre',
+        f'tool = [0, 0, "{length_text(body.height)}"]   # the top: the point you care about',
     ]
 
 
 def _leg(plan: Plan) -> list[str]:
     request, leg = plan.request, plan.leg
-    mass, com, inertia = sizing.cylinder_of(leg, MATERIALS[request.material].density)
-    diameter = given(
+    mass, com, inertia = sizing.cylinder_inertia(leg, MATERIALS[request.material].density)
+    diameter = value_origin(
         request.diameter,
         f"the thinnest rod of the series of ISO 3320 that is {sizing.SAFETY:g} times safe against buckling at its "
         f"longest, and against yield, and is no longer outside than {sizing.SLENDER:g} times its width",
     )
-    stroke = given(request.stroke, f"{sizing.STROKE:g} of the home height")
+    stroke = value_origin(request.stroke, f"{sizing.STROKE:g} of the home height")
     return [
         "[leg]                        # all six legs alike; write [[leg]] six times for unequal ones",
-        f'cylinder = {{ mass = "{mass:.4g} kg", com = "{length(com)}", inertia = {inertia:.4g}, '
-        f'mouth = "{length(leg.mouth)}" }}',
-        *words(
+        f'cylinder = {{ mass = "{mass:.4g} kg", com = "{length_text(com)}", inertia = {inertia:.4g}, '
+        f'mouth = "{length_text(leg.mouth)}" }}',
+        *comment_lines(
             f"mouth: computed, {sizing.MOUTH:g} of the leg at home, but as deep as the piston needs when drawn in, and "
             "two widths of the piston stay outside"
         ),
-        *words(
+        *comment_lines(
             f"mass, com, inertia: computed for a tube of {request.material} from the base joint to the mouth, twice as "
             "wide as the piston"
         ),
-        f'piston = {{ diameter = "{length(leg.diameter)}", length = "{length(leg.piston)}", '
+        f'piston = {{ diameter = "{length_text(leg.diameter)}", length = "{length_text(leg.piston)}", '
         f'material = "{request.material}" }}',
-        *words(f"diameter: {diameter}"),
-        *words("length: computed, as far as it comes out and two widths that stay guided"),
-        *words(material_words(request)),
-        f'stroke = {{ min = "{length(leg.shortest)}", max = "{length(leg.longest)}" }}   # joint to joint',
-        *words(f"stroke: {stroke}; half of it either way from home"),
+        *comment_lines(f"diameter: {diameter}"),
+        *comment_lines("length: computed, as far as it comes out and two widths that stay guided"),
+        *comment_lines(material_words(request)),
+        f'stroke = {{ min = "{length_text(leg.shortest)}", max = "{length_text(leg.longest)}" }}   # joint to joint',
+        *comment_lines(f"stroke: {stroke}; half of it either way from home"),
         "damping = 0.005              # chosen: 0.5 % of the critical one is usual for bare metal",
         'drive = { type = "prescribed" }  # chosen: the stroke follows its command exactly; or "servo", "force"',
     ]
 
 
 def material_words(request: Request) -> str:
-    """Who chose the material."""
+    """Origin of the material as text: given, or chosen and the others."""
     others = ", ".join(name for name in MATERIALS if name != request.material)
     return f"material: {'given' if 'material' in request.texts else f'chosen, or {others}'}"
 
@@ -149,10 +149,10 @@ def material_words(request: Request) -> str:
 def _motion(plan: Plan) -> list[str]:
     request = plan.request
     turning = request.motion in model.AXES[3:]
-    amplitude = f"{math.degrees(plan.amplitude):.6g} deg" if turning else length(plan.amplitude)
+    amplitude = f"{math.degrees(plan.amplitude):.6g} deg" if turning else length_text(plan.amplitude)
     others = " ".join(axis for axis in model.AXES if axis != request.motion)
     seconds = f'"{plan.duration:.6g} s"'
-    slow = given(request.duration, plan.slow)
+    slow = value_origin(request.duration, plan.slow)
     return [
         "[motion]",
         f'type = "{request.motion}"   # {"given" if "motion" in request.texts else "chosen"}; or {others}',
@@ -163,6 +163,6 @@ def _motion(plan: Plan) -> list[str]:
     ]
 
 
-def length(value: float) -> str:
-    """A length in m or mm."""
+def length_text(value: float) -> str:
+    """Length as text in m or mm."""
     return f"{value:.10g} m" if value >= 1 else f"{1e3 * value:.10g} mm"

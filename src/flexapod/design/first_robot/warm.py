@@ -1,16 +1,16 @@
-"""How warm and how exact a first machine is: a warm hall, and a good shop."""
+"""Temperatures and tolerances of a first machine: a hall that warms up, and a good shop."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
 from flexapod.common.quantities import number
-from flexapod.design.first_robot.study_text import Plan, words
+from flexapod.design.first_robot.study_text import Plan, comment_lines
 
 PLACE, PER_METRE = 5e-6, 12.5e-6  # standard deviation of bored joints: of any plate [m], and by its diameter
 
 
-def tables(plan: Plan, warm: Mapping[str, tuple[float, str]], *, lead: bool) -> list[str]:
+def accuracy_tables(plan: Plan, warm: Mapping[str, tuple[float, str]], *, lead: bool) -> list[str]:
     """Temperatures of the base and of parts, `warm` [degC] with their reasons, and tolerances."""
     lines = [f"{f'{part} = {at:g}':<28} # chosen: {why}" for part, (at, why) in warm.items()]
     bored = {"base_joints": plan.joints.base, "platform_joints": plan.joints.platform}
@@ -23,7 +23,9 @@ def tables(plan: Plan, warm: Mapping[str, tuple[float, str]], *, lead: bool) -> 
         "",
         "[tolerances]                 # as it is made: standard deviations; constant ones go with a calibration",
         *(f'{name} = "{number(1e6 * value, 2)} um"' for name, value in spread.items()),
-        *words("joints: chosen, plates bored on a good machining centre: 5 um and 12.5 um for a metre of diameter"),
+        *comment_lines(
+            "joints: chosen, plates bored on a good machining centre: 5 um and 12.5 um for a metre of diameter"
+        ),
         f'leg_offset = "{number(0.5e6 * spread["base_joints"], 2)} um"   # chosen: of length and reference marks',
         *(
             ['lead = "C5"                  # chosen: ground and good rolled screws; THK: 18 um in 300 mm']

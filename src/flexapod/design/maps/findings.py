@@ -1,4 +1,4 @@
-"""Quantities of a map in words: where each is least and largest, how much is reached, and why not the rest."""
+"""Quantities of a map as text: where each is least and largest, how much is reached, and why not the rest."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from flexapod import kinematics
 from flexapod.analysis.checks.reachability import REACHED, REASONS
 from flexapod.analysis.results.attributes import robot_study
-from flexapod.analysis.results.poses import coordinate_words, coordinates_of, in_shown_unit
+from flexapod.analysis.results.poses import coordinate_text, coordinate_words, pose_coordinates
 from flexapod.analysis.results.variables import Variable
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
@@ -74,7 +74,7 @@ SIDES = {name: side for name, (side, _) in TOLD.items()}
 SCALARS = [name for name in TOLD if name in GRID_VARIABLES]  # the others only some maps have
 
 
-def forms(names: tuple[str, ...]) -> dict[str, Variable]:
+def grid_variables(names: tuple[str, ...]) -> dict[str, Variable]:
     """The variables on a grid with these dimensions."""
     table = GRID_VARIABLES | FURTHER_VARIABLES
     return {key: Variable((*names, *dims), units, words) for key, (dims, units, words) in table.items()}
@@ -95,7 +95,7 @@ def motion_path(data: Dataset) -> Array | None:
     except InputError:
         return None
     t = np.linspace(0.0, study.motion.end_time, POINTS)
-    path = coordinates_of(study.robot, kinematics.poses(study.robot, study.motion, t))
+    path = pose_coordinates(study.robot, kinematics.poses(study.robot, study.motion, t))
     return path if np.ptp(path, axis=0).max() > 1e-9 else None
 
 
@@ -159,8 +159,8 @@ def scalar(data: Dataset, name: str, mode: int = 1) -> DataArray:
     return data[name].sel(mode=mode) if "mode" in data[name].dims else data[name]
 
 
-def name_of(data: Dataset, name: str, mode: int = 1) -> str:
-    """A quantity in words."""
+def quantity_name(data: Dataset, name: str, mode: int = 1) -> str:
+    """Name of a quantity for readers, with its mode, direction or acceleration."""
     if name == "frequency" and mode > 1:
         return f"natural frequency of mode {mode}"
     words = {"stiffness": ("stiffness_direction", _vector), "dynamic_deviation": ("acceleration", _acceleration)}
@@ -168,7 +168,7 @@ def name_of(data: Dataset, name: str, mode: int = 1) -> str:
     return TOLD[name][1].format(*given)
 
 
-def unit_of(values: DataArray) -> str:
+def quantity_unit(values: DataArray) -> str:
     """Unit as people write it; empty for numbers without one."""
     unit = str(values.attrs.get("units", ""))
     return _UNIT_WORDS.get(unit, unit)
@@ -179,13 +179,13 @@ def axis_words(data: Dataset) -> str:
     parts = []
     for name in data.attrs["axes"].split():
         values = data[name].values
-        ends = " to ".join(in_shown_unit(name, end) for end in dict.fromkeys(values[[0, -1]].tolist()))
+        ends = " to ".join(coordinate_text(name, end) for end in dict.fromkeys(values[[0, -1]].tolist()))
         parts.append(f"{name} {ends} ({len(values)})")
     fixed = {name: float(data.attrs[f"at_{name}"]) for name in AXES if data.attrs.get(f"at_{name}", 0.0)}
     return ", ".join(parts) + (f", at {coordinate_words(fixed)}" if fixed else "")
 
 
-def drawn(data: Dataset) -> list[str]:
+def scalars_with_values(data: Dataset) -> list[str]:
     """Quantities that have a value anywhere; the first one in any case."""
     return [name for name in scalars(data) if name == "frequency" or np.isfinite(data[name].values).any()]
 
@@ -198,8 +198,8 @@ def _finding(data: Dataset, name: str, values: DataArray, mode: int) -> Finding 
     home = _home(data, values)
     return Finding(
         name=name,
-        words=name_of(data, name, mode),
-        unit=unit_of(values),
+        words=quantity_name(data, name, mode),
+        unit=quantity_unit(values),
         least=float(flat[least]),
         least_at=_place(values, least),
         largest=float(flat[largest]),

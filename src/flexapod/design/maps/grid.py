@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from flexapod import kinematics, model
 from flexapod.analysis.checks.reachability import REACHED, rigid_codes
-from flexapod.analysis.results.arguments import coordinate, pose_in_words
-from flexapod.analysis.results.poses import from_home
+from flexapod.analysis.results.arguments import coordinate, pose_from_text
+from flexapod.analysis.results.poses import poses_about_home
 from flexapod.common.arrays import Array, floats
 from flexapod.common.errors import InputError, check_known
 from flexapod.common.units import quantities
@@ -28,7 +28,7 @@ USUAL = ("surge", "heave", "sway", "roll", "pitch", "yaw")  # the first ones tha
 
 @dataclass(frozen=True, kw_only=True)
 class Range:
-    """Part of an axis: ends [m, rad], both None for as far as the robot reaches; number of points, None for `COUNT`."""
+    """Part of an axis: ends [m, rad], both None for the whole reach; number of points, None for `COUNT`."""
 
     low: float | None = None
     high: float | None = None
@@ -52,7 +52,7 @@ class Grid:
 
     @property
     def size(self) -> int:
-        """How many poses."""
+        """Number of poses."""
         return int(np.prod(self.shape))
 
     def coordinates(self) -> Array:
@@ -63,7 +63,7 @@ class Grid:
         return table
 
 
-def grid(robot: model.Robot, axes: Axes | None, at: Mapping[str, float | str] | str | None) -> Grid:
+def build_grid(robot: model.Robot, axes: Axes | None, at: Mapping[str, float | str] | str | None) -> Grid:
     """A grid from what a user gives.
 
     Parameters
@@ -89,7 +89,7 @@ def grid(robot: model.Robot, axes: Axes | None, at: Mapping[str, float | str] | 
             next_step="Use `flexapod modes`, or `flexapod check`",
         )
     axes = dict.fromkeys(usual_axes(robot)) if axes is None else axes
-    at = {} if at is None else (pose_in_words(at, "at") or {}) if isinstance(at, str) else at
+    at = {} if at is None else (pose_from_text(at, "at") or {}) if isinstance(at, str) else at
     _check_names(axes, "axes", 'axes = {"surge": [-0.1, 0.0, 0.1], "heave": None}')
     _check_names(at, "at", 'at = {"roll": 0.1}')
     fixed = _fixed(at, axes)
@@ -105,7 +105,7 @@ def grid(robot: model.Robot, axes: Axes | None, at: Mapping[str, float | str] | 
 
 
 def usual_axes(robot: model.Robot) -> list[str]:
-    """Coordinates that a map varies unless told: surge and heave, or the first two that the robot can do."""
+    """Coordinates that a map varies by default: surge and heave, or the first two that the robot can do."""
     limbs = kinematics.rigid_limbs(robot)
     free = kinematics.independent_axes(limbs, np.zeros(6, dtype=bool), np.zeros(3)) if limbs.guides else ~limbs.hub_held
     return [name for name in USUAL if free[AXES.index(name)]][:2]
@@ -187,7 +187,7 @@ def reach_from_home(robot: model.Robot, name: str, fixed: Array) -> tuple[float,
     for side in (-1.0, 1.0):
         table = np.tile(fixed, (STEPS, 1))
         table[:, column] = side * steps
-        bad = rigid_codes(robot, from_home(robot, table), from_home=True) != REACHED
+        bad = rigid_codes(kinematics.RigidPoses(robot, poses_about_home(robot, table)), from_home=True) != REACHED
         if bad[0]:
             raise InputError(
                 f"is out of reach with the fixed coordinates, so that no range of {name} can be chosen",

@@ -13,20 +13,22 @@ from numpy.typing import ArrayLike
 from flexapod import model
 from flexapod.analysis.checks.reachability import flags
 from flexapod.analysis.checks.resource_limits import check_map
-from flexapod.analysis.checks.stability import unstable_at
+from flexapod.analysis.checks.stability import instability_remarks
 from flexapod.analysis.error_budget.rows import names_of_rows
-from flexapod.analysis.pose_values import Wanted, batch_values
-from flexapod.analysis.results.arguments import LoadLike, RobotLike, at_pose
+from flexapod.analysis.pose_values import PoseRequest, batch_values
+from flexapod.analysis.results.arguments import LoadLike, RobotLike, study_at_pose
 from flexapod.analysis.results.attributes import attributes
-from flexapod.analysis.results.poses import batches, from_home
+from flexapod.analysis.results.poses import batches, poses_about_home
 from flexapod.analysis.results.variables import dataset
 from flexapod.common.arrays import Array, floats
 from flexapod.common.errors import InputError
 from flexapod.common.resources import one_thread
 from flexapod.common.units import quantities
-from flexapod.design.maps.findings import forms
-from flexapod.design.maps.grid import UNITS, Axes, Grid, grid
+from flexapod.design.maps.findings import grid_variables
+from flexapod.design.maps.grid import UNITS, Axes, Grid, build_grid
+from flexapod.kinematics import RigidPoses
 from flexapod.solve.modal.eigenproblem import count_real
+from flexapod.solve.modal.elastic_robot import ElasticRobot
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -94,11 +96,13 @@ def workspace_map(
     >>> data.stiffness.dims, (1e-6 * data.stiffness).round(0).values.tolist()  # N/um, along z
     (('heave',), [250.0, 253.0, 254.0])
     """
-    study = model.override(at_pose(robot, load), fidelity=fidelity, modes=modes, axial_modes=axial_modes, basis=basis)
-    poses = grid(study.robot, axes, at)
+    study = model.override(
+        study_at_pose(robot, load), fidelity=fidelity, modes=modes, axial_modes=axial_modes, basis=basis
+    )
+    poses = build_grid(study.robot, axes, at)
     a = quantities(acceleration, "acceleration", key="acceleration")
     a = None if a is None else _vector("acceleration", a)
-    wanted = Wanted(direction=_unit(direction), acceleration=a, frequencies=_count(frequencies), budget=budget)
+    wanted = PoseRequest(direction=_unit(direction), acceleration=a, frequencies=_count(frequencies), budget=budget)
     check_map(poses.size, wanted.frequencies)
     began = time.perf_counter()
     data = _described(study, poses, wanted, _computed(study, poses, wanted, progress))
@@ -106,27 +110,29 @@ def workspace_map(
     return data
 
 
-def _described(study: model.Study, poses: Grid, wanted: Wanted, values: dict[str, Array]) -> Dataset:
+def _described(study: model.Study, poses: Grid, wanted: PoseRequest, values: dict[str, Array]) -> Dataset:
     count = count_real(values["frequency"])
     values["frequency"] = values["frequency"][..., :count]
     coords = {**poses.values, "mode": np.arange(1, count + 1)}
     if wanted.budget:
         coords["part"] = np.array(names_of_rows(study))
-    data = dataset(values, coords, _attributes(study, poses, wanted), forms(tuple(poses.values)))
+    data = dataset(values, coords, _attributes(study, poses, wanted), grid_variables(tuple(poses.values)))
     for name in poses.values:
         data[name].attrs |= {"units": UNITS[name], "long_name": f"{name} from home"}
     data.reason.attrs |= flags()
     if "loop_growth" in data:
-        path, rates = from_home(study.robot, poses.coordinates()), np.nan_to_num(data.loop_growth.values.ravel())
-        data.attrs["warnings"] = "\n".join([*study.warnings, *unstable_at(study.robot, path, rates)])
+        path, rates = poses_about_home(study.robot, poses.coordinates()), np.nan_to_num(data.loop_growth.values.ravel())
+        data.attrs["warnings"] = "\n".join([*study.warnings, *instability_remarks(study.robot, path, rates)])
     return data
 
 
-def _computed(study: model.Study, poses: Grid, wanted: Wanted, progress: Report | None) -> dict[str, Array]:
-    table = poses.coordinates()
+def _computed(study: model.Study, poses: Grid, wanted: PoseRequest, progress: Report | None) -> dict[str, Array]:
+    table, robot = poses.coordinates(), study.robot
+    elastic = ElasticRobot(robot, study.simulation, study.load)
     parts = []
     for part in batches(len(table)):
-        code, values = batch_values(study, from_home(study.robot, table[part]), wanted)
+        rigid = RigidPoses(robot, poses_about_home(robot, table[part]))
+        code, values = batch_values(study, elastic, rigid, wanted)
         parts.append(values | {"reason": code})
         if progress is not None:
             progress(f"computing {len(table)} poses", part.stop / len(table))
@@ -166,7 +172,7 @@ def _vector(key: str, given: ArrayLike) -> Array:
     return vector
 
 
-def _attributes(study: model.Study, poses: Grid, wanted: Wanted) -> dict[str, object]:
+def _attributes(study: model.Study, poses: Grid, wanted: PoseRequest) -> dict[str, object]:
     s, at = study.simulation, dict(zip(model.AXES, poses.at.tolist(), strict=True))
     acceleration = "worst" if wanted.acceleration is None else wanted.acceleration
     return attributes(study, study.warnings) | {

@@ -1,6 +1,6 @@
-"""Where batches are computed: in this process, or by workers of Dask, local or of a running cluster.
+"""Executors of batches: this process, or workers of Dask, local or of a running cluster.
 
-Which points go to a worker together, and what happens to those whose worker dies.
+Points are cut into batches by measured times; those whose worker dies are computed once more, one at a time.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.design.sweeps import worker as batch
-from flexapod.design.sweeps.outputs import Kept
+from flexapod.design.sweeps.outputs import OutputSelection
 from flexapod.design.sweeps.worker import BatchResult, OtherVersion, PointResult
 
 if TYPE_CHECKING:
@@ -60,9 +60,9 @@ class InProcess:
 
     def __init__(self, version: str) -> None:
         self._version = version
-        self._waiting: list[tuple[Kept, Sequence[int], Sequence[bytes]]] = []
+        self._waiting: list[tuple[OutputSelection, Sequence[int], Sequence[bytes]]] = []
 
-    def submit(self, kept: Kept, points: Sequence[int], packed: Sequence[bytes]) -> None:
+    def submit(self, kept: OutputSelection, points: Sequence[int], packed: Sequence[bytes]) -> None:
         """Hand over a batch, points and their pickled studies; it is computed when its result is asked for."""
         self._waiting.append((kept, points, packed))
 
@@ -102,7 +102,7 @@ class DaskExecutor:
             self._seen = self._looked
         return self._threads
 
-    def submit(self, kept: Kept, points: Sequence[int], packed: Sequence[bytes]) -> None:
+    def submit(self, kept: OutputSelection, points: Sequence[int], packed: Sequence[bytes]) -> None:
         """Hand over a batch: numbers of points, and their pickled studies."""
         try:
             future = self._client.submit(
@@ -150,7 +150,7 @@ Executor = InProcess | DaskExecutor  # batches go in, results come out in any or
 
 
 def _lost(error: BaseException) -> ComputationError:
-    """What a failed task, which is never the fault of a point, means to the user."""
+    """Error for the user from a failed task, which is never the fault of a point."""
     from concurrent.futures import CancelledError as Cancelled
 
     if isinstance(error, Cancelled | OSError | TimeoutError) or "ancelled" in type(error).__name__:
@@ -191,7 +191,7 @@ def check_place(scheduler: object, workers: object) -> None:
 
 @contextmanager
 def executor(version: str, scheduler: str | None, workers: int | None) -> Iterator[Executor]:
-    """Where to compute: `workers` local processes of one thread (default: one a core; 0: this process), or a cluster.
+    """Executor: `workers` local processes of one thread (default: one a core; 0: this process), or a cluster.
 
     Raises
     ------
@@ -287,7 +287,7 @@ def _heedless() -> Any:
 
 @contextmanager
 def _silent() -> Iterator[None]:
-    """What Dask says while workers die and come back is said by the sweep in its own words."""
+    """Silence Dask while workers die and come back; the sweep reports it itself."""
     import distributed  # noqa: F401  (it sets the levels of its loggers when it is imported)
 
     loggers = [logging.getLogger(name) for name in ("distributed", "distributed.client", "distributed.nanny")]
@@ -310,7 +310,9 @@ MOST = 500  # points of a task
 DEADLY = "the process that computed this point died, and did so again when it computed nothing else"
 
 
-def results(executor: Executor, kept: Kept, todo: list[int], packed: Callable[[int], bytes]) -> Iterator[BatchResult]:
+def batch_results(
+    executor: Executor, kept: OutputSelection, todo: list[int], packed: Callable[[int], bytes]
+) -> Iterator[BatchResult]:
     """Results of the points `todo`, batch by batch, in the order in which they are done; `packed`: a point's study.
 
     Batches are as large as measured times suggest, and become smaller towards the end, so that no worker is idle long.
@@ -343,7 +345,7 @@ def results(executor: Executor, kept: Kept, todo: list[int], packed: Callable[[i
 
 
 class _Batches:
-    """What is left to do, cut into batches by what a point has cost so far."""
+    """Remaining points, cut into batches by what a point has cost so far."""
 
     def __init__(self, todo: list[int]) -> None:
         self._todo, self._at = todo, 0

@@ -1,4 +1,4 @@
-"""What is kept of every point, by name, and what a store knows from the start: what varies, room for what is kept."""
+"""Stored outputs of a sweep by name, and the layout of its store: what varies, room for the outputs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from flexapod.analysis.results.attributes import TABLES, attributes
 from flexapod.analysis.results.causes import cause_names
 from flexapod.analysis.results.element_outputs import element_forms
-from flexapod.analysis.results.leg_results import absent, drive_forms, leg_labels
+from flexapod.analysis.results.leg_results import absent_variables, drive_forms, leg_labels
 from flexapod.analysis.results.packed_tables import as_text
 from flexapod.analysis.results.summary import tip_size
 from flexapod.analysis.results.variables import ACTUATOR_FORMS, SPACE_FORMS, VARIABLES, Variable, fixed_labels
@@ -25,7 +25,7 @@ from flexapod.common.units import DIMENSIONS
 from flexapod.design.sweeps.plan import Keep
 from flexapod.design.sweeps.reading import dimension_of, number
 from flexapod.design.sweeps.samples import Points, Resolved
-from flexapod.design.sweeps.store import FORMAT, Known, StoredArray, Values
+from flexapod.design.sweeps.store import FORMAT, StoredArray, StoreLayout, Values
 from flexapod.model import ActuatorStudy, Study
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ _SHAPES = ("shape", "axial_shape", "mode")  # dimensions whose size is a setting
 
 
 @dataclass(frozen=True, kw_only=True)
-class Kept:
+class OutputSelection:
     """Names, in order, and what the store holds of them.
 
     ``every``: stored instants between two that records keep; ``times`` (T,) of records [s]. ``absent``: why some
@@ -81,8 +81,8 @@ ACTUATOR_SCALARS: Mapping[str, Scalar] = {
 }
 
 
-def kept(keep: Keep, study: Study | ActuatorStudy, resolved: Resolved) -> Kept:
-    """What to keep of the points of a sweep.
+def select_outputs(keep: Keep, study: Study | ActuatorStudy, resolved: Resolved) -> OutputSelection:
+    """Select the outputs that are stored of every point of a sweep.
 
     Raises
     ------
@@ -112,7 +112,7 @@ def kept(keep: Keep, study: Study | ActuatorStudy, resolved: Resolved) -> Kept:
         comment = {"comment": f"NaN at a computed point: {absent[name]}"} if name in absent else {}
         shape = (len(resolved.first), *(sizes[dim] for dim in dims))
         arrays[name] = StoredArray(("point", *dims), shape, {"units": units, "long_name": long_name, **comment})
-    return Kept(scalars=names, records=keep.records, arrays=arrays, every=every, times=times, absent=absent)
+    return OutputSelection(scalars=names, records=keep.records, arrays=arrays, every=every, times=times, absent=absent)
 
 
 def _robot_scalars(study: Study) -> Mapping[str, Scalar]:
@@ -158,13 +158,21 @@ def _records(study: Study | ActuatorStudy) -> dict[str, Variable]:
         return planar | ({name: over_time[name] for name in space} | SPACE_FORMS if study.actuator.space else {})
     kinematics = ("leg_length_rate", "leg_length_acceleration", "leg_angle_rigid", "platform_position")
     reactions = ("base_force_rigid", "base_moment_rigid", "held_force_rigid", "joint_moment_rigid")
-    others = {*actuator, *space, *kinematics, *reactions, *absent(study.robot), "sensor_reading", "control_input"}
+    others = {
+        *actuator,
+        *space,
+        *kinematics,
+        *reactions,
+        *absent_variables(study.robot),
+        "sensor_reading",
+        "control_input",
+    }
     others |= {"work_control"} if study.control is None else set()
     return {name: entry for name, entry in over_time.items() if name not in others}
 
 
 def _instants(keep: Keep, resolved: Resolved) -> tuple[int, Array]:
-    """Stored instants between two kept ones, and the times of these."""
+    """Number of output instants from one stored one to the next, and the times of the stored ones."""
     if len(resolved.instants) > 1:
         raise InputError(
             "would have other instants at other points",
@@ -201,13 +209,13 @@ def _shape_sizes(resolved: Resolved, variables: Mapping[str, Variable]) -> dict[
 DRAWN = "_drawn"  # what a tolerance drew about values that vary themselves, and own the name
 
 
-def known(points: Points, kept: Kept, resolved: Resolved) -> Known:
-    """What the store of a sweep knows from the start."""
-    return Known(len(points), _header(points, resolved), columns(points, kept, resolved))
+def store_layout(points: Points, kept: OutputSelection, resolved: Resolved) -> StoreLayout:
+    """Layout of a sweep's store: number of points, attributes and variables of its Dataset."""
+    return StoreLayout(len(points), _header(points, resolved), columns(points, kept, resolved))
 
 
 def _header(points: Points, resolved: Resolved) -> dict[str, Any]:
-    """Attributes of the Dataset: what is in it, told by hashes, and how its points are laid out."""
+    """Attributes of the Dataset: what is in it, identified by hashes, and how its points are laid out."""
     study = attributes(points.nominal)
     return {
         "title": f"flexapod: sweep of a {'single actuator' if isinstance(points.nominal, ActuatorStudy) else 'robot'}",
@@ -227,7 +235,7 @@ def _header(points: Points, resolved: Resolved) -> dict[str, Any]:
 
 
 def axes(points: Points) -> list[dict[str, Any]]:
-    """What the points are the product of, the last fastest: name, number of values, keys that vary with it."""
+    """Axes of the grid of points, the last fastest: name, number of values, keys that vary with it."""
     plan = points.plan
     found: list[dict[str, Any]] = [
         {"name": key_text(block.keys[0]), "count": block.count, "keys": [key_text(key) for key in block.keys]}
@@ -241,8 +249,8 @@ def axes(points: Points) -> list[dict[str, Any]]:
     return found
 
 
-def columns(points: Points, kept: Kept, resolved: Resolved) -> dict[str, StoredArray]:
-    """Arrays of what varies, labels of dimensions, and what is kept."""
+def columns(points: Points, kept: OutputSelection, resolved: Resolved) -> dict[str, StoredArray]:
+    """Arrays of varied values, labels of dimensions, and arrays of stored outputs."""
     given = _varied(points)
     drawn = _scattered(points, resolved)
     varied = given | {f"{name}{DRAWN}" if name in given else name: column for name, column in drawn.items()}
@@ -321,7 +329,7 @@ def _scattered(points: Points, resolved: Resolved) -> dict[str, StoredArray]:
 
 
 def _of_each_leg(key: tuple[Step, ...]) -> bool:
-    """Whether what scatters under a key has one value or row of its own for each leg."""
+    """Test whether what scatters under a key has one value or row of its own for each leg."""
     return key[-1] == "joints" or (key[0] == "leg" and not isinstance(key[1], int))
 
 

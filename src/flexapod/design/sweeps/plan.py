@@ -18,7 +18,7 @@ from flexapod.common.errors import InputError
 from flexapod.common.files import LARGEST_TEXT, check_name, read_text
 from flexapod.common.tables.key_paths import Step, key_text, parse_key
 from flexapod.common.tables.section import Section
-from flexapod.common.tables.toml import parsed, refuse_excess
+from flexapod.common.tables.toml import parse_toml, refuse_excess
 from flexapod.model.file.key_paths import overlap
 
 _PER_CENT = re.compile(r"\s*(\d+\.?\d*(?:[eE][-+]?\d+)?|\.\d+)\s*%\s*")
@@ -150,7 +150,7 @@ def read_plan(sweep: str | Path | Mapping[str, Any]) -> SweepPlan:
     except OSError as error:
         words = f"cannot be read: {error.strerror}"
         raise InputError(words, file=file, next_step="See docs/sweep.md for an example") from None
-    return _plan(Section(parsed(text, str(file)), "", str(file), file.parent), text)
+    return _plan(Section(parse_toml(text, str(file)), "", str(file), file.parent), text)
 
 
 def _plain(value: Any) -> Any:
@@ -163,7 +163,7 @@ def _plain(value: Any) -> Any:
 
 
 def _plan(top: Section, text: str) -> SweepPlan:
-    top.only("vary", "latin_hypercube", "random", "keep")
+    top.check_keys("vary", "latin_hypercube", "random", "keep")
     try:
         plan = SweepPlan(
             blocks=tuple(_block(top.child(entry, f"vary[{i}]")) for i, entry in enumerate(_tables(top, "vary"), 1)),
@@ -215,15 +215,15 @@ def _refuse_overlaps(plan: SweepPlan) -> None:
 
 def _block(section: Section) -> Block:
     if "together" in section:
-        section.only("together")
+        section.check_keys("together")
         return _together(section.child(section.data["together"], "together"))
-    section.need("key")
+    section.require_keys("key")
     key = parse_key(section.data["key"], what=section.key("key"))
     if "values" in section:
-        section.only("key", "values")
+        section.check_keys("key", "values")
         return Block(keys=(key,), values=(_list(section, "values"),))
-    section.only("key", "values", "start", "stop", "count", "spacing")
-    section.need("start", "stop", "count")
+    section.check_keys("key", "values", "start", "stop", "count", "spacing")
+    section.require_keys("start", "stop", "count")
     spacing = section.text("spacing", ("linear", "logarithmic")) or "linear"
     spaced = Spaced(
         start=section.data["start"],
@@ -255,15 +255,15 @@ def _list(section: Section, name: str) -> tuple[object, ...]:
 
 
 def _count(section: Section, *, least: int = 1) -> int:
-    section.need("count")
-    count = section.whole("count")
+    section.require_keys("count")
+    count = section.integer("count")
     if count is None or count < least:
         raise section.error("is out of range", "count", allowed=f"at least {least}")
     return count
 
 
 def _seed(section: Section) -> int:
-    seed = section.whole("seed")
+    seed = section.integer("seed")
     if seed is not None and seed < 0:
         raise section.error("is out of range", "seed", allowed="at least 0")
     return seed or 0
@@ -272,8 +272,8 @@ def _seed(section: Section) -> int:
 def _hypercube(section: Section | None) -> Hypercube | None:
     if section is None:
         return None
-    section.only("count", "seed", "ranges")
-    section.need("ranges")
+    section.check_keys("count", "seed", "ranges")
+    section.require_keys("ranges")
     inner, ranges = section.child(section.data["ranges"], "ranges"), []
     for name, value in inner.data.items():
         if not isinstance(value, list) or len(value) != 2:
@@ -287,8 +287,8 @@ def _hypercube(section: Section | None) -> Hypercube | None:
 def _draws(section: Section | None) -> Draws | None:
     if section is None:
         return None
-    section.only("count", "seed", "tolerance")
-    section.need("tolerance")
+    section.check_keys("count", "seed", "tolerance")
+    section.require_keys("tolerance")
     entries = [section.child(entry, f"tolerance[{i}]") for i, entry in enumerate(_tables(section, "tolerance"), 1)]
     if not entries:
         raise section.error("names no key", "tolerance", allowed="[[random.tolerance]]")
@@ -296,8 +296,8 @@ def _draws(section: Section | None) -> Draws | None:
 
 
 def _tolerance(section: Section) -> Tolerance:
-    section.only("key", "normal", "uniform")
-    section.need("key")
+    section.check_keys("key", "normal", "uniform")
+    section.require_keys("key")
     laws = [law for law in ("normal", "uniform") if law in section]
     if len(laws) != 1:
         raise InputError(
@@ -318,7 +318,7 @@ def _tolerance(section: Section) -> Tolerance:
 def _keep(section: Section | None) -> Keep:
     if section is None:
         return Keep()
-    section.only("scalars", "records", "record_step")
+    section.check_keys("scalars", "records", "record_step")
     names = {}
     for kind in ("scalars", "records"):
         value = section.data.get(kind, [])

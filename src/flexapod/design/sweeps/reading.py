@@ -20,7 +20,7 @@ from flexapod.model import ActuatorStudy, Study
 from flexapod.model.file.files import read_study
 
 
-def study_of(data: Mapping[str, Any], files: Path | NamedFiles) -> Study | ActuatorStudy:
+def study_from_tables(data: Mapping[str, Any], files: Path | NamedFiles) -> Study | ActuatorStudy:
     """The study of these tables.
 
     Raises
@@ -36,7 +36,7 @@ def study_of(data: Mapping[str, Any], files: Path | NamedFiles) -> Study | Actua
 def read_with_dimensions(
     data: Mapping[str, Any], files: Path | NamedFiles, dimensions: dict[str, str]
 ) -> Study | ActuatorStudy:
-    """As `study_of`; `dimensions` receives the dimension of every number that is read, by key path."""
+    """Read a study as `study_from_tables` does; `dimensions` receives that of every number, by key path."""
     notes = Notes()
     try:
         return read_study(Section(data, "", None, files, notes), "a point of a sweep")

@@ -1,4 +1,4 @@
-"""What is wrong with a store of a sweep, in words."""
+"""Errors of stores of sweeps: what is wrong with a store, and the next step."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ _OF_THE_DISK = (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_READON
 
 
 def no_store(path: Path | None) -> InputError:
-    """There is something else, or nothing."""
+    """Error of a path that holds something else than a store, or nothing."""
     return InputError("is not a store of a sweep", file=path, next_step="Choose another place with --out")
 
 
-def damaged(path: Path | None, why: str) -> InputError:
-    """It cannot be gone on with."""
+def damaged_store(path: Path | None, why: str) -> InputError:
+    """Error of a damaged store, which cannot be continued."""
     return InputError(f"is a damaged store of a sweep: {why}", file=path, next_step=_NEXT)
 
 
 def other_format(path: Path, header: Mapping[str, Any]) -> InputError:
-    """Another version has written it, and reads it."""
+    """Error of a store that another version of flexapod has written, and reads."""
     return InputError(
         "was written by another version of flexapod", file=path, key="flexapod_sweep_format",
         value=header.get("flexapod_sweep_format"),
@@ -34,27 +34,27 @@ def other_format(path: Path, header: Mapping[str, Any]) -> InputError:
     )  # fmt: skip
 
 
-def only_to_read(path: Path) -> InputError:
-    """A Zarr folder where a sweep is to go on."""
+def read_only_store(path: Path) -> InputError:
+    """Error of a Zarr folder where a sweep is to continue."""
     words = "is a sweep as Zarr, of an earlier flexapod or for other programs: it can be read, not continued"
     return InputError(words, file=path, next_step=_NEXT)
 
 
-def unreadable(path: Path | None, name: str) -> ComputationError:
-    """What is to be done about a row that is not what was written."""
+def unreadable_row(path: Path | None, name: str) -> ComputationError:
+    """Error of a row that is not what was written, with what to do about it."""
     next_step = "Run the sweep again with this store: it computes again what was lost"
     return ComputationError(f"{path}: {name} cannot be read", next_step=next_step)
 
 
-def of_sqlite(error: sqlite3.Error | OSError, path: Path | None, done: int = 0) -> FlexapodError:
-    """What SQLite, or the system, says about a store with so many points."""
+def sqlite_error(error: sqlite3.Error | OSError, path: Path | None, done: int = 0) -> FlexapodError:
+    """Error for the user from one of SQLite or of the system, with the number of points stored before."""
     code = _code(error)
     if code == sqlite3.SQLITE_NOTADB or "no such table" in str(error):
         return no_store(path)
     if code == sqlite3.SQLITE_BUSY:
         return ComputationError(f"{path} is in use by another program", next_step="Wait for it to end")
     if isinstance(error, sqlite3.Error) and code not in _OF_THE_DISK:
-        return damaged(path, str(error))
+        return damaged_store(path, str(error))
     words = os.strerror(errno.ENOSPC) if code == sqlite3.SQLITE_FULL else getattr(error, "strerror", None) or error
     kept = f"; the points stored before ({done}) are whole" if done else ""
     first = "Let it be written to" if code == sqlite3.SQLITE_READONLY else "Make space"
@@ -62,8 +62,8 @@ def of_sqlite(error: sqlite3.Error | OSError, path: Path | None, done: int = 0) 
     return ComputationError(f"{path} cannot be written: {words}{kept}", next_step=next_step)
 
 
-def not_locked(error: sqlite3.Error, path: Path) -> FlexapodError:
-    """Another sweep, no such place, or a file system without locks."""
+def lock_error(error: sqlite3.Error, path: Path) -> FlexapodError:
+    """Error of a lock: another sweep holds it, no such place, or a file system without locks."""
     code = _code(error)
     if code == sqlite3.SQLITE_BUSY:
         next_step = "Wait for it to end, or choose another place with --out"

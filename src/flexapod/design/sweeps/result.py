@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexapod.common.files import replacing
+from flexapod.common.files import replace_file
 from flexapod.design.sweeps.refusals import other_format
 from flexapod.design.sweeps.store import COMPUTED, FAILED, FLOAT, FORMAT, PENDING, SweepStore
 from flexapod.design.sweeps.zarr_folder import read_zarr
@@ -38,8 +38,8 @@ def open_sweep(path: str | Path) -> Dataset:
     if place.is_dir() and not file.is_file():
         return read_zarr(place)
     with SweepStore.open(file) as store:
-        if store.known.header["flexapod_sweep_format"] != FORMAT:
-            raise other_format(file, store.known.header)
+        if store.layout.header["flexapod_sweep_format"] != FORMAT:
+            raise other_format(file, store.layout.header)
         return as_dataset(store)
 
 
@@ -50,14 +50,14 @@ def store_file(path: Path) -> Path:
 
 def as_dataset(store: SweepStore) -> Dataset:
     """The Dataset of an open store: whole records of one on disk stay there until they are used."""
-    from flexapod.common.datasets import composed
-    from flexapod.design.sweeps.store import lazy
+    from flexapod.common.datasets import build_dataset
+    from flexapod.design.sweeps.records import lazy_record
 
-    known = store.known
+    known = store.layout
     made: dict[str, Any] = {}
     states = np.full(known.size, PENDING, dtype="U8")
     words = {state: np.full(known.size, "", dtype=object) for state in (FAILED, COMPUTED)}
-    scalars = known.kept(records=False)
+    scalars = known.result_arrays(records=False)
     ends = np.cumsum([0, *(prod(array.shape[1:]) for array in scalars.values())])
     numbers = np.full((known.size, ends[-1]), np.nan)
     for row in store.points():
@@ -66,9 +66,9 @@ def as_dataset(store: SweepStore) -> Dataset:
             numbers[row.point] = np.frombuffer(row.scalars, FLOAT)
     for (name, (dims, shape, attributes, _)), begin, end in zip(scalars.items(), ends[:-1], ends[1:], strict=True):
         made[name] = (dims, np.ascontiguousarray(numbers[:, begin:end]).reshape(shape), attributes)
-    for name, (dims, shape, attributes, _) in known.kept(records=True).items():
+    for name, (dims, shape, attributes, _) in known.result_arrays(records=True).items():
         if store.path:
-            made[name] = lazy(store.path, name, dims, shape, attributes)
+            made[name] = lazy_record(store.path, name, dims, shape, attributes)
         else:
             made[name] = (dims, store.record(name, range(known.size), shape[1:]), attributes)
     made["status"] = ("point", states, {"long_name": "state of the point"})
@@ -79,7 +79,7 @@ def as_dataset(store: SweepStore) -> Dataset:
         for name, (dims, _, attributes, values) in known.arrays.items()
         if values is not None
     }
-    return composed(made, coordinates, known.header)
+    return build_dataset(made, coordinates, known.header)
 
 
 def unstacked(data: Dataset) -> Dataset:
@@ -101,10 +101,10 @@ def unstacked(data: Dataset) -> Dataset:
             at = tuple(slice(None) if axis == own else 0 for axis in names)
             whole, dims = whole[at], [own, *array.dims[1:]]
         made[str(name)] = (dims, whole, array.attrs)
-    from flexapod.common.datasets import composed
+    from flexapod.common.datasets import build_dataset
 
     coords = {name: made.pop(str(name)) for name in data.coords}
-    return composed(made, coords, data.attrs)
+    return build_dataset(made, coords, data.attrs)
 
 
 def save_table(data: Dataset, path: str | Path) -> Path:
@@ -123,7 +123,7 @@ def save_table(data: Dataset, path: str | Path) -> Path:
     for name, array in (others | last).items():
         if array.dims[:1] == ("point",) and "time" not in array.dims:
             columns |= _columns(name, array)
-    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+    with replace_file(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(columns)
         writer.writerows(zip(*(column.tolist() for column in columns.values()), strict=True))

@@ -17,17 +17,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexapod.analysis.checks.resource_limits import check_memory, check_room
-from flexapod.analysis.results.arguments import read
+from flexapod.analysis.results.arguments import read_subject
 from flexapod.analysis.results.time_history import Report
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.common.version import this_version
-from flexapod.design.sweeps.executors import check_place, executor, local_cores, results
-from flexapod.design.sweeps.outputs import Kept, kept, known
+from flexapod.design.sweeps.executors import batch_results, check_place, executor, local_cores
+from flexapod.design.sweeps.outputs import OutputSelection, select_outputs, store_layout
 from flexapod.design.sweeps.plan import read_plan
-from flexapod.design.sweeps.refusals import check_header, no_store, only_to_read
+from flexapod.design.sweeps.refusals import check_header, no_store, read_only_store
 from flexapod.design.sweeps.result import as_dataset, store_file
 from flexapod.design.sweeps.samples import Points, Resolved
-from flexapod.design.sweeps.store import COMPUTED, Known, SweepStore, locked
+from flexapod.design.sweeps.store import COMPUTED, StoreLayout, SweepStore, store_lock
 from flexapod.design.sweeps.worker import BatchResult, PointResult, Writer
 from flexapod.design.sweeps.zarr_folder import is_sweep, save_zarr
 from flexapod.model import ActuatorStudy, Study
@@ -110,9 +110,9 @@ def sweep(
     path, folder = (None, None) if store is None else _place(store)
     tell, points = progress or (lambda words, share: None), Points(_nominal(study), read_plan(sweep))
     resolved = points.resolve(lambda share: tell("reading the points", READING * share))
-    keep = _kept(points, resolved)
+    keep = _select_outputs(points, resolved)
     _check_room(points, resolved, keep, path, 1 if scheduler else local_cores() if workers is None else workers)
-    with _opened(path, known(points, keep, resolved)) as opened:
+    with _opened(path, store_layout(points, keep, resolved)) as opened:
         stopped = _Job(points, resolved, keep, opened).run(scheduler, workers, retry_failed=retry_failed, tell=tell)
         data = as_dataset(opened)
     if folder:
@@ -124,7 +124,7 @@ def sweep(
 
 def _nominal(study: object) -> Study | ActuatorStudy:
     """The study that others vary from."""
-    nominal = read(study)
+    nominal = read_subject(study)
     if not isinstance(nominal, Study | ActuatorStudy):
         raise InputError(
             "is not a study", key="study", value=type(study).__name__, allowed="the result of flexapod.load"
@@ -133,14 +133,14 @@ def _nominal(study: object) -> Study | ActuatorStudy:
 
 
 def _place(store: object) -> tuple[Path, Path | None]:
-    """Where the store is, which needs a name, and where a Zarr folder is wanted."""
+    """File of the store, which needs a name, and the Zarr folder where one is wanted."""
     path = Path(store) if isinstance(store, str | os.PathLike) else Path()
     if not path.name or path.name == "..":
         raise InputError("names no file", key="store", value=str(store), allowed='such as "sweep.sqlite"')
     file, wanted = store_file(path), path.suffix == ".zarr"
     folder = path.with_suffix(".zarr") if file.suffix == ".sqlite" else path
     if is_sweep(folder) and not file.is_file():
-        raise only_to_read(folder)
+        raise read_only_store(folder)
     if wanted and folder.exists() and not is_sweep(folder):
         raise no_store(folder)
     return file, folder if wanted else None
@@ -155,14 +155,14 @@ def _refuse_import_by_worker() -> None:
         )
 
 
-def _kept(points: Points, resolved: Resolved) -> Kept:
+def _select_outputs(points: Points, resolved: Resolved) -> OutputSelection:
     try:
-        return kept(points.plan.keep, points.nominal, resolved)
+        return select_outputs(points.plan.keep, points.nominal, resolved)
     except InputError as error:
         raise error.located(file=points.plan.file) from None
 
 
-def _check_room(points: Points, resolved: Resolved, keep: Kept, path: Path | None, workers: int) -> None:
+def _check_room(points: Points, resolved: Resolved, keep: OutputSelection, path: Path | None, workers: int) -> None:
     """Refuse more results at a time than the memory holds, more records than the store can."""
     try:
         check_memory(points.study(resolved.largest), max(1, min(workers, len(points))))
@@ -178,11 +178,11 @@ def _check_room(points: Points, resolved: Resolved, keep: Kept, path: Path | Non
 
 
 @contextmanager
-def _opened(path: Path | None, wanted: Known) -> Iterator[SweepStore]:
+def _opened(path: Path | None, wanted: StoreLayout) -> Iterator[SweepStore]:
     """The store, of these points and of nobody else, with every row as it was written."""
-    with locked(path), SweepStore.at(path, wanted) as found:
-        check_header(path, found.known.header, wanted.header)
-        if lost := found.mend():
+    with store_lock(path), SweepStore.open_or_create(path, wanted) as found:
+        check_header(path, found.layout.header, wanted.header)
+        if lost := found.drop_damaged_rows():
             _log.warning("Results of %d points in %s are lost (was the power off?): computed again", lost, path)
         yield found
 
@@ -193,13 +193,13 @@ class _Job:
 
     points: Points
     resolved: Resolved
-    kept: Kept
+    kept: OutputSelection
     store: SweepStore
 
     def run(
         self, scheduler: str | None, workers: int | None, *, retry_failed: bool, tell: Callable[[str, float], None]
     ) -> bool:
-        """Compute what is left; whether the user stopped it. Whatever ends it, results that have come are stored."""
+        """Compute the remaining points; return whether the user stopped it. Results that came are always stored."""
         left = np.ones(len(self.resolved.first), dtype=bool)
         left[[row.point for row in self.store.points() if row.state == COMPUTED or not retry_failed]] = False
         todo = np.unique(self.resolved.first[left]).tolist()
@@ -223,12 +223,12 @@ class _Job:
             self._compile()
             clock = _Clock(len(todo), tell)
             work = ends.enter_context(executor(this_version(), scheduler, workers))
-            for done in results(work, self.kept, todo, self.points.packed):
+            for done in batch_results(work, self.kept, todo, self.points.pickled_study):
                 writer.add(done)
                 clock.count(len(done.points))
 
     def _refused(self, todo: list[int]) -> BatchResult:
-        """Points whose study cannot be."""
+        """Failed results of the points whose study is refused."""
         wanted = set(todo)
         found = {point: message for point, message in self.resolved.refused.items() if point in wanted}
         failed = tuple(PointResult(values={}, failure=message) for message in found.values())
@@ -247,14 +247,14 @@ class _Job:
 
 
 class _Clock:
-    """Progress in words: how many, how fast, how long still."""
+    """Progress as text: points done, rate, remaining time."""
 
     def __init__(self, whole: int, tell: Callable[[str, float], None]) -> None:
         self._whole, self._tell, self._done, self._begin = whole, tell, 0, perf_counter()
         tell(f"0 of {whole} points", READING)
 
     def count(self, points: int) -> None:
-        """Some more are done."""
+        """Report a number of further points as done."""
         self._done += points
         rate = self._done / max(perf_counter() - self._begin, 1e-9)
         left = (self._whole - self._done) / rate

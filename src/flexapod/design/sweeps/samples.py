@@ -1,4 +1,4 @@
-"""The points of a sweep: the study of each, which are alike, which cannot be, and what varies."""
+"""Points of a sweep: the study of each, which are equal, which are refused, and what varies."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from flexapod.analysis.results.causes import cause_names
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError, Malformed
 from flexapod.common.tables.base import SHORT
-from flexapod.common.tables.key_paths import Step, copied, key_text, leaves, similar_key
+from flexapod.common.tables.key_paths import Step, copy_data, key_text, leaves, similar_key
 from flexapod.common.tables.named_files import NamedFiles
 from flexapod.design.sweeps.plan import SweepPlan, Tolerance
 from flexapod.design.sweeps.reading import (
@@ -27,11 +27,11 @@ from flexapod.design.sweeps.reading import (
     read_with_dimensions,
     spaced_values,
     standard_draws,
-    study_of,
+    study_from_tables,
 )
 from flexapod.model import ActuatorStudy, Study
 from flexapod.model.file.key_paths import leg_count, put, value_at
-from flexapod.model.stored import files_of
+from flexapod.model.stored_tables import files_of
 
 MEMORY = 64 << 20  # of studies that were read and wait to be computed; others are read again
 POINT = 200  # byte kept of each point while points are read: its hash, its number, their places in lists
@@ -152,9 +152,9 @@ class Points:
         InputError
             It cannot be: values that are not physical, or not allowed together.
         """
-        return study_of(self._tables(point)[0], self.files)
+        return study_from_tables(self._tables(point)[0], self.files)
 
-    def packed(self, point: int) -> bytes:
+    def pickled_study(self, point: int) -> bytes:
         """The study of a point, pickled; asked for once, it is forgotten."""
         found = self._packed.pop(point, None)
         return pickle.dumps(self.study(point), protocol=pickle.HIGHEST_PROTOCOL) if found is None else found
@@ -181,7 +181,7 @@ class Points:
                 tables, values = self._tables(point)
                 for array, row in zip(scattered, values, strict=True):
                     array[point] = row
-                self._note(found, point, study_of(tables, self.files))
+                self._note(found, point, study_from_tables(tables, self.files))
             except Malformed as error:
                 raise error.located(file=self.plan.file) from None
             except InputError as error:
@@ -218,9 +218,9 @@ class Points:
             found.causes.add(cause_names(study.robot))
 
     def _probe(self) -> dict[str, Any]:
-        """Tables with the first value of every key; what is read of them tells the dimensions."""
+        """Tables with the first value of every key; reading them gives the dimensions."""
         read_with_dimensions(self.data, self.files, self.dimensions)
-        probe = copied(self.data)
+        probe = copy_data(self.data)
         firsts: list[tuple[tuple[Step, ...], object]] = []
         for block in self.plan.blocks:
             values = [block.spaced.start] if block.spaced else [column[0] for column in block.values]
@@ -241,9 +241,9 @@ class Points:
 
     def _read_one_by_one(self, firsts: list[tuple[tuple[Step, ...], object]]) -> None:
         """Read the first values again, without those that are not physical."""
-        good = copied(self.data)
+        good = copy_data(self.data)
         for key, value in firsts:
-            trial = copied(good)
+            trial = copy_data(good)
             with suppress(InputError):
                 put(trial, key, value)
                 read_with_dimensions(trial, self.files, self.dimensions)
@@ -258,7 +258,7 @@ class Points:
         return None
 
     def _columns(self) -> Any:
-        """By block: a tuple of values for every key."""
+        """Columns of values by block, one for every key."""
         for block in self.plan.blocks:
             if block.spaced:
                 yield (spaced_values(block.spaced, block.keys[0], self.dimensions),)
@@ -270,7 +270,7 @@ class Points:
         each = [key]
         if key[0] == "leg" and len(key) > 1 and isinstance(key[1], str):
             each = [("leg", number, *key[1:]) for number in range(1, leg_count(self.data) + 1)]
-        tables = copied(self.data)
+        tables = copy_data(self.data)
         try:
             found = [leaf for path in each for leaf, _ in leaves(value_at(tables, path), path)]
             read_with_dimensions(tables, self.files, self.dimensions)  # what was spelled out has new paths
@@ -296,7 +296,7 @@ class Points:
         """Tables of a point, and the scattered values by tolerance."""
         at = tuple(map(int, np.unravel_index(point, self.plan.shape)))
         cell = self._grid(at[:-1] if self.plan.draws else at)
-        data, values = copied(cell.tables), []
+        data, values = copy_data(cell.tables), []
         for group, draws, nominal in zip(self.leaves, self.draws, cell.nominal, strict=True):
             first = group[0]  # size and form are those of the tolerance
             row = (nominal + first.size * draws[at[-1]] * (nominal if first.relative else 1.0)).tolist()
@@ -306,9 +306,9 @@ class Points:
         return data, values
 
     def _grid(self, at: tuple[int, ...]) -> _Cell:
-        """What all draws about a point of the grid share; the last is kept, since draws vary fastest."""
+        """Point of the grid that its draws share; the last one is cached, since draws vary fastest."""
         if self._cell is None or self._cell.at != at:
-            data, left = copied(self.data), list(at)
+            data, left = copy_data(self.data), list(at)
             for block, columns in zip(self.plan.blocks, self.columns, strict=True):
                 row = left.pop(0)
                 for key, column in zip(block.keys, columns, strict=True):

@@ -1,7 +1,4 @@
-"""The results of a sweep as one SQLite file: a row a point, whole at any instant, continued when reopened.
-
-Records of a store on disk that are read when they are used, those of the points alone that are asked for.
-"""
+"""Store of a sweep as one SQLite file: a row a point, whole at any instant, continued when reopened."""
 
 from __future__ import annotations
 
@@ -18,14 +15,11 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from xarray import Variable
-from xarray.backends import BackendArray
-from xarray.core import indexing
 
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
-from flexapod.common.files import check_regular, scratch, settle
-from flexapod.design.sweeps.refusals import damaged, no_store, not_locked, of_sqlite, unreadable
+from flexapod.common.files import check_regular, sync_folder, temporary_folder
+from flexapod.design.sweeps.refusals import damaged_store, lock_error, no_store, sqlite_error, unreadable_row
 
 FORMAT = 3
 Values = NDArray[Any]  # numbers of any kind, or texts
@@ -54,15 +48,15 @@ class StoredPoint(NamedTuple):
     records: Sequence[bytes] = ()
 
 
-class Known(NamedTuple):
-    """What a store knows from the start: number of points, attributes and variables of its Dataset."""
+class StoreLayout(NamedTuple):
+    """Layout of a store, fixed from the start: number of points, attributes and variables of its Dataset."""
 
     size: int
     header: dict[str, Any]
     arrays: dict[str, StoredArray]
 
-    def kept(self, *, records: bool) -> dict[str, StoredArray]:
-        """What is kept of every point: over time, each in a blob of its own, or all the rest."""
+    def result_arrays(self, *, records: bool) -> dict[str, StoredArray]:
+        """Arrays of results of every point: those over time, each in a blob of its own, or all the rest."""
         results = {name: array for name, array in self.arrays.items() if array.values is None}
         return {name: array for name, array in results.items() if ("time" in array.dims) == records}
 
@@ -82,7 +76,7 @@ class SweepStore:
         self._database.close()
 
     @classmethod
-    def at(cls, path: Path | None, known: Known) -> SweepStore:
+    def open_or_create(cls, path: Path | None, known: StoreLayout) -> SweepStore:
         """The store at `path`; where there is none a new one with nothing computed, which appears when it is whole.
 
         Raises
@@ -93,16 +87,16 @@ class SweepStore:
             It cannot be written.
         """
         if path is None:
-            return cls(_filled(":memory:", known), None)
+            return cls(_create_database(":memory:", known), None)
         if not path.exists():
             try:
-                with scratch(path.parent) as folder:
-                    _filled(folder / "store", known).close()
+                with temporary_folder(path.parent) as folder:
+                    _create_database(folder / "store", known).close()
                     path.with_name(path.name + "-journal").unlink(missing_ok=True)  # of one that was removed
                     (folder / "store").rename(path)
-                settle(path.parent)
+                sync_folder(path.parent)
             except (OSError, sqlite3.Error) as error:
-                raise of_sqlite(error, path) from None
+                raise sqlite_error(error, path) from None
         return cls.open(path)
 
     @classmethod
@@ -124,18 +118,18 @@ class SweepStore:
             where = f"{path.absolute().as_uri()}?mode=rw"
             return cls(sqlite3.connect(where, uri=True, timeout=PATIENCE, isolation_level=None), path)
         except sqlite3.Error as error:
-            raise of_sqlite(error, path) from None
+            raise sqlite_error(error, path) from None
 
     @cached_property
-    def known(self) -> Known:
-        """What is known from the start; like all that is read, refused where it is not what was written."""
+    def layout(self) -> StoreLayout:
+        """Layout as read from the database; refused, as all that is read, where it is not what was written."""
         ((content,),) = [*self._all("SELECT content FROM known")] or [(None,)]
-        if (content := _unsealed(content, "known")) is None:
-            raise damaged(self.path, "what describes it cannot be read")
+        if (content := _verify_checksum(content, "known")) is None:
+            raise damaged_store(self.path, "what describes it cannot be read")
         parts = np.load(io.BytesIO(content))
         size, header, arrays, given = json.loads(parts["arr_0"].tobytes())
         values = {name: parts[f"arr_{number}"] for number, name in enumerate(given, start=1)}
-        return Known(
+        return StoreLayout(
             size,
             header,
             {name: StoredArray(tuple(a[0]), tuple(a[1]), a[2], values.get(name)) for name, a in arrays.items()},
@@ -144,9 +138,9 @@ class SweepStore:
     def points(self) -> Iterator[StoredPoint]:
         """Rows by number, without their records."""
         for point, state, words, blob in self._all("SELECT point, state, words, scalars FROM points ORDER BY point"):
-            scalars = _unsealed(blob, point, state, words)
+            scalars = _verify_checksum(blob, point, state, words)
             if scalars is None:
-                raise unreadable(self.path, f"point {point}")
+                raise unreadable_row(self.path, f"point {point}")
             yield StoredPoint(point, state, words, scalars)
 
     def record(self, name: str, points: range, shape: tuple[int, ...]) -> Array:
@@ -156,21 +150,24 @@ class SweepStore:
         query = f'SELECT point, "{name}" FROM points WHERE point BETWEEN ? AND ?'
         for begin in range(low, high + 1, many):
             for point, blob in self._all(query, (begin, min(begin + many - 1, high))):
-                content = _unsealed(blob, point, name) if point in points else b""
+                content = _verify_checksum(blob, point, name) if point in points else b""
                 if content is None:
-                    raise unreadable(self.path, f"{name} of point {point}")
+                    raise unreadable_row(self.path, f"{name} of point {point}")
                 if content:
                     made[points.index(point)] = np.frombuffer(content, FLOAT).reshape(shape)
         return made
 
-    def mend(self) -> int:
+    def drop_damaged_rows(self) -> int:
         """Make points pending whose row is not what was written; how many there were."""
         for (told,) in self._all("PRAGMA quick_check(1)"):
             if told != "ok":
-                raise damaged(self.path, told)
-        lost, names = [], self.known.kept(records=True)
+                raise damaged_store(self.path, told)
+        lost, names = [], self.layout.result_arrays(records=True)
         for point, state, words, scalars, *records in self._all("SELECT * FROM points"):
-            found = [_unsealed(scalars, point, state, words), *map(_unsealed, records, [point] * len(names), names)]
+            found = [
+                _verify_checksum(scalars, point, state, words),
+                *map(_verify_checksum, records, [point] * len(names), names),
+            ]
             lost += [(point,)] * (None in found)
         self._change("DELETE FROM points WHERE point = ?", lost)
         return len(lost)
@@ -183,15 +180,19 @@ class SweepStore:
         ComputationError
             The disk is full or cannot be written to; what was written before stays valid.
         """
-        names = self.known.kept(records=True)
+        names = self.layout.result_arrays(records=True)
         sealed = (
-            (*row[:3], _sealed(row.scalars, *row[:3]), *map(_sealed, row.records, [row.point] * len(names), names))
+            (
+                *row[:3],
+                _add_checksum(row.scalars, *row[:3]),
+                *map(_add_checksum, row.records, [row.point] * len(names), names),
+            )
             for row in rows
         )
         self._change(f"INSERT OR REPLACE INTO points VALUES (?, ?, ?, ?{', ?' * len(names)})", sealed)
 
     def _change(self, statement: str, rows: Iterable[tuple[Any, ...]]) -> None:
-        with self._told():
+        with self._sqlite_errors():
             self._database.execute("PRAGMA synchronous = EXTRA")  # what is written is on the disk, its name too
             self._database.execute("BEGIN IMMEDIATE")
             try:
@@ -203,51 +204,51 @@ class SweepStore:
                 raise
 
     def _all(self, query: str, values: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
-        with self._told():
+        with self._sqlite_errors():
             yield from self._database.execute(query, values)
 
     @contextmanager
-    def _told(self) -> Iterator[None]:
-        """Errors of SQLite in words."""
+    def _sqlite_errors(self) -> Iterator[None]:
+        """Raise errors of SQLite as errors for the user."""
         try:
             yield
         except sqlite3.Error as error:
             done = 0
             with suppress(sqlite3.Error):
                 (done,) = self._database.execute("SELECT count(*) FROM points").fetchone()
-            raise of_sqlite(error, self.path, done) from None
+            raise sqlite_error(error, self.path, done) from None
 
 
-def _filled(place: Path | str, known: Known) -> sqlite3.Connection:
-    """A database with what is known from the start."""
+def _create_database(place: Path | str, known: StoreLayout) -> sqlite3.Connection:
+    """Database with the layout of a store and without points."""
     given = {name: array.values for name, array in known.arrays.items() if array.values is not None}
     arrays = {name: array[:3] for name, array in known.arrays.items()}
     about = json.dumps((known.size, known.header, arrays, list(given))).encode()
     file = io.BytesIO()
     np.savez(file, np.frombuffer(about, np.uint8), *given.values())
-    records = "".join(f', "{name}" BLOB' for name in known.kept(records=True))
+    records = "".join(f', "{name}" BLOB' for name in known.result_arrays(records=True))
     database = sqlite3.connect(place, isolation_level=None)
     database.execute("BEGIN")
     database.execute("CREATE TABLE known (content BLOB)")
     database.execute(f"CREATE TABLE points (point INTEGER PRIMARY KEY, state TEXT, words TEXT, scalars BLOB{records})")
-    database.execute("INSERT INTO known VALUES (?)", (_sealed(file.getvalue(), "known"),))
+    database.execute("INSERT INTO known VALUES (?)", (_add_checksum(file.getvalue(), "known"),))
     database.execute("COMMIT")
     return database
 
 
-def _sealed(content: bytes, *said: object) -> bytes:
+def _add_checksum(content: bytes, *said: object) -> bytes:
     """Content, and behind it the checksum of what is said of it and of itself."""
     return content + zlib.crc32(content, zlib.crc32(" ".join(map(str, said)).encode())).to_bytes(4, "little")
 
 
-def _unsealed(blob: object, *said: object) -> bytes | None:
-    """The content; None if it is not what was written."""
+def _verify_checksum(blob: object, *said: object) -> bytes | None:
+    """Content without its checksum; None if it is not what was written."""
     content = blob[:-4] if isinstance(blob, bytes) else b""
-    return content if blob == _sealed(content, *said) else None
+    return content if blob == _add_checksum(content, *said) else None
 
 
 @contextmanager
-def locked(path: Path | None) -> Iterator[None]:
+def store_lock(path: Path | None) -> Iterator[None]:
     """Hold the lock of a store: of the empty database ``STORE.lock`` beside it, which is removed at the end.
 
     It ends with the process that holds it. Who opens the file as it is removed, and locks it, is not seen by a third:
@@ -276,33 +277,4 @@ def locked(path: Path | None) -> Iterator[None]:
             finally:
                 place.unlink(missing_ok=True)
     except sqlite3.Error as error:
-        raise not_locked(error, path) from None
-
-
-def lazy(
-    path: Path, name: str, dims: tuple[str, ...], shape: tuple[int, ...], attributes: Mapping[str, Any]
-) -> Variable:
-    """A record of all points as a variable, kept in memory once it was read whole."""
-    array: Any = indexing.LazilyIndexedArray(_Record(path, name, shape))
-    kept = indexing.MemoryCachedArray(indexing.CopyOnWriteArray(array))
-    return Variable(dims, kept, dict(attributes), fastpath=True)
-
-
-class _Record(BackendArray):
-    """Where a record (N, ...) is, so that it can be pickled and read by any thread."""
-
-    dtype = np.dtype(np.float64)
-
-    def __init__(self, path: Path, name: str, shape: tuple[int, ...]) -> None:
-        self._path, self._name, self.shape = path.absolute(), name, shape
-
-    def __getitem__(self, key: indexing.ExplicitIndexer) -> Any:
-        return indexing.explicit_indexing_adapter(key, self.shape, indexing.IndexingSupport.BASIC, self._read)
-
-    def _read(self, key: tuple[Any, ...]) -> Any:
-        """Values under integers and slices."""
-        at = range(self.shape[0])[key[0]]
-        points = at if isinstance(at, range) else range(at, at + 1)
-        with SweepStore.open(self._path) as store:
-            values = store.record(self._name, points, self.shape[1:])
-        return values[(slice(None) if points is at else 0, *key[1:])]
+        raise lock_error(error, path) from None

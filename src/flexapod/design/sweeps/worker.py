@@ -1,6 +1,7 @@
-"""The work of a sweep: studies in, kept quantities out. This is what workers run; it knows neither store nor Dask.
+"""Work of a sweep: studies in, stored quantities out, and the writer that takes results to the store.
 
-From results of points to the store, with the points that are alike.
+Workers run `compute_packed`, which knows neither store nor Dask. The writer runs in the process of the sweep:
+it stores the result of a point for all points with an equal study.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 from flexapod.analysis.actuator import simulate_actuator
 from flexapod.analysis.checks.checks import check_path
 from flexapod.analysis.checks.plausibility import robot_warnings
-from flexapod.analysis.results.lazy_arrays import Asked
+from flexapod.analysis.results.lazy_arrays import LazyArrays
 from flexapod.analysis.results.leg_results import damped_angles
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.analysis.results.robot_results import rigid_force_results, robot_results
@@ -25,7 +26,7 @@ from flexapod.analysis.scalars import ROBOT_SCALARS, RobotRun
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError, FlexapodError
 from flexapod.common.version import this_version
-from flexapod.design.sweeps.outputs import ACTUATOR_SCALARS, Kept
+from flexapod.design.sweeps.outputs import ACTUATOR_SCALARS, OutputSelection
 from flexapod.design.sweeps.store import COMPUTED, FAILED, FLOAT, StoredPoint, SweepStore
 from flexapod.model import ActuatorStudy, Study
 from flexapod.solve.time.robot_march import prepare
@@ -37,7 +38,7 @@ class OtherVersion(ComputationError):
 
 @dataclass(frozen=True, kw_only=True)
 class PointResult:
-    """Kept quantities by name, or why there are none; remarks on a result, a line each."""
+    """Result of a point: stored quantities by name, or why there are none; remarks, a line each."""
 
     values: dict[str, Array]
     failure: str = ""
@@ -54,7 +55,7 @@ class BatchResult:
 
 
 def compute_batch(
-    version: str, kept: Kept, points: Sequence[int], studies: Sequence[Study | ActuatorStudy]
+    version: str, kept: OutputSelection, points: Sequence[int], studies: Sequence[Study | ActuatorStudy]
 ) -> BatchResult:
     """Simulate the studies of points one after the other; what fails is a result like others.
 
@@ -70,9 +71,13 @@ def compute_batch(
 
 
 def compute_packed(
-    compute: Callable[..., BatchResult], version: str, kept: Kept, points: Sequence[int], packed: Sequence[bytes]
+    compute: Callable[..., BatchResult],
+    version: str,
+    kept: OutputSelection,
+    points: Sequence[int],
+    packed: Sequence[bytes],
 ) -> BatchResult:
-    """As `compute`, of pickled studies: Dask passes bytes on without looking into them."""
+    """Compute a batch of pickled studies; Dask passes bytes on without looking into them."""
     refuse_other(version)  # before classes are read that may have changed
     return compute(version, kept, points, [pickle.loads(study) for study in packed])
 
@@ -86,7 +91,7 @@ def refuse_other(version: str) -> None:
         )
 
 
-def compute_point(kept: Kept, study: Study | ActuatorStudy) -> PointResult:
+def compute_point(kept: OutputSelection, study: Study | ActuatorStudy) -> PointResult:
     """Simulate a study and keep of it what is asked for."""
     try:
         result = _robot(kept, study) if isinstance(study, Study) else _actuator(kept, study)
@@ -101,13 +106,13 @@ def compute_point(kept: Kept, study: Study | ActuatorStudy) -> PointResult:
     return _remarked(result, kept, endless) if endless else result
 
 
-def _remarked(result: PointResult, kept: Kept, absent: Sequence[str]) -> PointResult:
+def _remarked(result: PointResult, kept: OutputSelection, absent: Sequence[str]) -> PointResult:
     """The result with the reasons why some of its values are none."""
     words = [f"{name} has no value: {kept.absent[name]}" for name in absent]
     return replace(result, remarks="\n".join(filter(None, [result.remarks, *words])))
 
 
-def _robot(kept: Kept, study: Study) -> PointResult:
+def _robot(kept: OutputSelection, study: Study) -> PointResult:
     path = RigidPath(study)
     remarks = [*study.warnings, *check_path(study, path)]
     march = prepare(study)
@@ -116,13 +121,13 @@ def _robot(kept: Kept, study: Study) -> PointResult:
     run = RobotRun(study, march.system, record, march.counters, path.at(record.time))
     values: dict[str, Array] = {name: np.asarray(ROBOT_SCALARS[name].value(run)) for name in kept.scalars}
     if kept.records:
-        whole = Asked(robot_results(study, run.system, record, run.path) | rigid_force_results(run.path))
+        whole = LazyArrays(robot_results(run.system, run.path, record) | rigid_force_results(run.path))
         values |= {name: whole[name][:: kept.every] for name in kept.records}
     remarks += robot_warnings(study.robot, march.system, record)
     return PointResult(values=values, remarks="\n".join(dict.fromkeys(remarks)))
 
 
-def _actuator(kept: Kept, study: ActuatorStudy) -> PointResult:
+def _actuator(kept: OutputSelection, study: ActuatorStudy) -> PointResult:
     data = simulate_actuator(study)
     if data.attrs["partial"]:
         _refuse_partial(data.attrs["failure"], False, float(data.time[-1]))
@@ -146,17 +151,17 @@ MOST_BYTES = 32 << 20  # of results that wait
 
 
 class Writer:
-    """Collects results and writes them when it is time; `flush` writes what is left.
+    """Buffer of results that writes them when it is time; `flush` writes the rest.
 
     Parameters
     ----------
     store : SweepStore
-    kept : Kept
+    kept : OutputSelection
     alike : ndarray, shape (N,)
         The first point with an equal study, for every point.
     """
 
-    def __init__(self, store: SweepStore, kept: Kept, alike: Array) -> None:
+    def __init__(self, store: SweepStore, kept: OutputSelection, alike: Array) -> None:
         self._store, self._kept = store, kept
         order = np.argsort(alike, kind="stable")
         self._order, self._firsts = order, alike[order]
@@ -175,7 +180,7 @@ class Writer:
             self.flush()
 
     def flush(self) -> None:
-        """Write what waits.
+        """Write the results that wait.
 
         Raises
         ------

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexapod.common.errors import InputError
-from flexapod.common.files import check_regular, scratch
-from flexapod.design.sweeps.refusals import damaged, no_store, other_format
+from flexapod.common.files import check_regular, temporary_folder
+from flexapod.design.sweeps.refusals import damaged_store, no_store, other_format
 from flexapod.design.sweeps.store import COMPUTED, FAILED, FORMAT, PENDING
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ BYTES = 64 << 20  # of points that are written together
 
 
 def is_sweep(folder: Path) -> bool:
-    """Whether a folder says that it holds a sweep."""
+    """Test whether a folder is marked as one that holds a sweep."""
     about = folder / "zarr.json"
     return about.is_file() and b'"flexapod_sweep_format"' in about.read_bytes()
 
@@ -41,7 +41,7 @@ def save_zarr(data: Dataset, path: str | Path) -> Path:
     many = max(1, int(BYTES * size / data.nbytes))
     fixed = [name for name, array in data.variables.items() if "point" not in array.dims]
     try:
-        with scratch(path.parent) as folder, warnings.catch_warnings():
+        with temporary_folder(path.parent) as folder, warnings.catch_warnings():
             warnings.filterwarnings("ignore", message="Consolidated metadata")  # what xarray looks for first
             new: Any = folder / "new"
             for begin in range(0, size, many):
@@ -77,7 +77,7 @@ def read_zarr(folder: Path) -> Dataset:
             if "time" not in array.dims:
                 array.load()
     except Exception as error:  # whatever the decoder of what is spoilt says
-        raise damaged(folder, str(error)) from None
+        raise damaged_store(folder, str(error)) from None
     if data.attrs["flexapod_sweep_format"] == EARLIER:
         data = _of_store(data)
     elif data.attrs["flexapod_sweep_format"] != FORMAT:
@@ -86,7 +86,7 @@ def read_zarr(folder: Path) -> Dataset:
 
 
 def _of_store(data: Dataset) -> Dataset:
-    """The status in words, and results where it says that there are some: they were written before it."""
+    """Dataset of an earlier store: status as text, and results only where it says that there are some."""
     varied, kept, _ = (str(data.attrs.pop(name)).split() for name in ("varied", "kept", "complete"))
     coordinates = {name: data[name] for name in varied}
     data = data.reset_coords(varied)[[*kept, "status", "message", "remarks"]].assign_coords(coordinates)

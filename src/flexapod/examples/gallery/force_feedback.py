@@ -2,10 +2,10 @@ r"""
 Integral force feedback on a hexapod of flexures
 ================================================
 
-Each drive gives way to the integral of its own force: as a spring whose loss factor is $g / \omega$. A mode is then
-damped by $\zeta = \zeta_0 + \nu g / (2 \omega)$ with the share $\nu$ of its energy in the drives (Preumont, Vibration
-Control of Active Structures). Flexures and rods of stiffness $k_s$ in series with drives of $k_a$ leave
-$\nu = k_s / (k_s + k_a)$.
+Each drive yields to the integral of its own force: as a spring whose loss factor is $g / \omega$. A mode is
+then damped by $\zeta = \zeta_0 + \nu g / (2 \omega)$ with the share $\nu$ of its energy in the drives
+(Preumont, Vibration Control of Active Structures). Flexures and rods of stiffness $k_s$ in series with drives
+of $k_a$ leave $\nu = k_s / (k_s + k_a)$.
 """
 
 import numpy as np
@@ -19,7 +19,7 @@ plant = plant.reduce(below="2 kHz")
 
 
 def damping(system):
-    """Of the six modes of the platform on its legs."""
+    """Frequencies and damping of the six modes of the platform on its legs."""
     found = system.damp()
     return found.sel(mode=(found.frequency > 100) & (found.frequency < 600) & (found.damping_ratio < 1))
 

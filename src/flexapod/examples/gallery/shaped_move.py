@@ -2,8 +2,8 @@ r"""
 A move that is compensated and shaped
 =====================================
 
-A robot on soft drives sags by $m g / K_z$ and goes on swinging when it has arrived. Commands ahead of time make up
-for the one, and two half moves, half a period apart, for the other. Made for a frequency $f_s$ they leave
+A robot on soft drives sags by $m g / K_z$ and oscillates after it has arrived. Feedforward commands compensate
+the sag; two half moves, half a period apart, the oscillation. Made for a frequency $f_s$ they leave
 $|\cos(\pi f / 2 f_s)|$ of a vibration of $f$ (Singer and Seering, 1990): nothing if it is the right one.
 """
 

@@ -2,8 +2,8 @@ r"""
 Tolerances: Monte Carlo and covariance
 ======================================
 
-Legs that are set to within 10 um. A thousand machines are drawn and closed exactly; the covariance to first order says
-the same in a thousandth of the time. By hand: six legs that lean alike rise together by
+Legs that are set to within 10 um. A thousand machines are drawn and closed exactly; the covariance to first
+order gives the same in a thousandth of the time. In closed form: six legs of equal inclination rise together by
 $\sigma_z = \sigma \, l / (\sqrt 6 \, h)$.
 """
 

@@ -1,1 +1,1 @@
-"""The parts of a leg, one file each: how a part moves the frame of the next one, its energies, its springs."""
+"""Parts of a leg, one file each: the frame that a part passes to the next one, its energies, its springs."""

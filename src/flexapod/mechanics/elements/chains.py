@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from flexapod.mechanics.elements.steps import Piece, StepNodes, nodes, on_pieces, pieces_of
+from flexapod.mechanics.elements.steps import Piece, StepNodes, nodes, piece_nodes, pieces_of
 from flexapod.mechanics.shapes import LateralBasis
 
 _FROM = 5  # loads: a uniform mass, one that rises, those of three deflections; with fewer all go to frequencies
@@ -19,12 +19,12 @@ Rows = list[list[Any]]  # values of one shape: of each piece, at its nodes
 
 
 def is_chain(basis: LateralBasis) -> bool:
-    """Whether a basis has shapes enough for loads by deflections."""
+    """Test whether a basis has enough shapes for loads by deflections of earlier ones."""
     return basis.count - 1 - _moment(basis) >= _FROM
 
 
 def _moment(basis: LateralBasis) -> bool:
-    """Whether the tip takes a moment, Eq. (T1.18)."""
+    """Test whether shapes of a basis take a moment at the tip, Eq. (T1.18)."""
     return any(abs(phi(np.ones(1), 2)[0]) > 1e-6 for phi in basis.shapes)
 
 
@@ -50,7 +50,7 @@ def _members(
     count: int, moment: bool, at: StepNodes, places: Sequence[Any], loads: Rows, gives: Rows, hub: Any
 ) -> list[tuple[Rows, Rows]]:  # fmt: skip
     """Moments and shear forces under a tip force (a tip moment), and under the loads, that of a thrust last."""
-    x = on_pieces(at, places)
+    x = piece_nodes(at, places)
     ones = _each(lambda u: 1.0 + 0.0 * u, x)
     found = [(x, ones)]
     if moment:
@@ -84,7 +84,7 @@ def _members(
 def _orthogonal(
     at: StepNodes, places: Sequence[Any], gives: Rows, members: list[tuple[Rows, Rows]]
 ) -> list[tuple[Rows, Rows]]:  # fmt: skip
-    """The same less those before them, in bending energy."""
+    """Shapes made orthogonal in bending energy to those before them."""
     done: list[tuple[Rows, Rows, Rows, Any]] = []
     for moments, shears in members:
         for M, S, bends, energy in done:
@@ -96,7 +96,7 @@ def _orthogonal(
 
 
 def _energy(at: StepNodes, places: Sequence[Any], moments: Rows, bends: Rows) -> Any:
-    works = [at.whole(row) for row in _each(lambda a, b: a * b, moments, bends)]
+    works = [at.integral(row) for row in _each(lambda a, b: a * b, moments, bends)]
     return sum((end - start) * work for (start, end), work in zip(pairwise(places), works, strict=True))
 
 
@@ -109,7 +109,7 @@ def _carried(at: StepNodes, places: Sequence[Any], load: Rows) -> tuple[Rows, Ro
     moments, shears, M, S = [], [], 0.0, 0.0
     for (start, end), f in zip(pairwise(places), load, strict=True):
         long = end - start
-        S = S + long * at.whole(f)
+        S = S + long * at.integral(f)
         from_end = at.parabola(long, f, 0.0, S)
         M = M - from_end[-1]
         moments.append([M + y for y in from_end[:-1]])
@@ -118,14 +118,14 @@ def _carried(at: StepNodes, places: Sequence[Any], load: Rows) -> tuple[Rows, Ro
 
 
 def _deflected(at: StepNodes, places: Sequence[Any], bends: Rows) -> tuple[Rows, Any]:
-    """Deflections, and that of the tip."""
+    """Deflections of the beam, and deflection of its tip."""
     rows: Rows = []
     value = slope = 0.0 * bends[0][0]
     for (start, end), bend in reversed(list(zip(pairwise(places), bends, strict=True))):
         long = end - start
         *row, value = at.parabola(long, bend, value, slope)
         rows.append(row)
-        slope = slope - long * at.whole(bend)
+        slope = slope - long * at.integral(bend)
     return rows[::-1], value
 
 

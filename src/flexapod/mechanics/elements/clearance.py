@@ -21,20 +21,20 @@ class Clearance(Physics):
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
-        """Of a leg whose guide has one."""
+        """Build the clearance of a leg whose guide has one; None of others."""
         return cls(leg.guide.clearance) if leg.guide is not None and leg.guide.clearance else None
 
     @classmethod
-    def among(cls, robot: Robot, simulation: Simulation) -> bool:
-        """In no kernel: a leg that bears no moment leans one way or another."""
+    def in_kernel(cls, robot: Robot, simulation: Simulation) -> bool:
+        """Return False: no kernel has it, as a leg that bears no moment leans either way."""
         return False
 
     def shorter(self, leg: Leg, length: float) -> float:
-        """How much a leg of some length changes by leaning, at most [m]."""
+        """Largest change of a leg's length by leaning in its bushings, at a length [m]."""
         d, s = leg.overlap(length), length - leg.cylinder.mouth
         return 0.5 * (self.clearance / d) ** 2 * abs((s + d / 2) ** 2 / length - leg.piston.length)
 
     def errors(self, leg: Leg) -> Sequence[Contribution]:
-        """Whichever way it leans."""
+        """Hysteretic error of the stroke, as the leg leans either way."""
         how = "second order in the kink: legs that lean or do not"
         return (Contribution("guide play", "hysteretic", partial(self.shorter, leg), how),)

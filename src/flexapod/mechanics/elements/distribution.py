@@ -1,12 +1,11 @@
-"""Kinetic energy and weight of mass along a sliding flexible leg from closed integrals, Eqs. (T3.7)-(T3.10), (T3.14).
+"""Mass along a sliding flexible leg: kinetic energy, weight, shear, Eqs. (T3.7)-(T3.10), (T3.14), (T3.23)-(T3.25).
 
 Displacements and velocities of material points are fields: linear combinations of the functions 1, X, phi,
-(1 - zeta) phi' and psi. X is the distance along the axis from the U joint; (1 - zeta) phi' carries the sliding, because
-zeta_dot = (1 - zeta) l_dot / s at a fixed material point; psi are the axial shapes. A mass distribution knows the inner
-products of these functions, so that the kinetic energy is a sum of quadratic forms; foreshortening multiplies
-zero-order velocities and is added to second order.
-
-Shear of a thick piston and the rotary inertia of its sections (Timoshenko's beam), Eqs. (T3.23)-(T3.25).
+(1 - zeta) phi' and psi. X is the distance along the axis from the U joint; (1 - zeta) phi' carries the sliding,
+because zeta_dot = (1 - zeta) l_dot / s at a fixed material point; psi are the axial shapes. A mass distribution
+knows the inner products of these functions, so that the kinetic energy is a sum of quadratic forms of closed
+integrals; foreshortening multiplies zero-order velocities and is added to second order. Thick pistons shear,
+and their sections have rotary inertia (Timoshenko's beam).
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from flexapod.mechanics.elements.element import Along, Named, Physics, Standing
+from flexapod.mechanics.elements.element import Along, LegContext, Named, Physics
 from flexapod.mechanics.elements.frames import Energies, Frame
 from flexapod.mechanics.shapes import AxialBasis, LateralBasis
 from flexapod.mechanics.symbolic.vocabulary import bilinear, constant, dot, quadratic, time_derivative, vertcat, zeros
@@ -65,11 +64,11 @@ class Distribution:
     short_X: SX
 
     def integral(self, f: PistonField) -> SX:
-        """Int f dm."""
+        """Integral of a field over the mass, int f dm."""
         return _combine(self.first, f)
 
     def square(self, f: PistonField) -> SX:
-        """Int f^2 dm."""
+        """Integral of the square of a field over the mass, int f^2 dm."""
         total = zeros(1)
         if f.one.numel():
             rest = PistonField(X=f.X, phi=f.phi, sliding=f.sliding, psi=f.psi)
@@ -98,7 +97,7 @@ def _combine(moments: SimpleNamespace, f: PistonField) -> SX:
 
 
 def bent_part(basis: LateralBasis, mass: SX, start: SX, step: SX, phi_psi: SX, sliding_psi: SX) -> Distribution:
-    """What bending of a uniform part, from X = start on by step zeta, adds to its mass as a straight one, Eq. (T25.4).
+    """Mass distribution added by bending of a straight uniform part, from X = start by step zeta, Eq. (T25.4).
 
     ``mass`` [kg] of the part; the last two as in `Distribution`. Its foreshortening is left to the caller.
     """
@@ -122,7 +121,7 @@ def bent_part(basis: LateralBasis, mass: SX, start: SX, step: SX, phi_psi: SX, s
 
 
 def bending_mass(b: Any, axial: int) -> Distribution:
-    """The same of a part of several sections, by its integrals (`stepped_piston.SteppedShapes`)."""
+    """Mass distribution of a part of several sections from its integrals (`stepped_piston.SteppedShapes`)."""
     none, still = zeros(1), zeros(axial)
     return Distribution(
         first=SimpleNamespace(one=none, X=none, phi=b.phi, sliding=b.sliding, psi=still),
@@ -142,7 +141,7 @@ def bending_mass(b: Any, axial: int) -> Distribution:
 
 @dataclass(frozen=True, kw_only=True)
 class Line:
-    """Straight line on which a piston's bending stands: displacement and slope (a, b) at the mouth, and their rates.
+    """Straight line to which a piston's bending adds: displacement and slope (a, b) at the mouth, and their rates.
 
     ``mouth`` [m] from the base joint. Where nothing gives way there, it is the leg's axis.
     """
@@ -154,11 +153,11 @@ class Line:
     slope_rate: SX = field(default_factory=lambda: zeros(2))
 
     def foot(self) -> SX:
-        """Where it meets the plane of the base joint (a, b)."""
+        """Point (a, b) at which the line meets the plane of the base joint."""
         return self.place - self.mouth * self.slope
 
     def foot_rate(self, l_dot: SX) -> SX:
-        """Velocity there of points that move out with the piston, Eq. (T25.2)."""
+        """Velocity of points at the line's foot that move out with the piston, Eq. (T25.2)."""
         return self.place_rate - self.mouth * self.slope_rate + self.slope * l_dot
 
 
@@ -181,7 +180,7 @@ class PistonMotion:
     vs: SimpleNamespace
 
     def rate(self, expression: SX) -> SX:
-        """Time derivative."""
+        """Time derivative of an expression of coordinates."""
         return time_derivative(expression, (self.q, self.v))
 
     def velocity(self) -> tuple[PistonField, PistonField, PistonField]:
@@ -189,7 +188,7 @@ class PistonMotion:
         return self.bending(self.qs.a, self.qs.b, self.vs.a, self.vs.b, self.vs.l / self.s)
 
     def bending(self, a: SX, b: SX, a_rate: SX, b_rate: SX, r: SX) -> tuple[PistonField, PistonField, PistonField]:
-        """The same of a part of the piston with amplitudes of its own, whose length grows at the rate ``r`` [1/s]."""
+        """Velocity of a part of the piston with amplitudes of its own, whose length grows at the rate ``r`` [1/s]."""
         q, v, u, line = self.qs, self.vs, self.frame.velocity, self.line
         w1, w2, w3 = self.frame.omega[0], self.frame.omega[1], self.frame.omega[2]
         foot, slope, tilt = line.foot(), line.slope, line.slope_rate
@@ -254,27 +253,27 @@ class RotaryInertia(Physics):
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
-        """Of a piston that would shear."""
+        """Build the element of a leg whose piston is modelled with shear; None of others."""
         return cls() if leg.piston.shear else None
 
     @classmethod
-    def among(cls, robot: Robot, simulation: Simulation) -> bool:
-        """Where pistons have no shapes of bending."""
-        return not simulation.lateral_shapes and super().among(robot, simulation)
+    def in_kernel(cls, robot: Robot, simulation: Simulation) -> bool:
+        """Test whether pistons have no shapes of bending, and some leg has the element."""
+        return not simulation.lateral_shapes and super().in_kernel(robot, simulation)
 
-    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
-        """Inertia of the whole."""
+    def numbers(self, leg: Leg, standing: LegContext) -> dict[str, Any]:
+        """Rotary inertia of the whole piston."""
         return {"piston_turning": leg.piston.rotary_inertia}
 
     @classmethod
     def energy_along(cls, x: Along) -> Energies:
-        """Energy of a turn about leg y and x, Eq. (T3.25) of no slope."""
+        """Kinetic energy of rotation about leg y and x, Eq. (T3.25) without a slope."""
         w, whole = x.cylinder.omega, x.p.piston_turning
         return Energies(kinetic=0.5 * whole[0] * w[1] ** 2 + 0.5 * whole[1] * w[0] ** 2)
 
 
 def shear_energy(f: PistonMotion, qs: SimpleNamespace) -> SX:
-    """Of the slopes by shear, Eq. (T3.24)."""
+    """Strain energy of the slopes by shear, Eq. (T3.24)."""
     return 0.5 / f.s * (quadratic(qs.a, f.a.shear_stiffness) + quadratic(qs.b, f.a.shear_stiffness))
 
 
@@ -287,7 +286,7 @@ def rotary_energy(f: PistonMotion, p: SimpleNamespace) -> SX:
 
 
 def _turning(f: PistonMotion, rate: SX, slid: SX, spin: SX, whole: SX) -> SX:
-    """Of one direction: half of int rho I (spin + d/dt dv/dX)^2 dX."""
+    """Rotary energy of one direction, half of int rho I (spin + d/dt dv/dX)^2 dX."""
     b, by = f.a, 1 / f.s  # dv/dX = - turn^T a / s
     along = dot(b.turned, rate) + dot(b.turned_slid, slid)
     square = quadratic(rate, b.turn_turn) + 2 * dot(rate, b.turn_slid @ slid) + quadratic(slid, b.slid_slid)

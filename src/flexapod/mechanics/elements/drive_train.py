@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from flexapod.mechanics.elements.element import Along, Named, Physics, SeriesSprings, Standing
+from flexapod.mechanics.elements.element import Along, LegContext, Named, Physics, SeriesSprings
 from flexapod.mechanics.elements.frames import Energies
-from flexapod.mechanics.elements.springs import Spring, before_stroke, in_series, softening
+from flexapod.mechanics.elements.springs import Spring, series_stiffness, softening, springs_before_stroke
 
 if TYPE_CHECKING:
     from flexapod.mechanics.symbolic.vocabulary import SX
@@ -36,12 +36,12 @@ class DriveTrain(Physics):
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
-        """Of a leg with springs between its drive and its piston."""
-        return cls(before_stroke(leg)) if leg.gives else None
+        """Build the drive train of a leg with springs between drive and piston; None of others."""
+        return cls(springs_before_stroke(leg)) if leg.gives else None
 
-    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
-        """The springs at home, and the rotor with its servo."""
-        stiffness, damping = in_series(self.springs, standing.length, standing.per_loss)
+    def numbers(self, leg: Leg, standing: LegContext) -> dict[str, Any]:
+        """Springs in series at home, and the rotor with its servo."""
+        stiffness, damping = series_stiffness(self.springs, standing.length, standing.per_loss)
         found: dict[str, Any] = {"series_stiffness": stiffness, "series_damping": damping}
         found |= {"series_home": standing.length, "series_softening": softening(self.springs, standing.length)}
         if (screw := leg.screw) is not None:
@@ -50,13 +50,13 @@ class DriveTrain(Physics):
         return found
 
     @classmethod
-    def held(cls, own: Any, leg: Leg, standing: Standing) -> Sequence[str]:
-        """The travel of what has no rotor, a servo's spring being in series with these, and of a held rotor."""
+    def prescribed(cls, own: Any, leg: Leg, standing: LegContext) -> Sequence[str]:
+        """Travel r where it is prescribed: without a rotor, a servo's spring being in series, or of a held rotor."""
         return ("r",) if leg.drive.holds or leg.screw is None else ()
 
     @classmethod
     def energy_along(cls, x: Along) -> Energies:
-        """The compliance of the springs is a polynomial in l, as that of a shaft goes with the nut's place."""
+        """Energies of rotor, springs and servo; the springs' compliance is a polynomial in l, as a shaft's is."""
         p, q, v = x.p, x.q, x.v
         s = SeriesSprings(stretching(p, q.l), q.l, v.l)
         for element in x.elements:
@@ -64,7 +64,7 @@ class DriveTrain(Physics):
         stiffness = p.series_stiffness / s.softer  # (T15.5)
         stretch, rate = q.r - s.nut, v.r - s.rate
         for element in x.elements:
-            stretch, rate = element.past(stretch, rate, p)
+            stretch, rate = element.gap_deflection(stretch, rate, p)
         return Energies(
             kinetic=0.5 * p.rotor_mass * v.r**2,  # (T15.12)
             strain=0.5 * stiffness * stretch**2,  # (T15.11)
@@ -79,5 +79,5 @@ def stretching(p: SimpleNamespace, stroke: SX) -> SX:
 
 
 def twisting(p: SimpleNamespace, stroke: SX) -> SX:
-    """Share kappa of a shaft's twist in it, Eq. (T19.12)."""
+    """Share kappa of a shaft's twist in the compliance before the stroke, Eq. (T19.12)."""
     return (p.drive_friction_twist[0] + p.drive_friction_twist[1] * (stroke - p.series_home)) / stretching(p, stroke)

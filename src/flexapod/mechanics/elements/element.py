@@ -1,4 +1,4 @@
-"""What an element of a leg is: table, coordinates, numbers, energies, errors, outputs of one part, in one class.
+"""Element of a leg: table, coordinates, numbers, energies, errors, outputs of one part, in one class.
 
 The class stands for its equations, which hold for all legs; its objects are the part in one leg.
 """
@@ -6,12 +6,14 @@ The class stands for its equations, which hold for all legs; its objects are the
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from types import SimpleNamespace
+from types import FunctionType, SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, Self
 
 from flexapod.common.errors import InputError
+from flexapod.common.lazy_imports import lazy_attributes
 from flexapod.common.tables.table import Table
 from flexapod.mechanics.elements.frames import Energies
 from flexapod.mechanics.elements.trial import refuse_declared, source_of
@@ -28,8 +30,8 @@ if TYPE_CHECKING:
 Named = tuple[tuple[str, int], ...]
 
 
-class Standing(NamedTuple):
-    """How a leg stands whose numbers are asked for.
+class LegContext(NamedTuple):
+    """Circumstances of a leg from which its elements compute their parameters.
 
     ``length`` [m]: joint to joint, at home; ``per_loss`` [s]: viscous damping over stiffness of a spring of loss factor
     1; ``at_rest``: loops that sum their errors have left none; ``robot``: the one whose leg it is; ``attitude``: the
@@ -76,7 +78,7 @@ class Output(NamedTuple):
 
 
 class Contribution(NamedTuple):
-    """What an element makes a stroke err by, for an error budget.
+    """Contribution of an element to the error of a stroke, for an error budget.
 
     ``size`` [m], or what gives it by the length of the leg [m]: a standard deviation of ``kind`` "random", half of the
     width of "hysteretic"; ``how`` it is computed; ``stands``: a random one is the same at each approach of one machine.
@@ -105,7 +107,7 @@ class _InLeg:
     elements: Sequence[Slot]
 
     def holds(self, kind: type[Physics]) -> bool:
-        """Whether an element of a kind is among them."""
+        """Test whether the kernel has an element of a kind."""
         return any(element.kind is kind for element in self.elements)
 
 
@@ -133,8 +135,8 @@ class Along(_InLeg):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Moving(_InLeg):
-    """A leg in motion, for those that need more than its coordinates.
+class MovingLeg(_InLeg):
+    """Leg in motion, for hooks of elements that need more than its coordinates.
 
     ``p``, ``q``, ``v``, ``elements`` by name. ``q_cmd`` and ``v_cmd``: what is commanded to its rotor, if it has one;
     ``foot`` and ``tip``: places of its joints in the world; ``rate``: gives the rate of an expression.
@@ -148,7 +150,7 @@ class Moving(_InLeg):
 
     @property
     def distance(self) -> SX:
-        """Of the joints."""
+        """Distance between the joints of the leg [m]."""
         along = self.tip - self.foot
         return sqrt(dot(along, along))
 
@@ -185,34 +187,34 @@ class Physics:
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
-        """The part in one leg; None of a leg without it."""
+        """Build the part in one leg; None of a leg without it."""
         return None
 
     @classmethod
     def all_of(cls, leg: Leg) -> tuple[Self, ...]:
-        """All of them in one leg."""
+        """All parts of this kind in one leg."""
         own = cls.of(leg)
         return () if own is None else (own,)
 
     @classmethod
-    def among(cls, robot: Robot, simulation: Simulation) -> bool:
-        """Whether a kernel for the legs of a robot knows of it."""
+    def in_kernel(cls, robot: Robot, simulation: Simulation) -> bool:
+        """Test whether a kernel for the legs of a robot includes this kind of element."""
         return any(cls.all_of(leg) for leg in robot.legs)
 
-    def numbers(self, leg: Leg, standing: Standing) -> Mapping[str, Any]:
-        """Its parameters in one leg, by name."""
+    def numbers(self, leg: Leg, standing: LegContext) -> Mapping[str, Any]:
+        """Parameters of the element in one leg, by name."""
         return {}
 
-    def smoothed(self, leg: Leg) -> Leg:
-        """The leg without what has a period in which it rests nobody knows where, as ripple."""
+    def without_ripple(self, leg: Leg) -> Leg:
+        """Leg without periodic forces such as ripple, in whose period the position at rest is unknown."""
         return leg
 
     def errors(self, leg: Leg) -> Sequence[Contribution]:
-        """What it makes the stroke of one leg err by."""
+        """Contributions of the element to the error of the stroke of one leg."""
         return ()
 
     @classmethod
-    def held(cls, own: Any, leg: Leg, standing: Standing) -> Sequence[str]:
+    def prescribed(cls, own: Any, leg: Leg, standing: LegContext) -> Sequence[str]:
         """Coordinates that follow a table in one leg: by default those of an element that the leg does not have.
 
         Of a coordinate that several elements have all have to say so.
@@ -221,68 +223,68 @@ class Physics:
 
     @classmethod
     def energy(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Energies:
-        """Its energies by parameters, coordinates and rates."""
+        """Energies of the element from parameters, coordinates and rates."""
         return Energies()
 
     @classmethod
     def energy_along(cls, x: Along) -> Energies:
-        """Its energies where they ask for frames of the leg, or for the other elements: in place of `energy`."""
+        """Energies of an element that needs frames of the leg or the other elements; in place of `energy`."""
         return cls.energy(x.p, x.q, x.v)
 
     @classmethod
     def damping_force(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Mapping[str, SX]:
-        """What brakes coordinates, by name, where no dissipation is said: 0 at rest, positive against a positive rate.
+        """Damping forces by coordinate without a dissipation: 0 at rest, positive at a positive rate.
 
         Its power is lost, as that of a dissipation.
         """
         return {}
 
     @classmethod
-    def carries(cls, base: Frame | None, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Frame | None:
-        """Frame of the base as it carries it, by that of what it stands on itself; None: it stands still."""
+    def base_frame(cls, base: Frame | None, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Frame | None:
+        """Frame of the base on the element, from the frame that carries this; None: the base stands still."""
         return base
 
     @classmethod
-    def slides(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
-        """How fast it slides where it has friction, in each of its `ways`.
+    def sliding_speed(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
+        """Sliding speed of the element's friction in each of its `friction_directions`.
 
-        Its first parameter then is what `friction.rubbing` reads.
+        Its first parameter then is what `friction.bristle_friction` reads.
         """
         return vertcat()
 
     @classmethod
-    def ways(cls, has: Callable[[str], bool]) -> Sequence[str]:
+    def friction_directions(cls, has: Callable[[str], bool]) -> Sequence[str]:
         """Directions in which it slides with friction, in legs that have some coordinates, as results name them."""
         return ()
 
     @classmethod
-    def rubs(cls, leg: Leg) -> bool:
-        """Whether it has friction in one leg."""
-        return bool(cls.all_of(leg)) and bool(cls.ways(lambda name: True))
+    def has_friction(cls, leg: Leg) -> bool:
+        """Test whether the element has friction in one leg."""
+        return bool(cls.all_of(leg)) and bool(cls.friction_directions(lambda name: True))
 
     @classmethod
     def friction_unit(cls, leg: Leg) -> float:
-        """Friction as its table has it, by what the equations have."""
+        """Ratio of friction in the element's table to friction in the equations."""
         return 1.0
 
     @classmethod
     def in_series(cls, s: SeriesSprings, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SeriesSprings:
-        """What it changes in the springs between rotor and stroke."""
+        """Springs in series between rotor and stroke with what the element changes in them."""
         return s
 
     @classmethod
-    def past(cls, x: SX, rate: SX, p: SimpleNamespace) -> tuple[SX, SX]:
-        """How far these springs are stretched, and how fast, by how far their ends are apart."""
+    def gap_deflection(cls, x: SX, rate: SX, p: SimpleNamespace) -> tuple[SX, SX]:
+        """Stretch of the springs before a stroke, and its rate, from the displacement of their ends."""
         return x, rate
 
     @classmethod
-    def asked(cls, p: SimpleNamespace, q: SimpleNamespace) -> SX | None:
-        """What a loop about a rotor asks of its motor because of it [N], beside what its spring and damper ask."""
+    def loop_force(cls, p: SimpleNamespace, q: SimpleNamespace) -> SX | None:
+        """Force that a rotor's loop requests because of the element [N], beside its spring and damper; or None."""
         return None
 
     @classmethod
-    def pushes(cls, x: Moving) -> Mapping[str, SX]:
-        """What it adds to the balance of coordinates, by name, without an energy; forces on them are negative here."""
+    def nonpotential_force(cls, x: MovingLeg) -> Mapping[str, SX]:
+        """Nonpotential terms in the balance of coordinates, by name; forces on these are negative here."""
         return {}
 
     @classmethod
@@ -291,8 +293,8 @@ class Physics:
         return {}
 
     @classmethod
-    def given(cls, x: Moving) -> SX | None:
-        """Power that comes in by what it pushes."""
+    def input_power(cls, x: MovingLeg) -> SX | None:
+        """Power that enters by the element's nonpotential forces."""
         return None
 
 
@@ -302,7 +304,7 @@ class Element(Physics, Table):
     Fields are keys of the table: ``stiffness: Annotated[float, fx.Quantity("stiffness", above=0)]``. Names of
     coordinates, parameters and results are its own; beside those of others NAME stands before them. What it has and can
     do is in `Physics`. It is known once its module is imported, or by an entry point NAME of its package in the group
-    ``flexapod.mechanics.elements``.
+    ``flexapod.elements``.
 
     Raises
     ------
@@ -312,14 +314,52 @@ class Element(Physics, Table):
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
+        _take_former_hooks(cls)
         if "at" in vars(cls):
             register(cls)
 
     @classmethod
     def all_of(cls, leg: Leg) -> tuple[Self, ...]:
-        """Those in the tables of one leg, in their order."""
+        """Elements of this class in the tables of one leg, in their order."""
         return tuple(one for one in leg.elements if type(one) is cls)
 
+
+__getattr__ = lazy_attributes(__name__, {}, {"Moving": "MovingLeg", "Standing": "LegContext"})
+
+#: Hooks by the names of the release before, and now: both the overrides and the calls answer for one release.
+FORMER_HOOKS = {
+    "among": "in_kernel", "asked": "loop_force", "carries": "base_frame", "given": "input_power", "held": "prescribed",
+    "past": "gap_deflection", "pushes": "nonpotential_force", "rubs": "has_friction", "slides": "sliding_speed",
+    "smoothed": "without_ripple", "ways": "friction_directions",
+}  # fmt: skip
+
+
+def _take_former_hooks(element: type[Element]) -> None:
+    """Make overrides under former names those of the hooks, with a remark."""
+    for former, hook in FORMER_HOOKS.items():
+        own = vars(element).get(former)
+        if isinstance(own, classmethod | FunctionType) and hook not in vars(element):
+            warnings.warn(
+                f"flexapod.Element.{former} is {hook} now: rename it in {element.__name__}", FutureWarning, stacklevel=3
+            )
+            setattr(element, hook, own)
+
+
+def _former_hook(former: str, hook: str) -> Any:
+    """Make the attribute of a former name: the hook, or that of `Physics` for an override that calls `super()`."""
+
+    def forward(holder: Any, *args: Any) -> Any:
+        warnings.warn(f"flexapod.Element.{former} is {hook} now", FutureWarning, stacklevel=2)
+        own = holder if isinstance(holder, type) else type(holder)
+        above = own.__mro__[: own.__mro__.index(Element)]
+        overridden = any(isinstance(vars(c).get(former), classmethod | FunctionType) for c in above)
+        return getattr(super(Element, holder) if overridden else holder, hook)(*args)
+
+    return classmethod(forward) if isinstance(vars(Physics)[hook], classmethod) else forward
+
+
+for _former, _hook in FORMER_HOOKS.items():
+    setattr(Element, _former, _former_hook(_former, _hook))
 
 registered: dict[str, type[Element]] = {}
 
@@ -351,7 +391,7 @@ def register(element: type[Element]) -> None:
     registered[name] = element
 
 
-def asked_beside(elements: Sequence[Slot], p: SimpleNamespace, q: SimpleNamespace) -> SX | None:
-    """What elements ask of a motor beside spring and damper of its loop; None of nothing."""
-    found = [x for element in elements if (x := element.asked(p, q)) is not None]
+def extra_loop_force(elements: Sequence[Slot], p: SimpleNamespace, q: SimpleNamespace) -> SX | None:
+    """Sum of the forces that elements request beside a loop's spring and damper; None if none does."""
+    found = [x for element in elements if (x := element.loop_force(p, q)) is not None]
     return sum(found[1:], found[0]) if found else None

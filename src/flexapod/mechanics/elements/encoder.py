@@ -1,4 +1,4 @@
-"""What an encoder does not tell apart, Eq. (T23.12)."""
+"""Resolution of an encoder as a random error of the stroke, Eq. (T23.12)."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Resolution(Physics):
-    """Of the encoder of a screw: the least `increment` of the stroke [m]."""
+    """Resolution of the encoder of a screw: the least `increment` of the stroke [m]."""
 
     increment: float
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
-        """Of a leg whose screw has an encoder with a resolution."""
+        """Build the resolution of a leg whose screw has an encoder with one; None of others."""
         return cls(leg.screw.increment) if leg.screw is not None and leg.screw.increment else None
 
     @classmethod
-    def among(cls, robot: Robot, simulation: Simulation) -> bool:
-        """In no kernel: motions do not see it."""
+    def in_kernel(cls, robot: Robot, simulation: Simulation) -> bool:
+        """Return False: no kernel has it, as motions do not depend on it."""
         return False
 
     def errors(self, leg: Leg) -> Sequence[Contribution]:
-        """Anywhere within an increment, alike."""
+        """Random error of the stroke, uniform within an increment."""
         how = "increment over the root of 12, legs independent"
         return (Contribution("encoder", "random", self.increment / 12**0.5, how),)

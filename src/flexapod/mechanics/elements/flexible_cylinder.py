@@ -30,10 +30,10 @@ from flexapod.mechanics.symbolic.vocabulary import (
     cross,
     diagcat,
     dot,
-    expanded,
     horzcat,
     quadratic,
     sqrt,
+    taylor_series,
     vertcat,
     zeros,
 )
@@ -52,12 +52,12 @@ class Bend:
     along: tuple[list[SX], list[SX]]
 
     def place(self, X: SX) -> SX:
-        """Displacement (a, b)."""
+        """Displacement of the cylinder's axis at X (a, b)."""
         u = X / self.length
         return vertcat(*(u * law([c / (i + 1) for i, c in enumerate(row)], u) for row in self.along))
 
     def slope(self, X: SX) -> SX:
-        """Slope (a, b)."""
+        """Slope of the cylinder's axis at X (a, b)."""
         return vertcat(*(law(row, X / self.length) for row in self.along)) / self.length
 
     def shortening(self, X: SX) -> SX:
@@ -83,15 +83,15 @@ class Kinked:
     rise: SX
 
     def place(self, X: SX) -> SX:
-        """As of `Bend`."""
+        """Sum of the smooth part as of `Bend` and of the cubic beyond the head (a, b)."""
         return self.smooth.place(X) + self.rise * self._past(X) ** 3 / 6
 
     def slope(self, X: SX) -> SX:
-        """As of `Bend`."""
+        """Sum of the smooth part as of `Bend` and of the cubic beyond the head (a, b)."""
         return self.smooth.slope(X) + self.rise * self._past(X) ** 2 / (2 * self.smooth.length)
 
     def shortening(self, X: SX) -> SX:
-        """As of `Bend`; what the cubic adds by parts, with the derivatives of the smooth slope at X."""
+        """Foreshortening as of `Bend`; terms of the cubic by parts, with derivatives of the smooth slope at X."""
         u, z = X / self.smooth.length, self._past(X)
         more = dot(self.rise, self.rise) * z**5 / 20
         for rise, row in zip((self.rise[0], self.rise[1]), self.smooth.along, strict=True):
@@ -107,7 +107,7 @@ class Kinked:
 
 @dataclass(frozen=True, kw_only=True)
 class Head:
-    """Where the piston's head presses on the cylinder, and the shape with the kink there, Eqs. (T25.19)-(T25.20).
+    """Contact of the piston's head with the cylinder, and the shape with a kink there, Eqs. (T25.19)-(T25.20).
 
     ``eta``: place of the kink over the length; ``table``: what depends on it, by the names of `kink`; ``stiffness`` is
     that of the kinked shape, ``share`` and ``rise`` are what it has of the others and of the cubic.
@@ -127,14 +127,14 @@ def mouth(basis: LateralBasis, p: SimpleNamespace, qs: SimpleNamespace) -> tuple
 
 
 def head(basis: LateralBasis, p: SimpleNamespace, l: SX) -> Head:  # noqa: E741
-    """At the present length of the leg; behind the base joint a cylinder is straight."""
+    """Contact of the head at the present length of the leg; behind the base joint a cylinder is straight."""
     place, polys = (l - p.Lp) / p.cylinder_length, kink(basis)
     eta = 1 - LEAST - _positive(1 - 2 * LEAST - _positive(place - LEAST))
     between, x = eta * (1 - eta), 2 * eta - 1
     at = {name: vertcat(*(law(row, x) if row else zeros(1) for row in rows)) for name, rows in polys.items()}
     at |= {"rise": between**-2, "share": between**-2 * at["share"], "stiffness": at["stiffness"] / between}
     at["turn_slid_slid"] /= between
-    near, present = expanded([eta, *at.values()], l)
+    near, present = taylor_series([eta, *at.values()], l)
     return Head(eta=near[0], table=SimpleNamespace(**dict(zip(at, near[1:], strict=True))), present=present)
 
 
@@ -156,7 +156,7 @@ def _bend(basis: LateralBasis, p: SimpleNamespace, ka: SX, kb: SX) -> Bend:
 
 
 def _positive(x: SX) -> SX:
-    """The positive part."""
+    """Positive part of a number, smooth at 0."""
     return (x + sqrt(x**2 + _TINY)) / 2
 
 
@@ -237,7 +237,7 @@ def _both(x: SimpleNamespace, matrix: SX) -> SX:
 
 
 def _turning(f: PistonMotion, turning: Distribution, rate: SX) -> SX:
-    """Of sections that turn with the slope, beyond those of a straight body, Eq. (T25.21)."""
+    """Rotary energy of sections that turn with the slope, beyond that of a straight body, Eq. (T25.21)."""
     w, q, v = f.frame.omega, f.qs, f.vs
     about_a = PistonField(one=w[0], phi=-v.b - w[2] * q.a, sliding=-rate * q.b)
     about_b = PistonField(one=w[1], phi=v.a - w[2] * q.b, sliding=rate * q.a)
@@ -246,7 +246,7 @@ def _turning(f: PistonMotion, turning: Distribution, rate: SX) -> SX:
 
 
 def _mounted(f: PistonMotion, p: SimpleNamespace, now: Bend | Kinked) -> Energies:
-    """What the bending adds to a body on the cylinder: its centre is displaced, and it turns with the slope there."""
+    """Energies that bending adds to a body on the cylinder, which is displaced and turns with the slope."""
     m, J, X = p.mounted_mass, p.mounted_inertia, p.mounted_com
     w, u = f.frame.omega, f.frame.velocity
     y, slope = now.place(X), now.slope(X)

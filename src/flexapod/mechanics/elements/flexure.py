@@ -1,4 +1,4 @@
-"""Springs of a joint: on its angles, or a flexure that gives way along and about all axes; and what damps them."""
+"""Springs and dampers of a joint: on its angles, or of a flexure that is compliant along and about all axes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from flexapod.common.arrays import Array
-from flexapod.mechanics.elements.element import Along, Named, Physics, Standing
+from flexapod.mechanics.elements.element import Along, LegContext, Named, Physics
 from flexapod.mechanics.elements.frames import Energies
 from flexapod.mechanics.elements.springs import viscous
 from flexapod.mechanics.symbolic.vocabulary import dot, reshape, vertcat, zeros
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Flexures(Physics):
-    """Joints at both ends that give way along and about all axes: displacements u and e, and the joints' angles."""
+    """Joints at both ends, compliant along and about all axes: displacements u and e, and the joints' angles."""
 
     coordinates: ClassVar[Named] = tuple((f"{end}{k}", 1) for end in "ue" for k in (1, 2, 3))
     parameters: ClassVar[Named] = (  # stiffness, displacements [m] first, angles [rad] last, column by column
@@ -33,15 +33,15 @@ class Flexures(Physics):
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
-        """Of every leg: joints that are no flexures have no stiffness here."""
+        """Build the element of every leg: joints that are no flexures have no stiffness here."""
         return cls()
 
     @classmethod
-    def among(cls, robot: Robot, simulation: Simulation) -> bool:
-        """Where a joint of some leg is one."""
+    def in_kernel(cls, robot: Robot, simulation: Simulation) -> bool:
+        """Test whether a joint of some leg is a flexure."""
         return any(joint.flexes for leg in robot.legs for joint in (leg.base_joint, leg.platform_joint))
 
-    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
+    def numbers(self, leg: Leg, standing: LegContext) -> dict[str, Any]:
         """Stiffness and damping of both joints."""
         found = {}
         for end, joint in (("base", leg.base_joint), ("platform", leg.platform_joint)):
@@ -50,7 +50,7 @@ class Flexures(Physics):
         return found
 
     @classmethod
-    def held(cls, own: Any, leg: Leg, standing: Standing) -> Sequence[str]:
+    def prescribed(cls, own: Any, leg: Leg, standing: LegContext) -> Sequence[str]:
         """Displacements in directions in which a joint has no stiffness."""
         joints = (("u", "base", leg.base_joint), ("e", "platform", leg.platform_joint))
         gives = {letter: (stiffness(joint, standing.axes[end])[:3] != 0).any(axis=-1) for letter, end, joint in joints}
@@ -58,17 +58,17 @@ class Flexures(Physics):
 
     @classmethod
     def energy_along(cls, x: Along) -> Energies:
-        """Of both joints."""
+        """Energies of springs and dampers of both joints."""
         p, (q, v) = x.p, (x.q, x.v)
-        base, base_rate = (vertcat(displaced(y, "u"), base_angles(y)) for y in (q, v))
-        end, end_rate = (vertcat(displaced(y, "e"), platform_angles(y)) for y in (q, v))
+        base, base_rate = (vertcat(joint_displacement(y, "u"), base_angles(y)) for y in (q, v))
+        end, end_rate = (vertcat(joint_displacement(y, "e"), platform_angles(y)) for y in (q, v))
         base, end = base - vertcat(zeros(3), p.base_home), end - vertcat(zeros(3), p.gamma_home)
         e = flexure(p.base_flexure, p.base_flexure_damping, base, base_rate)
         return e + flexure(p.platform_flexure, p.platform_flexure_damping, end, end_rate)
 
 
 def stiffness(joint: Joint, axes: tuple[Array, Array]) -> Array:
-    """Stiffness of a joint in the axes in which it gives way, (6, 6); 0 of one that is no flexure.
+    """Stiffness of a joint in the axes in which it is compliant, (6, 6); 0 of one that is no flexure.
 
     ``axes``: rotations to these from its own, which are those of base or platform, or of the leg.
     """
@@ -76,7 +76,7 @@ def stiffness(joint: Joint, axes: tuple[Array, Array]) -> Array:
 
 
 def damping(joint: Joint, axes: tuple[Array, Array], per_loss: float) -> Array:
-    """Damping of it, (6, 6)."""
+    """Damping of a joint in the axes of its stiffness, (6, 6)."""
     if joint.stiffness is None:
         return np.zeros((6, 6))
     given = np.diag([joint.stiffness_damping or 0.0] * 3 + [0.0] * 3)
@@ -88,7 +88,7 @@ def _turned(joint: Joint, given: Array, axes: tuple[Array, Array]) -> Array:
     return turn @ given @ turn.T if joint.flexes else np.zeros((6, 6))
 
 
-def displaced(of: SimpleNamespace, name: str) -> SX:
+def joint_displacement(of: SimpleNamespace, name: str) -> SX:
     """Displacement of a joint, or its rate (3)."""
     return vertcat(*(getattr(of, f"{name}{k}") for k in (1, 2, 3)))
 

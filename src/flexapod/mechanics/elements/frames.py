@@ -1,6 +1,6 @@
-"""What passes from part to part along a leg: a moving frame; and what a part adds: energies.
+"""Frames and energies of the parts of a leg, and rotation matrices, Eqs. (T3.4), (T4.1)-(T4.2), (T13.2).
 
-Rotation matrices, Eqs. (T3.4), (T4.1)-(T4.2) and (T13.2).
+A part passes a moving frame on to the next one, and adds its energies.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Frame:
-    """A frame in a leg.
+    """Moving frame in a leg: origin, axes and velocities.
 
     ``origin`` in the world and ``axes``, the rotation from the frame to the world; velocity of the origin and angular
     velocity relative to the world, both in the frame's own axes.

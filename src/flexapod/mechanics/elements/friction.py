@@ -1,4 +1,4 @@
-"""Friction with presliding after LuGre: a bristle for each direction in which things slide, Eqs. (T19.1)-(T19.6)."""
+"""Friction with presliding after LuGre: a bristle for each direction of sliding, Eqs. (T19.1)-(T19.6)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 import numpy as np
 
 from flexapod.mechanics.elements.drive_train import twisting
-from flexapod.mechanics.elements.element import Named, Physics, Standing
+from flexapod.mechanics.elements.element import LegContext, Named, Physics
 from flexapod.mechanics.elements.springs import twist_with_length
 from flexapod.mechanics.symbolic.vocabulary import cos, dot, exp, sin, sqrt, vertcat
 
@@ -25,72 +25,72 @@ STILL = 1e-60  # added to squares: a root has no slope at zero
 
 
 class _OfJoint(Physics):
-    """Friction of a joint about its angles, see `rubbing`; legs without it have a force of none."""
+    """Friction of a joint about its angles, see `bristle_friction`; legs without it have a force of none."""
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
-        """Of every leg: what rubs in one slides in all."""
+        """Build the element of every leg: friction in one leg is computed in all."""
         return cls()
 
     @classmethod
-    def among(cls, robot: Robot, simulation: Simulation) -> bool:
-        """Where it rubs in some leg."""
-        return any(map(cls.rubs, robot.legs))
+    def in_kernel(cls, robot: Robot, simulation: Simulation) -> bool:
+        """Test whether this joint has friction in some leg."""
+        return any(map(cls.has_friction, robot.legs))
 
     @classmethod
-    def rubs(cls, leg: Leg) -> bool:
-        """A joint with friction."""
+    def has_friction(cls, leg: Leg) -> bool:
+        """Test whether this joint of a leg has friction."""
         return getattr(leg, cls.rubs_at).friction is not None
 
-    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
-        """Its numbers, and 1 where directions slide together."""
+    def numbers(self, leg: Leg, standing: LegContext) -> dict[str, Any]:
+        """Friction parameters of the joint, and 1 where its directions slide together."""
         joint, letter = getattr(leg, f"{self.end}_joint"), getattr(leg.letters, self.end)
         numbers = NO_FRICTION if joint.friction is None else joint.friction.numbers
         return {f"{self.end}_friction": (*numbers, float(letter == "S"))}
 
 
 class BaseFriction(_OfJoint):
-    """At the base."""
+    """Friction of the base joint about its angles."""
 
     end: ClassVar[Literal["base", "", "platform"]] = "base"
     rubs_at: ClassVar[str] = "base_joint"
     parameters: ClassVar[Named] = (("base_friction", 8),)
 
     @classmethod
-    def ways(cls, has: Callable[[str], bool]) -> tuple[str, ...]:
-        """Two angles, or three."""
+    def friction_directions(cls, has: Callable[[str], bool]) -> tuple[str, ...]:
+        """Angles of the base joint: two, or three with a spin."""
         return ("alpha", "beta", "spin") if has("spin") else ("alpha", "beta")
 
     @classmethod
-    def slides(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
+    def sliding_speed(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
         """Rates of its angles, of a ball its angular velocity."""
         if not hasattr(q, "spin"):
             return vertcat(v.alpha, v.beta)
         rates = vertcat(v.alpha, v.beta, p.cylinder_spins * v.spin)  # else the piston spins in its cylinder
-        return turning(vertcat(q.alpha, q.beta, q.spin), rates, p.base_friction[7])
+        return joint_sliding_speed(vertcat(q.alpha, q.beta, q.spin), rates, p.base_friction[7])
 
 
 class PlatformFriction(_OfJoint):
-    """At the platform."""
+    """Friction of the platform joint about its angles."""
 
     end: ClassVar[Literal["base", "", "platform"]] = "platform"
     rubs_at: ClassVar[str] = "platform_joint"
     parameters: ClassVar[Named] = (("platform_friction", 8),)
 
     @classmethod
-    def ways(cls, has: Callable[[str], bool]) -> tuple[str, ...]:
-        """Three angles."""
+    def friction_directions(cls, has: Callable[[str], bool]) -> tuple[str, ...]:
+        """Three angles of the platform joint."""
         return ("gamma1", "gamma2", "gamma3")
 
     @classmethod
-    def slides(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
+    def sliding_speed(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
         """Rates of its angles, of a ball its angular velocity."""
         angles, rates = (vertcat(x.gamma1, x.gamma2, x.gamma3) for x in (q, v))
-        return turning(angles, rates, p.platform_friction[7])
+        return joint_sliding_speed(angles, rates, p.platform_friction[7])
 
 
 class DriveFriction(Physics):
-    """Of a drive along its travel."""
+    """Friction of a drive along its travel."""
 
     rubs_at = "drive"
 
@@ -102,21 +102,21 @@ class DriveFriction(Physics):
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
-        """Of every leg, as friction of joints."""
+        """Build the element of every leg: friction in one leg is computed in all, as of joints."""
         return cls()
 
     @classmethod
-    def among(cls, robot: Robot, simulation: Simulation) -> bool:
-        """Where a drive rubs in some leg."""
-        return any(map(cls.rubs, robot.legs))
+    def in_kernel(cls, robot: Robot, simulation: Simulation) -> bool:
+        """Test whether a drive has friction in some leg."""
+        return any(map(cls.has_friction, robot.legs))
 
     @classmethod
-    def rubs(cls, leg: Leg) -> bool:
-        """A drive with friction."""
+    def has_friction(cls, leg: Leg) -> bool:
+        """Test whether the drive of a leg has friction."""
         return leg.drive.friction is not None
 
-    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
-        """Its numbers; those of a screw by the nut's travel, Eq. (T19.12).
+    def numbers(self, leg: Leg, standing: LegContext) -> dict[str, Any]:
+        """Friction parameters of the drive; those of a screw by the nut's travel, Eq. (T19.12).
 
         At rest a loop about another place than the rotor is one spring there, Eq. (T23.55): friction slides with it.
         """
@@ -135,17 +135,17 @@ class DriveFriction(Physics):
         }
 
     @classmethod
-    def ways(cls, has: Callable[[str], bool]) -> tuple[str, ...]:
-        """Its travel."""
+    def friction_directions(cls, has: Callable[[str], bool]) -> tuple[str, ...]:
+        """Single direction of sliding, the drive's travel, without a name."""
         return ("",)
 
     @classmethod
     def friction_unit(cls, leg: Leg) -> float:
-        """Of screws by their angle."""
+        """Travel per angle of a screw, whose friction is given by its angle; else 1."""
         return 1.0 if leg.screw is None else leg.screw.per_turn
 
     @classmethod
-    def slides(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
+    def sliding_speed(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
         """Rate of the stroke, or of the rotor and what its shaft's twist leaves of it."""
         if not hasattr(q, "r"):
             return v.l
@@ -154,8 +154,8 @@ class DriveFriction(Physics):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rubbing:
-    """What rubs at a place, direction by direction.
+class BristleFriction:
+    """Friction at one place, direction by direction.
 
     ``force`` against the sliding [N m, of drives N]; ``bristles`` bent by now, and their ``rate``; ``stored``: energy.
     """
@@ -166,7 +166,7 @@ class Rubbing:
     stored: SX
 
 
-def rubbing(p: SX, load: SX, v: SX, before: SX, z: SX, h: SX, *, falling: bool = True) -> Rubbing:
+def bristle_friction(p: SX, load: SX, v: SX, before: SX, z: SX, h: SX, *, falling: bool = True) -> BristleFriction:
     """Friction at the end of a step.
 
     Parameters
@@ -192,7 +192,7 @@ def rubbing(p: SX, load: SX, v: SX, before: SX, z: SX, h: SX, *, falling: bool =
     rate = v - fast * bent / _limit(p, v)  # (T19.1)
     if falling:
         damping_time = damping_time / (1 + 0.25 * damping_time * fast / reach)  # (T19.4)
-    return Rubbing(
+    return BristleFriction(
         force=sliding / reach * (bent + damping_time * rate) + p[5] * v,  # (T19.3)
         bristles=bent,
         rate=rate,
@@ -200,24 +200,24 @@ def rubbing(p: SX, load: SX, v: SX, before: SX, z: SX, h: SX, *, falling: bool =
     )
 
 
-def forgetting(p: SX, v: SX) -> SX:
+def bristle_decay(p: SX, v: SX) -> SX:
     """Share of their bending that bristles lose in a second at a rate of sliding, Eq. (T19.1) [1/s]."""
     return _size(v, p[7]) / _limit(p, v)
 
 
 def _limit(p: SX, v: SX) -> SX:
-    """How far bristles bend at a rate of sliding, Eq. (T19.2)."""
+    """Largest deflection of the bristles at a rate of sliding, Eq. (T19.2)."""
     return p[2] * (1 + p[3] * exp(-((_size(v, p[7]) * p[4]) ** 2)))
 
 
 def _size(v: SX, together: SX) -> SX:
-    """Of each direction, or, where they slide together, of all."""
+    """Speed of sliding in each direction, or of all directions where they slide together."""
     square = v**2
     return sqrt(square + together * (dot(v, v) - square) + STILL)
 
 
-def turning(angles: SX, rates: SX, together: SX) -> SX:
-    """How fast a joint slides: the rates of its successive angles, or its angular velocity where it is a ball."""
+def joint_sliding_speed(angles: SX, rates: SX, together: SX) -> SX:
+    """Sliding rates of a joint: of its successive angles, or its angular velocity where it is a ball."""
     first, second = angles[0], angles[1]
     of_ball = vertcat(  # (T19.6)
         rates[0] + sin(second) * rates[2],

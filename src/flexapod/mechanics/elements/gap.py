@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
-from flexapod.mechanics.elements.element import Named, Physics, Standing
+from flexapod.mechanics.elements.element import LegContext, Named, Physics
 
 if TYPE_CHECKING:
     from flexapod.mechanics.symbolic.vocabulary import SX
@@ -28,32 +28,32 @@ class Gap(Physics):
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
-        """Of a leg with play and with springs before its piston."""
+        """Build the gap of a leg with play and with springs before its piston; None of others."""
         return cls(leg.half_play) if leg.half_play and leg.gives else None
 
     @classmethod
-    def among(cls, robot: Robot, simulation: Simulation) -> bool:
-        """Where the simulation takes play for a gap."""
-        return simulation.play == "gap" and super().among(robot, simulation)
+    def in_kernel(cls, robot: Robot, simulation: Simulation) -> bool:
+        """Test whether the simulation models play as a gap, and some leg has it."""
+        return simulation.play == "gap" and super().in_kernel(robot, simulation)
 
-    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
-        """Half of the play."""
+    def numbers(self, leg: Leg, standing: LegContext) -> dict[str, Any]:
+        """Half of the play of the leg."""
         return {"half_play": self.half}
 
     @classmethod
-    def past(cls, x: SX, rate: SX, p: SimpleNamespace) -> tuple[SX, SX]:
-        """The springs touch past the play only, Eqs. (T16.26)-(T16.27)."""
-        return past_gap(x, p.half_play), touching(x, p.half_play) * rate
+    def gap_deflection(cls, x: SX, rate: SX, p: SimpleNamespace) -> tuple[SX, SX]:
+        """Stretch of springs that touch past the play only, and its rate, Eqs. (T16.26)-(T16.27)."""
+        return dead_zone(x, p.half_play), dead_zone_slope(x, p.half_play) * rate
 
 
-def past_gap(x: T, half: Any) -> T:
-    """How far a displacement x is past the edges of a gap that is `half` wide on either side. Numbers and symbols."""
+def dead_zone(x: T, half: Any) -> T:
+    """Displacement x beyond the edges of a gap `half` wide on either side; of numbers or symbols."""
     rounding = (ROUNDED * half) ** 2 + LEAST**2  # type: ignore[operator]
     return x - 0.5 * (((x + half) ** 2 + rounding) ** 0.5 - ((x - half) ** 2 + rounding) ** 0.5)  # type: ignore[operator]
 
 
-def touching(x: T, half: Any) -> T:
-    """Its derivative by x: 0 within the gap, 1 past it, Eq. (T16.27)."""
+def dead_zone_slope(x: T, half: Any) -> T:
+    """Derivative of `dead_zone` by x: 0 within the gap, 1 past it, Eq. (T16.27)."""
     rounding = (ROUNDED * half) ** 2 + LEAST**2  # type: ignore[operator]
     right, left = x + half, x - half  # type: ignore[operator]
     return 1 - 0.5 * (right / (right**2 + rounding) ** 0.5 - left / (left**2 + rounding) ** 0.5)

@@ -25,7 +25,7 @@ from flexapod.mechanics.symbolic.vocabulary import SX, bilinear, constant, dot, 
 
 
 def shortening(f: PistonMotion, p: SimpleNamespace, inner: LateralBasis | None, from_base: SX) -> tuple[SX, SX, SX]:
-    """What a line that leans, the inner part and the cylinder add to the foreshortening e, Eq. (T25.5).
+    """Foreshortening e by a line that leans, the inner part and the cylinder, Eq. (T25.5).
 
     ``from_base``: of the cylinder up to the head. Returns e of the tip, int e dm, int X e dm over the whole piston.
     """
@@ -98,7 +98,7 @@ def inner_part(f: PistonMotion, p: SimpleNamespace, basis: LateralBasis) -> Ener
 
 
 def stepped_inner_part(f: PistonMotion, p: SimpleNamespace, shapes: SteppedShapes) -> Energies:
-    """The same of several sections."""
+    """Energies of the bending between head and gland of a piston of several sections."""
     if not shapes.count:
         return Energies()
     D, k = p.guide_reach - f.qs.l, shapes.count
@@ -136,7 +136,7 @@ def inner_end(f: PistonMotion, p: SimpleNamespace, basis: LateralBasis | Stepped
 
 
 def inner_turn(f: PistonMotion, p: SimpleNamespace, basis: LateralBasis | SteppedShapes) -> SX:
-    """How far the inner part's bending in two planes turns the tip about the leg, Eq. (T25.7)."""
+    """Rotation of the tip about the leg by the inner part's bending in two planes, Eq. (T25.7)."""
     if not basis.count:
         return zeros(1)
     D, slope = p.guide_reach - f.qs.l, f.line.slope

@@ -1,8 +1,8 @@
-"""What a force in the middle of a beam adds to the shapes of a basis: a deflection whose curvature has a kink there.
+"""Kinked shape that a force in the middle of a beam adds to a basis: its curvature has a kink there.
 
 The force acts at u = eta. Its deflection, less what the shapes hold of it, is tau(u) - share^T phi(u) with the
-truncated cubic tau = (u - eta)_+^3 / 6; over (eta (1 - eta))^2 it is the further shape sigma, Eq. (T25.19). Integrals
-over the beam are polynomials of eta, Eq. (T25.20), found from their values at Chebyshev points.
+truncated cubic tau = (u - eta)_+^3 / 6; over (eta (1 - eta))^2 it is the further shape sigma, Eq. (T25.19).
+Integrals over the beam are polynomials of eta, Eq. (T25.20), found from their values at Chebyshev points.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def polynomials(basis: LateralBasis) -> list[Polynomial]:
 
 @lru_cache(maxsize=16)
 def kink(basis: LateralBasis) -> dict[str, list[Powers]]:
-    """Of a basis of polynomials, orthogonal in bending energy, with the static shapes of a force and moment at the tip.
+    """Kinked shape of a polynomial basis, orthogonal in bending energy, with the tip's static shapes.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""A plate on springs along and about all axes, or one that is moved: displacement and roll, pitch, yaw, (T24.1)."""
+"""Plate on springs along and about all axes, or moved base: displacement and roll, pitch, yaw, Eq. (T24.1)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 import numpy as np
 
 from flexapod.common.arrays import Array
-from flexapod.mechanics.elements.element import Along, Named, Physics, Standing
+from flexapod.common.lazy_imports import lazy_attributes
+from flexapod.mechanics.elements.element import Along, LegContext, Named, Physics
 from flexapod.mechanics.elements.flexure import flexure
 from flexapod.mechanics.elements.frames import Energies, Frame, about_x, about_y, about_z
 from flexapod.mechanics.elements.springs import viscous
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 #: Mass of a plate in motion, over that of the payload, at least: between springs nothing else says how it moves
 LIGHT = 1e-6
 
+__getattr__ = lazy_attributes(__name__, {}, {"world": "ground_frame"})
+
 
 class MovedBase(Physics):
     """A base that is moved: displacement and angles g about a point, which follow a table."""
@@ -31,44 +34,44 @@ class MovedBase(Physics):
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
-        """Of every leg."""
+        """Build the element of every leg: all stand on the moved base."""
         return cls()
 
     @classmethod
-    def among(cls, robot: Robot, simulation: Simulation) -> bool:
-        """Of a robot with a motion of its base."""
+    def in_kernel(cls, robot: Robot, simulation: Simulation) -> bool:
+        """Test whether the robot has a motion of its base."""
         return robot.base_motion is not None
 
-    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
-        """The point."""
+    def numbers(self, leg: Leg, standing: LegContext) -> dict[str, Any]:
+        """Point about which the base is moved [m]."""
         return {"base_motion_at": standing.robot.base_motion.at}  # type: ignore[union-attr]
 
     @classmethod
-    def held(cls, own: Any, leg: Leg, standing: Standing) -> tuple[str, ...]:
-        """All of it."""
+    def prescribed(cls, own: Any, leg: Leg, standing: LegContext) -> tuple[str, ...]:
+        """Displacement and angles g, all of which follow the table of the motion."""
         return ("g",)
 
     @classmethod
-    def carries(cls, base: Frame | None, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Frame:
-        """All that stands on it."""
-        return displaced(base or world(), p.base_motion_at, q.g, v.g)
+    def base_frame(cls, base: Frame | None, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Frame:
+        """Frame of the base as it is moved."""
+        return displaced_frame(base or ground_frame(), p.base_motion_at, q.g, v.g)
 
 
 class _Mounting(Physics):
-    """Springs and dampers on which a plate stands, and its displacement and angles; a leg has its share of them."""
+    """Springs and dampers under a plate, and its displacement and angles; a leg has its share of them."""
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
-        """Of every leg: all share the plate."""
+        """Build the element of every leg: all share the plate."""
         return cls()
 
     @classmethod
-    def among(cls, robot: Robot, simulation: Simulation) -> bool:
-        """Of a robot with such a mount."""
+    def in_kernel(cls, robot: Robot, simulation: Simulation) -> bool:
+        """Test whether the robot has a mount at this end."""
         return getattr(robot, f"{cls.end}_mount") is not None
 
-    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
-        """A leg's share."""
+    def numbers(self, leg: Leg, standing: LegContext) -> dict[str, Any]:
+        """Parameters of the mount, of which a leg has its share."""
         robot, end = standing.robot, self.end
         given = getattr(robot, f"{end}_mount")
         damping = viscous(given.stiffness, given.damping, given.loss, standing.per_loss)
@@ -80,7 +83,7 @@ class _Mounting(Physics):
 
 
 class BaseMounting(_Mounting):
-    """Of the base plate, whose mass and inertia the legs share, too."""
+    """Mount of the base plate, whose mass and inertia the legs share, too."""
 
     end: ClassVar[Literal["base", "", "platform"]] = "base"
     coordinates: ClassVar[Named] = (("f", 6),)
@@ -93,8 +96,8 @@ class BaseMounting(_Mounting):
         ("base_plate_inertia", 9),  # kg m^2, about that point
     )
 
-    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
-        """A leg's share."""
+    def numbers(self, leg: Leg, standing: LegContext) -> dict[str, Any]:
+        """Parameters of the mount, of which a leg has its share."""
         robot = standing.robot
         mass, inertia = plate_mass(robot, robot.base_mount, at_rest=standing.at_rest)  # type: ignore[arg-type]
         weighs = robot.base_mount.mass  # type: ignore[union-attr]
@@ -102,21 +105,21 @@ class BaseMounting(_Mounting):
         return super().numbers(leg, standing) | {name: value / robot.count for name, value in share.items()}
 
     @classmethod
-    def carries(cls, base: Frame | None, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Frame:
-        """The plate."""
-        return displaced(base or world(), p.base_mount_at, q.f, v.f)
+    def base_frame(cls, base: Frame | None, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Frame:
+        """Frame of the base plate on its mount."""
+        return displaced_frame(base or ground_frame(), p.base_mount_at, q.f, v.f)
 
     @classmethod
     def energy_along(cls, x: Along) -> Energies:
-        """Its springs and dampers, and the plate."""
-        p, base = x.p, x.base or world()
+        """Energies of the base mount's springs and dampers, and of the plate."""
+        p, base = x.p, x.base or ground_frame()
         e = mount(p.base_mount_stiffness, p.base_mount_damping, x.q.f, x.v.f)
         body = p.base_plate_mass, p.base_plate_inertia, p.base_plate_weighs * p.gravity
         return e + plate(base, p.base_mount_at, *body)
 
 
 class PlatformMounting(_Mounting):
-    """Of the payload, on the plate with the platform joints."""
+    """Mount of the payload on the plate with the platform joints."""
 
     end: ClassVar[Literal["base", "", "platform"]] = "platform"
     coordinates: ClassVar[Named] = (("m", 6),)
@@ -128,7 +131,7 @@ class PlatformMounting(_Mounting):
 
     @classmethod
     def energy(cls, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Energies:
-        """Its springs and dampers; the plate moves with the payload (`mechanics.payload`)."""
+        """Energies of the mount's springs and dampers; those of the plate are in `mechanics.leg.payload`."""
         return mount(p.platform_mount_stiffness, p.platform_mount_damping, q.m, v.m)
 
 
@@ -143,17 +146,17 @@ def plate_mass(robot: Robot, given: Mount, *, at_rest: bool) -> tuple[float, Arr
     return max(given.mass, LIGHT * mass), given.inertia + more
 
 
-def world() -> Frame:
-    """The frame that stands still."""
+def ground_frame() -> Frame:
+    """Frame of the ground, at rest at the origin."""
     return Frame(origin=zeros(3), axes=identity(3), velocity=zeros(3), omega=zeros(3))
 
 
-def turn(angles: SX) -> SX:
+def roll_pitch_yaw(angles: SX) -> SX:
     """Rotation by roll, pitch, yaw about fixed axes x, y, z one after the other: Rz Ry Rx, Eq. (T24.1)."""
     return about_z(angles[2]) @ about_y(angles[1]) @ about_x(angles[0])
 
 
-def displaced(frame: Frame, at: SX, moved: SX, rate: SX) -> Frame:
+def displaced_frame(frame: Frame, at: SX, moved: SX, rate: SX) -> Frame:
     """Frame of what is displaced (3) at a point of a frame and turned about it (3), origin where it was there."""
     angles, rates = moved[3:], rate[3:]
     there = frame.moved(at, zeros(3)).moved(moved[:3], rate[:3])

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from flexapod.mechanics.elements.element import Named, Physics, SeriesSprings, Standing
-from flexapod.mechanics.elements.springs import before_stroke, oil_shares
+from flexapod.mechanics.elements.element import LegContext, Named, Physics, SeriesSprings
+from flexapod.mechanics.elements.springs import oil_shares, springs_before_stroke
 
 if TYPE_CHECKING:
     from flexapod.model import HydraulicDrive, Leg
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Oil(Physics):
-    """The two columns of oil of a hydraulic cylinder."""
+    """Two columns of oil of a hydraulic cylinder."""
 
     drive: HydraulicDrive
 
@@ -25,16 +25,16 @@ class Oil(Physics):
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
-        """Of a leg with a hydraulic drive."""
+        """Build the oil of a leg with a hydraulic drive; None of others."""
         return None if leg.cylinder_of_oil is None else cls(leg.cylinder_of_oil)
 
-    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
+    def numbers(self, leg: Leg, standing: LegContext) -> dict[str, Any]:
         """Shares and lengths of the columns at home."""
-        return {"oil": oil_shares(before_stroke(leg), standing.length)}
+        return {"oil": oil_shares(springs_before_stroke(leg), standing.length)}
 
     @classmethod
     def in_series(cls, s: SeriesSprings, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SeriesSprings:
-        """What the compliance of the oil adds to that at home, over that of all springs there."""
+        """Springs in series with the oil's compliance beyond that at home, over that of all springs there."""
         away = q.l - p.series_home
         share, push, longer, shorter = (p.oil[k] for k in range(4))
         more = share * (1 / (push / (1 + away * longer) + (1 - push) / (1 - away * shorter)) - 1)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from flexapod.common.tables.section import Section
     from flexapod.model import Leg, Robot, Simulation
 
-GROUP = "flexapod.mechanics.elements"
+GROUP = "flexapod.elements"
 OURS: tuple[type[Physics], ...] = (
     Flexures, SoftBase, SoftPlatform, DriveTrain, TurningNut, Gap, Ripple, SummedError, MotorLoop, Oil, Resolution,
     BaseFriction, PlatformFriction, DriveFriction, MovedBase, BaseMounting, PlatformMounting,
@@ -35,25 +35,25 @@ OURS: tuple[type[Physics], ...] = (
 
 
 def kinds_of(legs: Sequence[Leg]) -> tuple[type[Physics], ...]:
-    """What may be in some legs: ours, then those with tables of their own, by name."""
+    """Kinds of elements that legs may have: the built-in ones, then those with tables of their own, by name."""
     tables = {type(element) for leg in legs for element in leg.elements}
     return (*OURS, *sorted(tables, key=lambda kind: kind.at))
 
 
 def elements_of(robot: Robot, simulation: Simulation) -> tuple[Slot, ...]:
-    """Those that a kernel for the legs of a robot knows of, two alike in a leg after each other."""
-    there = (kind for kind in kinds_of(robot.legs) if kind.among(robot, simulation))
+    """Slots of the elements in a kernel for the legs of a robot; several of one kind follow each other."""
+    there = (kind for kind in kinds_of(robot.legs) if kind.in_kernel(robot, simulation))
     return tuple(slot for kind in there for slot in slots_of(kind, robot.legs))
 
 
 def slots_of(kind: type[Physics], legs: Sequence[Leg]) -> tuple[Slot, ...]:
-    """Those of one kind, as many as the leg with the most of them has."""
+    """Slots of one kind of element, as many as the leg with the most of them has."""
     most = max(len(kind.all_of(leg)) for leg in legs)
     return tuple(Slot(kind, number) for number in range(1, most + 1))
 
 
 def refuse_tables(legs: Sequence[Leg], reader: str) -> None:
-    """Raise InputError if legs have elements with tables of their own: readers of legs by hand do not know them."""
+    """Raise InputError if legs have elements with tables of their own, which a reader of legs does not know."""
     for leg in legs:
         for element in leg.elements:
             raise InputError(
@@ -80,8 +80,8 @@ def _numbered(name: str, tables: list[Any]) -> list[tuple[str, Any]]:
     return [(f"{name}[{number}]", table) for number, table in enumerate(tables, start=1)]
 
 
-def told_elements(elements: Sequence[Element]) -> dict[str, object]:
-    """What they have to say in the table of their leg."""
+def element_values(elements: Sequence[Element]) -> dict[str, object]:
+    """Values of elements as written in the table of their leg: by name, a list where there are several."""
     found: dict[str, list[Element]] = {}
     for element in elements:
         found.setdefault(element.at, []).append(element)
@@ -94,7 +94,7 @@ def element_at(name: str) -> type[Element] | None:
     Raises
     ------
     InputError
-        The package's entry point in the group ``flexapod.mechanics.elements`` gives no such class.
+        The package's entry point in the group ``flexapod.elements`` gives no such class.
     """
     from importlib.metadata import entry_points  # most studies have no such table
 

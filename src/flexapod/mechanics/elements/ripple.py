@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from flexapod.common.errors import InputError
 from flexapod.common.tables.base import Key, Quantity, Series, array_of
 from flexapod.common.tables.table import Table
-from flexapod.mechanics.elements.element import Contribution, Named, Physics, Standing
+from flexapod.mechanics.elements.element import Contribution, LegContext, Named, Physics
 from flexapod.mechanics.elements.frames import Energies
 from flexapod.mechanics.symbolic.vocabulary import cos, dot, vertcat
 
@@ -24,7 +24,7 @@ HARMONICS = 4  # at most
 
 
 class Ripple(Physics, Table):
-    """What a motor's torque changes by as it turns: cogging and ripple, `torque` [N m] times `harmonics`.
+    """Change of a motor's torque as it turns, cogging and ripple: `torque` [N m] times `harmonics`.
 
     `per_turn`: how often the first of these returns in a turn of the motor; `harmonics`: sizes of the first one and of
     its multiples, up to four.
@@ -51,11 +51,11 @@ class Ripple(Physics, Table):
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
-        """Of the motor of a screw."""
+        """Ripple of the motor of a leg's screw; None without a screw or without ripple."""
         return None if leg.screw is None else leg.screw.motor.ripple  # type: ignore[return-value]
 
     def amplitudes(self, screw: ScrewDrive) -> Array:
-        """Of the harmonics of the force by the nut's travel, (4,) [N], Eq. (T23.21)."""
+        """Amplitudes of the force's harmonics by the nut's travel, (4,) [N], Eq. (T23.21)."""
         found = np.zeros(HARMONICS)
         found[: len(self.harmonics)] = self.torque * self.harmonics * screw.rotor.ratio / screw.per_turn
         return found
@@ -66,8 +66,8 @@ class Ripple(Physics, Table):
             return 0.0
         return float(np.sqrt(0.5 * (self.amplitudes(screw) ** 2).sum()) / screw.loop_spring[0])
 
-    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
-        """Its wave, and the energies of its harmonics."""
+    def numbers(self, leg: Leg, standing: LegContext) -> dict[str, Any]:
+        """Angle of the first harmonic by the nut's travel, and the energies of all harmonics."""
         screw: Any = leg.screw
         wave = self.per_turn * screw.rotor.ratio / screw.per_turn
         return {"ripple_wave": wave, "ripple": self.amplitudes(screw) / (wave * np.arange(1, HARMONICS + 1))}
@@ -78,13 +78,13 @@ class Ripple(Physics, Table):
         angle = p.ripple_wave * q.r
         return Energies(strain=dot(p.ripple, vertcat(*(1 - cos(k * angle) for k in range(1, HARMONICS + 1)))))
 
-    def smoothed(self, leg: Leg) -> Leg:
-        """Of a motor without it."""
+    def without_ripple(self, leg: Leg) -> Leg:
+        """Leg whose motor has no ripple."""
         screw: Any = leg.screw
         return leg.replace(drive=screw.replace(motor=screw.motor.replace(ripple=None)))
 
     def errors(self, leg: Leg) -> Sequence[Contribution]:
-        """What it moves the rotor by at rest, against the spring of its loop."""
+        """Random displacement of the rotor by ripple at rest, against the spring of its loop."""
         spread = self.spread(leg.screw)  # type: ignore[arg-type]
         how = "standard deviation over a period, against the loop's stiffness, legs independent"
         return (Contribution("ripple", "random", spread, how, stands=True),) if spread else ()

@@ -39,12 +39,12 @@ class Servo:
         return 0.5 * self.stiffness * (self.q_cmd - self.q) ** 2
 
     @property
-    def lost(self) -> SX:
-        """Power that the damper takes."""
+    def damper_power(self) -> SX:
+        """Power lost in the damper."""
         return self.damping * (self.v_cmd - self.v) ** 2
 
     @property
-    def given(self) -> SX:
-        """Power that comes in at the commanded end, Eq. (T5.5), and by what is asked beside."""
+    def input_power(self) -> SX:
+        """Power that enters at the commanded end, Eq. (T5.5), and by further requested forces."""
         power = self._held * self.v_cmd
         return power if self.more is None else power + self.more * self.v

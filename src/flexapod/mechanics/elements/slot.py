@@ -1,4 +1,4 @@
-"""A place for an element in a kernel: its names beside those of the others, and of two alike which of them it is."""
+"""Slot of an element in a kernel: its names beside those of others, and its number among several of one kind."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from flexapod.mechanics.elements.element import Along, Moving, Named, Physics, SeriesSprings, Standing
+from flexapod.mechanics.elements.element import Along, LegContext, MovingLeg, Named, Physics, SeriesSprings
 from flexapod.mechanics.elements.frames import Energies
-from flexapod.mechanics.elements.trial import asking, refused
+from flexapod.mechanics.elements.trial import hook_error, wrap_hook_errors
 
 if TYPE_CHECKING:
     from flexapod.mechanics.elements.frames import Frame
     from flexapod.mechanics.symbolic.vocabulary import SX
     from flexapod.model import Leg
 
-T = TypeVar("T", Along, Moving)
+T = TypeVar("T", Along, MovingLeg)
 
 
 @dataclass(frozen=True)
@@ -30,28 +30,28 @@ class Slot:
 
     @property
     def prefix(self) -> str:
-        """What stands before its names: nothing of an element without a table of its own."""
+        """Prefix of the element's names in a kernel; empty of an element without a table of its own."""
         at = self.kind.at
         return at and f"{at}{'' if self.number == 1 else f'_{self.number}'}_"
 
     @property
     def rubs_at(self) -> str:
-        """Where it rubs, as results name it."""
+        """Place of the element's friction, as results name it."""
         return self.kind.rubs_at or self.prefix[:-1]
 
     def of(self, leg: Leg) -> Physics | None:
-        """The element in one leg; None of a leg without it."""
+        """Element of this slot in one leg; None of a leg without it."""
         found = self.kind.all_of(leg)
         return found[self.number - 1] if len(found) >= self.number else None
 
     @property
     def coordinates(self) -> Named:
-        """By name, with their sizes."""
+        """Names in the kernel with their sizes."""
         return self._named(self.kind.coordinates)
 
     @property
     def parameters(self) -> Named:
-        """By name, with their sizes."""
+        """Names in the kernel with their sizes."""
         return self._named(self.kind.parameters)
 
     @property
@@ -59,76 +59,84 @@ class Slot:
         """Own coordinates that are as others are in an undeformed leg."""
         return self._prefixed(self.kind.follows)
 
-    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
+    def numbers(self, leg: Leg, standing: LegContext) -> dict[str, Any]:
         """Parameters of one leg, whether or not the element is there."""
         own = self.of(leg)
         absent = {name: self.kind.absent.get(name, np.zeros(size)) for name, size in self.kind.parameters}
         if own is None:
             return self._prefixed(absent)
-        with asking(self.kind, "numbers"):
+        with wrap_hook_errors(self.kind, "numbers"):
             return self._prefixed(absent | dict(own.numbers(leg, standing)))
 
-    def held(self, leg: Leg, standing: Standing) -> list[str]:
+    def prescribed(self, leg: Leg, standing: LegContext) -> list[str]:
         """Coordinates that follow a table in one leg."""
-        return list(self._prefixed(dict.fromkeys(self.kind.held(self.of(leg), leg, standing))))
+        return list(self._prefixed(dict.fromkeys(self.kind.prescribed(self.of(leg), leg, standing))))
 
     def energy(self, x: Along) -> Energies:
-        """Energies where it stands in a leg."""
-        with asking(self.kind, "energy"):
+        """Energies of the element in a leg."""
+        with wrap_hook_errors(self.kind, "energy"):
             found = self.kind.energy_along(self._seen_in(x))
         if not isinstance(found, Energies):
-            raise refused(self.kind, "energy", "gives no flexapod.Energies", value=type(found).__name__)
+            raise hook_error(self.kind, "energy", "gives no flexapod.Energies", value=type(found).__name__)
         return found
 
     def damping_force(self, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> dict[str, SX]:
         """Forces against the rates of coordinates."""
-        with asking(self.kind, "damping_force"):
-            return self._prefixed(self.kind.damping_force(self.seen(p), self.seen(q), self.seen(v)))
+        with wrap_hook_errors(self.kind, "damping_force"):
+            return self._prefixed(
+                self.kind.damping_force(self.strip_prefix(p), self.strip_prefix(q), self.strip_prefix(v))
+            )
 
-    def slides(self, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
-        """How fast it slides where it has friction."""
-        with asking(self.kind, "slides"):
-            return self.kind.slides(self.seen(p), self.seen(q), self.seen(v))
+    def sliding_speed(self, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SX:
+        """Sliding speeds of the element's friction."""
+        with wrap_hook_errors(self.kind, "slides"):
+            return self.kind.sliding_speed(self.strip_prefix(p), self.strip_prefix(q), self.strip_prefix(v))
 
-    def carries(self, base: Frame | None, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> Frame | None:
+    def base_frame(
+        self, base: Frame | None, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace
+    ) -> Frame | None:
         """Frame of the base as it carries it."""
-        return self.kind.carries(base, self.seen(p), self.seen(q), self.seen(v))
+        return self.kind.base_frame(base, self.strip_prefix(p), self.strip_prefix(q), self.strip_prefix(v))
 
     def in_series(self, s: SeriesSprings, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SeriesSprings:
         """Springs between rotor and stroke with what the element changes in them."""
-        return self.kind.in_series(s, self.seen(p), self.seen(q), self.seen(v))
+        return self.kind.in_series(s, self.strip_prefix(p), self.strip_prefix(q), self.strip_prefix(v))
 
-    def past(self, x: SX, rate: SX, p: SimpleNamespace) -> tuple[SX, SX]:
-        """How far these are stretched, and how fast."""
-        return self.kind.past(x, rate, self.seen(p))
+    def gap_deflection(self, x: SX, rate: SX, p: SimpleNamespace) -> tuple[SX, SX]:
+        """Stretch of the springs before a stroke, and its rate, from the displacement of their ends."""
+        return self.kind.gap_deflection(x, rate, self.strip_prefix(p))
 
-    def asked(self, p: SimpleNamespace, q: SimpleNamespace) -> SX | None:
-        """Force that a loop about a rotor asks for because of the element."""
-        return self.kind.asked(self.seen(p), self.seen(q))
+    def loop_force(self, p: SimpleNamespace, q: SimpleNamespace) -> SX | None:
+        """Force that a rotor's loop requests because of the element; None if none."""
+        return self.kind.loop_force(self.strip_prefix(p), self.strip_prefix(q))
 
-    def pushes(self, x: Moving) -> dict[str, SX]:
-        """What is added to the balance without an energy."""
-        with asking(self.kind, "pushes"):
-            return self._prefixed(self.kind.pushes(self._seen_in(x)))
+    def nonpotential_force(self, x: MovingLeg) -> dict[str, SX]:
+        """Nonpotential terms of the element in the balance of coordinates, by name."""
+        with wrap_hook_errors(self.kind, "pushes"):
+            return self._prefixed(self.kind.nonpotential_force(self._seen_in(x)))
 
     def inertia(self, p: SimpleNamespace) -> dict[str, tuple[SX | float, SX | float]]:
         """Mass and damper without an energy."""
-        return self._prefixed(self.kind.inertia(self.seen(p)))
+        return self._prefixed(self.kind.inertia(self.strip_prefix(p)))
 
-    def given(self, x: Moving) -> SX | None:
-        """Power that comes in."""
-        with asking(self.kind, "given"):
-            return self.kind.given(self._seen_in(x))
+    def input_power(self, x: MovingLeg) -> SX | None:
+        """Power that enters by the element's nonpotential forces."""
+        with wrap_hook_errors(self.kind, "given"):
+            return self.kind.input_power(self._seen_in(x))
 
-    def seen(self, names: SimpleNamespace) -> SimpleNamespace:
-        """Names as the element has them: its own without what stands before them."""
+    def strip_prefix(self, names: SimpleNamespace) -> SimpleNamespace:
+        """Names as the element uses them: its own without their prefix."""
         if not self.prefix:
             return names
         own = {name: getattr(names, f"{self.prefix}{name}", None) for name in self._own}
         return SimpleNamespace(**vars(names) | {name: value for name, value in own.items() if value is not None})
 
     def _seen_in(self, x: T) -> T:
-        return replace(x, p=self.seen(x.p), q=self.seen(x.q), v=self.seen(x.v)) if self.prefix else x
+        return (
+            replace(x, p=self.strip_prefix(x.p), q=self.strip_prefix(x.q), v=self.strip_prefix(x.v))
+            if self.prefix
+            else x
+        )
 
     @property
     def _own(self) -> set[str]:

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
-from flexapod.mechanics.elements.element import Along, Named, Physics, Standing
-from flexapod.mechanics.elements.flexure import Flexures, displaced
+from flexapod.mechanics.elements.element import Along, LegContext, Named, Physics
+from flexapod.mechanics.elements.flexure import Flexures, joint_displacement
 from flexapod.mechanics.elements.frames import Energies
-from flexapod.mechanics.elements.springs import Spring, in_series, springs_along, viscous
+from flexapod.mechanics.elements.springs import Spring, series_stiffness, springs_along, viscous
 from flexapod.mechanics.symbolic.vocabulary import dot, matrix33, vertcat
 
 if TYPE_CHECKING:
@@ -26,28 +26,28 @@ class SoftJoint(Physics):
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
-        """Of a leg with a spring along it at this end."""
+        """Build the element of a leg with a spring along it at this end; None of others."""
         along = [spring for spring in springs_along(leg) if spring.at == cls.end]
         return cls(getattr(leg, f"{cls.end}_joint"), along) if along else None
 
     @classmethod
-    def held(cls, own: Any, leg: Leg, standing: Standing) -> Sequence[str]:
+    def prescribed(cls, own: Any, leg: Leg, standing: LegContext) -> Sequence[str]:
         """Displacements in directions in which it has no stiffness."""
         letter = cls.coordinates[0][0][0]
         if own is None:
             return tuple(name for name, _ in cls.coordinates)
         return () if own.joint.across_and_along is not None else (f"{letter}1", f"{letter}2")
 
-    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
+    def numbers(self, leg: Leg, standing: LegContext) -> dict[str, Any]:
         """Stiffness and damping (across, along) [N/m, N s/m]."""
-        joint, along = self.joint, in_series(self.along, standing.length, standing.per_loss)
+        joint, along = self.joint, series_stiffness(self.along, standing.length, standing.per_loss)
         across = 0.0 if joint.across_and_along is None else joint.across_and_along[0]
         damper = viscous(across, joint.stiffness_damping, joint.loss_of_stiffness, standing.per_loss) if across else 0.0
         return {f"{self.end}_soft": [across, along[0]], f"{self.end}_soft_damping": [damper, along[1]]}
 
 
 class SoftBase(SoftJoint):
-    """At the base, between it and the cylinder."""
+    """Compliant base joint, between the base and the cylinder."""
 
     end: ClassVar[Literal["base", "", "platform"]] = "base"
     coordinates: ClassVar[Named] = (("u1", 1), ("u2", 1), ("u3", 1))
@@ -55,14 +55,16 @@ class SoftBase(SoftJoint):
 
     @classmethod
     def energy_along(cls, x: Along) -> Energies:
-        """Of its displacement, in axes of the leg; of a flexure those of what it stands on."""
+        """Energies of its displacement in axes of the leg; of a flexure in axes of what carries it."""
         own = vertcat(0, 0, 1)
         along = x.foot.axes.T @ x.cylinder.axes[:, 2] if x.holds(Flexures) else own
-        return soft_joint(x.p.base_soft, x.p.base_soft_damping, displaced(x.q, "u"), displaced(x.v, "u"), along)
+        return soft_joint(
+            x.p.base_soft, x.p.base_soft_damping, joint_displacement(x.q, "u"), joint_displacement(x.v, "u"), along
+        )
 
 
 class SoftPlatform(SoftJoint):
-    """At the platform, between the piston's tip and it."""
+    """Compliant platform joint, between the piston's tip and the platform."""
 
     end: ClassVar[Literal["base", "", "platform"]] = "platform"
     coordinates: ClassVar[Named] = (("e1", 1), ("e2", 1), ("e3", 1))
@@ -70,10 +72,10 @@ class SoftPlatform(SoftJoint):
 
     @classmethod
     def energy_along(cls, x: Along) -> Energies:
-        """Of its displacement, in axes of the leg; of a flexure those of the joint in the leg."""
+        """Energies of its displacement in axes of the leg; of a flexure in axes of the joint in the leg."""
         own = vertcat(0, 0, 1)
         along = matrix33(x.p.leg_frame).T @ own if x.holds(Flexures) else own
-        p, moved, rate = x.p, displaced(x.q, "e"), displaced(x.v, "e")
+        p, moved, rate = x.p, joint_displacement(x.q, "e"), joint_displacement(x.v, "e")
         return soft_joint(p.platform_soft, p.platform_soft_damping, moved, rate, along)
 
 

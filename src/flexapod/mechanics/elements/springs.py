@@ -53,7 +53,7 @@ class Spring:
         return found + 1 / sum(1 / x.at_length(length) for x in self.columns) if self.columns else found
 
     def creep(self, length: Array) -> Array:
-        """Rate at which oil that leaks lets the spring give way, over the force [m/(N s)], Eq. (T23.4)."""
+        """Rate at which leaking oil lets the spring yield, over the force [m/(N s)], Eq. (T23.4)."""
         stiffness = [1 / x.at_length(length) for x in self.columns]
         pressure = sum(k / x.area for k, x in zip(stiffness, self.columns, strict=True))
         return np.asarray(self.leakage * (pressure / sum(stiffness)) ** 2) if self.columns else np.zeros_like(length)
@@ -92,28 +92,28 @@ def _constant(name: str, at: Place, stiffness: float, damping: float | None, los
     return Spring(name=name, at=at, compliance=(1.0 / stiffness, 0.0, 0.0), damping=damping, loss=loss)
 
 
-def before_piston(leg: Leg) -> list[Spring]:
+def springs_before_piston(leg: Leg) -> list[Spring]:
     """The springs between a drive's command and the piston, those of a servo or of a screw's loop among them.
 
     What is inside of a loop is not.
     """
     springs = [x for x in springs_along(leg) if x.at == "nut" and not leg.closed_about]
     if leg.drive.type == "servo":
-        springs.append(of_servo(leg.drive.stiffness, leg.drive.damping))
+        springs.append(servo_spring(leg.drive.stiffness, leg.drive.damping))
     elif leg.screw is not None and leg.screw.loop_spring[0] and not leg.screw.rests:
-        springs.append(of_servo(leg.screw.loop_spring[0]))
+        springs.append(servo_spring(leg.screw.loop_spring[0]))
     return springs
 
 
-def before_stroke(leg: Leg) -> list[Spring]:
+def springs_before_stroke(leg: Leg) -> list[Spring]:
     """The springs between rotor and stroke, a servo's among them: nothing has a mass between it and these."""
     springs = [spring for spring in springs_along(leg) if spring.at == "nut"]
     if springs and leg.drive.type == "servo":
-        springs.append(of_servo(leg.drive.stiffness, leg.drive.damping))
+        springs.append(servo_spring(leg.drive.stiffness, leg.drive.damping))
     return springs
 
 
-def of_servo(stiffness: float, damping: float = 0.0) -> Spring:
+def servo_spring(stiffness: float, damping: float = 0.0) -> Spring:
     """The spring [N/m] and damper [N s/m] of a servo, in series with what is behind it."""
     return Spring(name="drive", at="nut", compliance=(1.0 / stiffness, 0.0, 0.0), damping=damping)
 
@@ -147,7 +147,7 @@ def _of_oil(drive: HydraulicDrive, begin: float) -> Spring:
 
 
 def oil_shares(springs: Iterable[Spring], length: float) -> tuple[float, ...]:
-    """What `elements.oil.Oil.parameters` are of springs in series at a length of the leg [m]; 0 without oil."""
+    """Parameters of `elements.oil.Oil` for springs in series at a length of the leg [m]; 0 without oil."""
     at, springs = np.array(length), list(springs)
     oil = next((spring for spring in springs if spring.columns), None)
     if oil is None:
@@ -160,20 +160,20 @@ def oil_shares(springs: Iterable[Spring], length: float) -> tuple[float, ...]:
 
 
 def twist_share(leg: Leg, length: Array) -> Array:
-    """Share of a screw's twist in the give of what stands before its piston, at lengths [m], Eq. (T19.12)."""
+    """Share of a screw's twist in the compliance before its piston, at lengths [m], Eq. (T19.12)."""
     softness = {x.name: x.at_length(length) for x in springs_along(leg) if x.at == "nut"}
     return np.asarray(softness["twist"] / np.sum(list(softness.values()), axis=0))
 
 
 def twist_with_length(leg: Leg, length: float) -> tuple[float, float]:
-    """That share at a length [m] as the legs' parameters have it, and how much of it longer legs add [1/m]."""
+    """Share of a screw's twist at a length [m], see `twist_share`, and its growth with the length [1/m]."""
     share = float(twist_share(leg, np.array(length)))
     twist = next(x for x in springs_along(leg) if x.name == "twist")
     return share, share * twist.compliance[1] / float(twist.at_length(np.array(length)))
 
 
 def softening(springs: Iterable[Spring], length: float) -> tuple[float, float]:
-    """How the compliance of springs in series grows with the leg's length, over itself at a length [1/m, 1/m^2]."""
+    """Growth of the compliance of springs in series with the length, over itself at a length [1/m, 1/m^2]."""
     springs = list(springs)
     c0, c1, c2 = np.sum([spring.compliance for spring in springs], axis=0)
     total = c0 + length * (c1 + length * c2)
@@ -182,7 +182,7 @@ def softening(springs: Iterable[Spring], length: float) -> tuple[float, float]:
     return float((c1 + 2 * c2 * length) / total), float(c2 / total)
 
 
-def in_series(springs: Iterable[Spring], length: float, per_loss: float) -> tuple[float, float]:
+def series_stiffness(springs: Iterable[Spring], length: float, per_loss: float) -> tuple[float, float]:
     """Stiffness [N/m] and damping [N s/m] of springs in series, Eqs. (T15.3)-(T15.4); 0, 0 of none.
 
     ``per_loss`` [s]: viscous damping over stiffness of a spring of loss factor 1, see `losses`.

@@ -25,7 +25,16 @@ from flexapod.mechanics.elements.distribution import (
     shear_energy,
 )
 from flexapod.mechanics.elements.frames import Energies
-from flexapod.mechanics.elements.steps import Piece, StepNodes, Uniform, held, law, nodes, pieces, sheared
+from flexapod.mechanics.elements.steps import (
+    Piece,
+    StepNodes,
+    Uniform,
+    law,
+    nodes,
+    pieces,
+    shear_pieces,
+    tip_elimination,
+)
 from flexapod.mechanics.shapes import AxialBasis, LateralBasis
 from flexapod.mechanics.symbolic.vocabulary import (
     SX,
@@ -47,7 +56,7 @@ _TINY = 1e-18  # under the root of |x|: its derivative is not 0 / 0
 
 
 @dataclass(frozen=True, kw_only=True)
-class Shown:
+class GaussPointShapes:
     """Lateral shapes at Gauss points x of the free length, (K, points), by x: rates are s d/ds at a material point.
 
     `turn`, `sheared`: slopes of bending and of shear; `slid`, `slid_turn`: rates of `value` and `turn`.
@@ -94,8 +103,8 @@ class SteppedShapes:
     slid_slid: SX | None = None
 
 
-def straight(axial: int) -> SteppedShapes:
-    """Of a piston that does not bend and has a number of axial shapes."""
+def straight_shapes(axial: int) -> SteppedShapes:
+    """Shapes of a piston that does not bend and has a number of axial shapes."""
     found: dict[str, Any] = {f.name: zeros(0, 0) for f in fields(SteppedShapes) if f.default is not None}
     found |= dict.fromkeys(("phi_psi", "sliding_psi"), zeros(0, axial))
     found |= {"count": 0, "tip": np.zeros(0), "tip_slope": np.zeros(0)}
@@ -156,19 +165,24 @@ class Part:
 def stepped_shapes(
     part: Part, basis: LateralBasis, shear: LateralBasis | None, axial: AxialBasis, planes: Sequence[str]
 ) -> dict[str, SX]:
-    """What depends on the length of a part alone, by the names of `SteppedShapes`.
+    """Quantities that depend on the length of a part alone, by the names of `SteppedShapes`.
 
     ``shear``: shapes by whose forces the piston shears; none of a slender one.
     ``planes``: directions that bend in their own way, a before b; one stands for both.
     """
     at = nodes(basis.count + _MORE + _TAPERED * part.tapers)
     beams = [_Beam(part, at, basis, shear, name) for name in planes]
-    shown = [beam.shown for beam in beams]
-    all_ = Shown(**{f.name: vertcat(*(getattr(one, f.name) for one in shown)) for f in fields(Shown)})
-    own = [_gram(one.bend, beam.weighed(f"EI_{beam.plane}"), one.bend) for one, beam in zip(shown, beams, strict=True)]
+    shown = [beam.shapes_at_points for beam in beams]
+    all_ = GaussPointShapes(
+        **{f.name: vertcat(*(getattr(one, f.name) for one in shown)) for f in fields(GaussPointShapes)}
+    )
+    own = [
+        _gram(one.bend, beam.section_weights(f"EI_{beam.plane}"), one.bend)
+        for one, beam in zip(shown, beams, strict=True)
+    ]
     beam = beams[0]
     length, (beyond, moment), X = beam.lengths, beam.beyond, part.place(beam.x)
-    bent, dm, tau = _gram(all_.turn, length, all_.bend), part.s * beam.weighed("rhoA"), beam.shares
+    bent, dm, tau = _gram(all_.turn, length, all_.bend), part.s * beam.section_weights("rhoA"), beam.shares
     psi = vertcat(*(sin(k * np.pi * tau) if k else tau for k in range(axial.count)), zeros(0, tau.numel()))
     one = SX.ones(1, tau.numel())
     thick = {} if shear is None else _thick(part, all_, shown, beams)
@@ -191,9 +205,9 @@ def stepped_shapes(
     }
 
 
-def _thick(part: Part, at: Shown, shown: list[Shown], beams: list[_Beam]) -> dict[str, SX]:
+def _thick(part: Part, at: GaussPointShapes, shown: list[GaussPointShapes], beams: list[_Beam]) -> dict[str, SX]:
     """Integrals of shear and of turning sections, by name."""
-    turning = [beam.weighed(f"turning_{beam.plane}") * part.s for beam in beams]
+    turning = [beam.section_weights(f"turning_{beam.plane}") * part.s for beam in beams]
     one = SX.ones(1, turning[0].numel())
     pairs = {"turn_turn": ("turn", "turn"), "turn_slid": ("turn", "slid"), "slid_slid": ("slid", "slid")}
     parts = [
@@ -201,7 +215,7 @@ def _thick(part: Part, at: Shown, shown: list[Shown], beams: list[_Beam]) -> dic
         for plane, weight in zip(shown, turning, strict=True)
     ]
     return {
-        "shear_stiffness": _gram(at.sheared, beams[0].weighed("shear"), at.sheared),
+        "shear_stiffness": _gram(at.sheared, beams[0].section_weights("shear"), at.sheared),
         "turned": vertcat(*(_gram(x["turn"], x["weight"], one) for x in parts)),
         "turned_slid": vertcat(*(_gram(x["slid"], x["weight"], one) for x in parts)),
         **{name: diagcat(*(_gram(x[a], x["weight"], x[b]) for x in parts)) for name, (a, b) in pairs.items()},
@@ -220,13 +234,13 @@ class _Beam:
 
     @cached_property
     def pieces(self) -> list[Piece]:
-        """Its pieces from free end to mouth."""
+        """Pieces of the beam from free end to mouth, by bending."""
         return self._pieces(self.basis)
 
     @cached_property
-    def sheared(self) -> list[Piece]:
-        """The same of its shear."""
-        return [] if self.shear is None else sheared(self._pieces(self.shear), self._over("shear"))
+    def shear_pieces(self) -> list[Piece]:
+        """Pieces of the beam by shear; none of a slender piston."""
+        return [] if self.shear is None else shear_pieces(self._pieces(self.shear), self._over("shear"))
 
     def _pieces(self, basis: LateralBasis) -> list[Piece]:
         ends, gives = self.part.ends, self._over(f"EI_{self.plane}")
@@ -247,22 +261,22 @@ class _Beam:
         return [start + (end - start) * t for t in self.nodes.t.tolist()]
 
     def _over(self, name: str) -> list[list[SX]]:
-        """That at the free end over them."""
+        """Value at the free end over the values at the points, section by section."""
         first = getattr(self.part.p, f"section_{name}")[0]
         return [[first / value for value in row] for row in self._on(name)]
 
     @cached_property
     def x(self) -> SX:
-        """The points."""
+        """Gauss points of all pieces."""
         return horzcat(*(x for piece in self.pieces for x in piece.x))
 
     @cached_property
     def lengths(self) -> SX:
-        """Lengths that they stand for."""
+        """Lengths that the points stand for: weights of integrals."""
         return horzcat(*((b - a) * w for a, b in pairwise(self.part.ends) for w in self.nodes.w.tolist()))
 
-    def weighed(self, name: str) -> SX:
-        """What the sections have there, times these lengths."""
+    def section_weights(self, name: str) -> SX:
+        """Values of the sections at the points, times the points' lengths."""
         mass = self.part.there if name == "rhoA" else 1.0
         return mass * self.lengths * horzcat(*(value for row in self._on(name) for value in row))
 
@@ -273,7 +287,7 @@ class _Beam:
         for piece, rhoA in zip(self.pieces, self._on("rhoA"), strict=True):
             long = piece.end - piece.start
             by = [m * self.part.place(x) for m, x in zip(rhoA, piece.x, strict=True)]
-            here, there = long * self.nodes.whole(rhoA), long * self.nodes.whole(by)
+            here, there = long * self.nodes.integral(rhoA), long * self.nodes.integral(by)
             masses += [mass + here - long * y for y in self.nodes.rest(rhoA)]
             moments += [moment + there - long * y for y in self.nodes.rest(by)]
             mass, moment = mass + here, moment + there
@@ -286,44 +300,48 @@ class _Beam:
         for j, (piece, rhoA) in enumerate(zip(self.pieces, self._on("rhoA"), strict=True)):
             long, first = piece.end - piece.start, self.part.law("rhoA", j, piece.start, piece.start)
             soft = [first / m for m in rhoA] if self.part.tapers else [SX(1.0) for _ in rhoA]  # EA is as rho A
-            along = [self.nodes.whole(soft) - y for y in self.nodes.rest(soft)]
+            along = [self.nodes.integral(soft) - y for y in self.nodes.rest(soft)]
             found += [p.section_place[j] - p.section_shrink[j] * self.part.s * long * y for y in along]
         return horzcat(*found)
 
     @cached_property
-    def shown(self) -> Shown:
-        """Its shapes at the points: of bending, then of shear."""
-        bent, E = self._moved(self.pieces), held(self.pieces[0].value_start)
+    def shapes_at_points(self) -> GaussPointShapes:
+        """Shapes at the points: of bending, then of shear."""
+        bent, E = self._moved(self.pieces), tip_elimination(self.pieces[0].value_start)
         bent = _held(bent, bent, E, self.part.rate(E))
-        if not self.sheared:
+        if not self.shear_pieces:
             return bent
-        tip, own = self.sheared[0].value_start, self._moved(self.sheared)
+        tip, own = self.shear_pieces[0].value_start, self._moved(self.shear_pieces)
         own = replace(own, turn=0 * own.slope, sheared=own.slope, slid_turn=0 * own.slope)
         own = _held(own, bent, tip, self.part.rate(tip))
-        return Shown(**{f.name: vertcat(getattr(bent, f.name), getattr(own, f.name)) for f in fields(Shown)})
+        return GaussPointShapes(
+            **{f.name: vertcat(getattr(bent, f.name), getattr(own, f.name)) for f in fields(GaussPointShapes)}
+        )
 
     @property
     def tip_slope(self) -> SX:
         """Slopes of bending at the free end."""
         value, slope = self.pieces[0].value_start, self.pieces[0].slope_start
-        slope -= held(value) @ slope[0]
-        return vertcat(slope, -self.sheared[0].value_start @ slope[0]) if self.sheared else slope
+        slope -= tip_elimination(value) @ slope[0]
+        return vertcat(slope, -self.shear_pieces[0].value_start @ slope[0]) if self.shear_pieces else slope
 
-    def _moved(self, parts: list[Piece]) -> Shown:
+    def _moved(self, parts: list[Piece]) -> GaussPointShapes:
         """Shapes at the points, which slide along the piston: it moves by rate x + x over them."""
         value, slope, bend = (horzcat(*(y for one in parts for y in getattr(one, f"{x}s"))) for x in _SHOWN)
         past = self.part.rate(self.x) + self.x
         slid = self.part.rate(value) - _each(past, slope) * slope
         slid_turn = self.part.rate(slope) - _each(past, bend) * bend
-        return Shown(value=value, slope=slope, turn=slope, bend=bend, sheared=0 * slope, slid=slid, slid_turn=slid_turn)
+        return GaussPointShapes(
+            value=value, slope=slope, turn=slope, bend=bend, sheared=0 * slope, slid=slid, slid_turn=slid_turn
+        )
 
 
-def _held(at: Shown, first: Shown, E: SX, rate: SX) -> Shown:
+def _held(at: GaussPointShapes, first: GaussPointShapes, E: SX, rate: SX) -> GaussPointShapes:
     """Shapes less E times the first of bending, so that this alone moves the tip, Eq. (T1.22)."""
-    kept = {f.name: getattr(at, f.name) - E @ getattr(first, f.name)[0, :] for f in fields(Shown)}
+    kept = {f.name: getattr(at, f.name) - E @ getattr(first, f.name)[0, :] for f in fields(GaussPointShapes)}
     kept["slid"] -= rate @ first.value[0, :]
     kept["slid_turn"] -= rate @ first.turn[0, :]
-    return Shown(**kept)
+    return GaussPointShapes(**kept)
 
 
 def _gram(left: SX, weight: SX, right: SX) -> SX:

@@ -59,8 +59,8 @@ class StepNodes:
     beyond: Array
     legendre: Array
 
-    def whole(self, f: Sequence[Any]) -> Any:
-        """Integral from 0 to 1."""
+    def integral(self, f: Sequence[Any]) -> Any:
+        """Integral from 0 to 1 of values at the nodes."""
         return sum(w * y for w, y in zip(self.w.tolist(), f, strict=True))
 
     def rest(self, f: Sequence[Any]) -> list[Any]:
@@ -75,7 +75,7 @@ class StepNodes:
             for t, row in zip([*self.t.tolist(), 0.0], twice, strict=True)
         ]
 
-    def between(self, f: Sequence[Any], t: Any) -> Any:
+    def interpolate(self, f: Sequence[Any], t: Any) -> Any:
         """Value at any place of the polynomial through the points."""
         terms = [1.0 + 0 * t, 2 * t - 1]
         for n in range(2, self.t.size):
@@ -86,7 +86,7 @@ class StepNodes:
 
 @cache
 def nodes(count: int) -> StepNodes:
-    """Some Gauss points."""
+    """Nodes and weights of ``count`` Gauss points on [0, 1]."""
     t, w = gauss_unit(count)
     legendre = np.array([(2 * n + 1) * Legendre.basis(n)(2 * t - 1) * w for n in range(count)])
     rest = np.array([Legendre.basis(n).integ(lbnd=1.0)(2 * t - 1) / -2 for n in range(count)])
@@ -103,7 +103,7 @@ def law(coefficients: Sequence[Any], offset: Any) -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class Piece:
-    """Between two cuts, from `start` to `end`: columns at its nodes, at the places `x`, and those at its start.
+    """Piece between two cuts, from `start` to `end`: columns at its nodes, at the places `x`, and at its start.
 
     `values`: deflections; `slopes`, `bends`: their derivatives by x; `shears`: dM/dx; of what shears `bends` are none.
     """
@@ -123,7 +123,7 @@ class Piece:
         """Deflection of every shape at numbers x, or a derivative by x."""
         long = self.end - self.start
         t = (x - self.start) / np.where(long > 0, long, 1.0)
-        return self.nodes.between((self.values, self.slopes, self.bends)[derivative], t)
+        return self.nodes.interpolate((self.values, self.slopes, self.bends)[derivative], t)
 
 
 def pieces(
@@ -155,7 +155,7 @@ def pieces(
     return pieces_of(at, places, shears, bends)
 
 
-def sheared(bent: Sequence[Piece], softs: Sequence[Sequence[Any]]) -> list[Piece]:
+def shear_pieces(bent: Sequence[Piece], softs: Sequence[Sequence[Any]]) -> list[Piece]:
     """Shear of what has the forces of pieces from tip to mouth, Eq. (T1.23).
 
     ``softs``: 1 / (kappa G A) of each at its nodes, relative to any value.
@@ -169,7 +169,7 @@ def _places(at: StepNodes, start: Any, end: Any) -> list[Any]:
     return [start + (end - start) * t for t in at.t.tolist()]
 
 
-def on_pieces(at: StepNodes, places: Sequence[Any]) -> list[list[Any]]:
+def piece_nodes(at: StepNodes, places: Sequence[Any]) -> list[list[Any]]:
     """Places of the nodes of every piece between ends."""
     return [_places(at, start, end) for start, end in pairwise(places)]
 
@@ -185,9 +185,9 @@ def pieces_of(
         long = end - start
         bend = [0.0 * y for y in shears[j]] if bends is None else bends[j]
         turned = [slope - long * y for y in at.rest(bend)] if slopes is None else slopes[j]
-        slope = slope - long * at.whole(bend)
+        slope = slope - long * at.integral(bend)
         values = [value - long * y for y in at.rest(turned)]
-        value = value - long * at.whole(turned)
+        value = value - long * at.integral(turned)
         one = Piece(
             nodes=at,
             start=start,
@@ -204,6 +204,6 @@ def pieces_of(
     return done[::-1]
 
 
-def held(tip: Any) -> Any:
+def tip_elimination(tip: Any) -> Any:
     """Column E: of v - E v_1 the first is 1 at the tip and all others 0, Eq. (T1.22); from the values at the tip."""
     return (tip - np.eye(tip.shape[0], 1)) / tip[0]

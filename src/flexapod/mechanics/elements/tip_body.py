@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 
 class PlanarTipBody(Physics):
-    """Of the single actuator in its plane: a mass and an inertia with the piston's slope."""
+    """Tip body of the single actuator in its plane: a mass and an inertia with the piston's slope."""
 
     @classmethod
     def energy_along(cls, x: Along) -> Energies:
-        """Of a point mass, and of its turn."""
+        """Energies of a point mass, and kinetic energy of its rotation."""
         body = _mass(x.piston, x.p)
         kinetic = kinetic_energy(x.piston, body) + 0.5 * cls.turning(x.piston, x.p)
         return Energies(kinetic=kinetic, gravity=gravity_energy(x.piston, body, x.p.gravity))
@@ -34,7 +34,7 @@ class PlanarTipBody(Physics):
 
 
 class TipBody(PlanarTipBody):
-    """The same in space, also about the leg."""
+    """Tip body of a leg in space, which also turns about the leg."""
 
     parameters: ClassVar[Named] = (("tip_axial_inertia", 1),)  # kg m^2
 

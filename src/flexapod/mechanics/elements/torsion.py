@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from flexapod.mechanics.elements.element import Along, Named, Physics, Standing
+from flexapod.mechanics.elements.element import Along, LegContext, Named, Physics
 from flexapod.mechanics.elements.frames import Energies
 from flexapod.mechanics.symbolic.vocabulary import sqrt
 
@@ -21,20 +21,20 @@ class Torsion(Physics):
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
-        """Of every leg."""
+        """Build the element of every leg."""
         return cls()
 
     @classmethod
-    def among(cls, robot: Robot, simulation: Simulation) -> bool:
-        """Where the chain of a leg meets the payload's attitude: the layout says so (`solve.shapes`)."""
+    def in_kernel(cls, robot: Robot, simulation: Simulation) -> bool:
+        """Return False: `solve.shapes` adds it where a leg's chain meets the payload's attitude."""
         return False
 
     @classmethod
-    def held(cls, own: Any, leg: Leg, standing: Standing) -> Sequence[str]:
-        """Of a leg that a ball does not twist."""
+    def prescribed(cls, own: Any, leg: Leg, standing: LegContext) -> Sequence[str]:
+        """Twist t of a leg that closes no attitude: a ball does not twist it."""
         return () if standing.attitude else ("t",)
 
-    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
+    def numbers(self, leg: Leg, standing: LegContext) -> dict[str, Any]:
         """Stiffness of a section."""
         return {"GJ": leg.piston.torsional_stiffness}
 

@@ -1,4 +1,4 @@
-"""Elements from outside on trial: errors in their hooks, and numbers that do not fit, are told with class and file."""
+"""Trial of external elements: errors in hooks, and numbers that do not fit, are reported with class and file."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ def source_of(element: type[Physics]) -> Path | None:
     return found if found is not None and found.is_file() else None
 
 
-def refused(kind: type[Physics], hook: str, what: str, **more: Any) -> InputError:
+def hook_error(kind: type[Physics], hook: str, what: str, **more: Any) -> InputError:
     """Error about a hook of a class, with its file."""
     return InputError(what, file=source_of(kind), key=f"{kind.__name__}.{hook}", **more)
 
 
 @contextmanager
-def asking(kind: type[Physics], hook: str) -> Iterator[None]:
+def wrap_hook_errors(kind: type[Physics], hook: str) -> Iterator[None]:
     """Hook of a class that is called within: what it raises becomes an InputError with class and file.
 
     Raises
@@ -48,7 +48,7 @@ def asking(kind: type[Physics], hook: str) -> Iterator[None]:
         said = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
         what = f"fails with {said.splitlines()[0].rstrip('.')}"
         advice = "See `flexapod.Element` and docs/an-element-of-your-own.md"
-        raise refused(kind, hook, what, next_step=advice) from error
+        raise hook_error(kind, hook, what, next_step=advice) from error
 
 
 def refuse_declared(kind: type[Physics]) -> None:
@@ -61,19 +61,19 @@ def refuse_declared(kind: type[Physics]) -> None:
     """
     for hook in ("coordinates", "parameters"):
         named = getattr(kind, hook)
-        with asking(kind, hook):
+        with wrap_hook_errors(kind, hook):
             sizes = {str(name): int(size) for name, size in named}
         if len(sizes) < len(named) or not all(name.isidentifier() and size > 0 for name, size in sizes.items()):
-            raise refused(kind, hook, "are no names with sizes", value=named, allowed='as (("k", 1), ("axis", 3))')
+            raise hook_error(kind, hook, "are no names with sizes", value=named, allowed='as (("k", 1), ("axis", 3))')
     for hook, of in (("absent", kind.parameters), ("follows", kind.coordinates)):
         for name in getattr(kind, hook):
             if name not in dict(of):
                 names = ", ".join(dict(of)) or "none: there are none"
-                raise refused(kind, hook, "is none of the element's own", value=name, allowed=names)
+                raise hook_error(kind, hook, "is none of the element's own", value=name, allowed=names)
 
 
 def refuse_numbers(slot: Slot, given: Mapping[str, Any], known: Mapping[str, int]) -> None:
-    """Refuse numbers of an element from outside that no parameter takes, in size or name, or that are no numbers.
+    """Refuse numbers of an external element that no parameter takes, in size or name, or that are no numbers.
 
     ``known``: all parameters of a leg by name, with their sizes.
 
@@ -87,11 +87,11 @@ def refuse_numbers(slot: Slot, given: Mapping[str, Any], known: Mapping[str, int
         name = called.removeprefix(slot.prefix)
         if called not in known:
             names = ", ".join(name for name, _ in kind.parameters) or "nothing: `parameters` is empty"
-            raise refused(kind, "numbers", "is no parameter of the element", value=name, allowed=names)
-        with asking(kind, "numbers"):
+            raise hook_error(kind, "numbers", "is no parameter of the element", value=name, allowed=names)
+        with wrap_hook_errors(kind, "numbers"):
             numbers = np.asarray(value, dtype=float)
         if numbers.size != known[called]:
             sizes = f"{numbers.size} numbers for {name}, which `parameters` says has {known[called]}"
-            raise refused(kind, "numbers", f"gives {sizes}", value=value)
+            raise hook_error(kind, "numbers", f"gives {sizes}", value=value)
         if not np.isfinite(numbers).all():
-            raise refused(kind, "numbers", f"gives {name} a value that is no number", value=value)
+            raise hook_error(kind, "numbers", f"gives {name} a value that is no number", value=value)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from flexapod.mechanics.elements.element import Named, Physics, SeriesSprings, Standing
+from flexapod.mechanics.elements.element import LegContext, Named, Physics, SeriesSprings
 
 if TYPE_CHECKING:
     from flexapod.model import Leg
@@ -22,14 +22,14 @@ class TurningNut(Physics):
 
     @classmethod
     def of(cls, leg: Leg) -> Self | None:
-        """Of a screw's leg whose piston turns, outside of a loop that would see it."""
+        """Build the element of a leg whose piston turns with a screw's nut, unseen by its loop; None of others."""
         return cls(leg.turning) if leg.turning else None
 
-    def numbers(self, leg: Leg, standing: Standing) -> dict[str, Any]:
-        """Its travel."""
+    def numbers(self, leg: Leg, standing: LegContext) -> dict[str, Any]:
+        """Travel of the nut by the piston's angle [m/rad]."""
         return {"series_turn": self.travel}
 
     @classmethod
     def in_series(cls, s: SeriesSprings, p: SimpleNamespace, q: SimpleNamespace, v: SimpleNamespace) -> SeriesSprings:
-        """The springs end at the nut, which is on its way along the piston."""
+        """Springs that end at the nut, which moves along as the piston turns."""
         return SeriesSprings(s.softer, s.nut - p.series_turn * q.spin, s.rate - p.series_turn * v.spin)

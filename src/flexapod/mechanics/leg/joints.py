@@ -1,10 +1,8 @@
-"""What carries a base joint: a slider on a rail or a crank on a shaft, Eqs. (T13.1)-(T13.3).
+"""Carriage, cylinder and joints of a leg, Eqs. (T3.4)-(T3.5), (T3.12), (T13.1)-(T13.3), (T13.5).
 
-The cylinder: a rigid body that turns about the base joint, Eqs. (T3.12) and (T13.5).
-
-The platform joint: three successive angles about axes fixed in the leg, in the cross, in the platform.
-
-The base joint: a universal joint, and with a spin about the leg's axis a spherical one, Eqs. (T3.4)-(T3.5).
+A carriage is a slider on a rail or a crank on a shaft. The cylinder is a rigid body that turns about the base
+joint, a universal joint or, with a spin about the leg's axis, a spherical one. The platform joint has three
+successive angles about axes fixed in the leg, in the cross, in the platform.
 """
 
 from __future__ import annotations
@@ -22,7 +20,7 @@ if TYPE_CHECKING:
 def carriage(
     kind: str, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace, base: Frame | None = None
 ) -> tuple[Frame, Energies]:
-    """Frame in which the base joint stands, and the energies of what carries it; ``kind``: "", "slider", "crank".
+    """Frame of the base joint, and the energies of what carries it; ``kind``: "", "slider", "crank".
 
     ``base``: frame of a base that moves, at the origin while it is where it is drawn.
     """
@@ -54,7 +52,7 @@ def carriage(
 def _on_moving_base(
     kind: str, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace, base: Frame
 ) -> tuple[Frame, Energies]:
-    """The same on a base that moves, Eq. (T24.4)."""
+    """Frame of the base joint and energies of its carriage on a base that moves, Eq. (T24.4)."""
 
     def home(frame: Frame) -> Frame:
         return frame.turned(matrix33(p.R0), zeros(3))
@@ -73,7 +71,7 @@ def _on_moving_base(
 
 
 def _body(frame: Frame, mass: SX, gravity: SX) -> Energies:
-    """A mass at the origin of a frame."""
+    """Energies of a mass at the origin of a frame."""
     kinetic = 0.5 * mass * dot(frame.velocity, frame.velocity)
     return Energies(kinetic=kinetic, gravity=-mass * dot(gravity, frame.origin))
 

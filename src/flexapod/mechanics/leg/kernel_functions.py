@@ -7,12 +7,12 @@ from collections.abc import Sequence
 
 from flexapod.common.arrays import Array
 from flexapod.mechanics.elements.drive_train import DriveTrain
-from flexapod.mechanics.elements.element import Moving, asked_beside
+from flexapod.mechanics.elements.element import MovingLeg, extra_loop_force
 from flexapod.mechanics.elements.motor_loop import MotorLoop
 from flexapod.mechanics.elements.mount import plate
 from flexapod.mechanics.elements.servo import Servo
 from flexapod.mechanics.elements.slot import Slot
-from flexapod.mechanics.elements.trial import refused
+from flexapod.mechanics.elements.trial import hook_error
 from flexapod.mechanics.leg.layout import LOAD_SIZE, Shapes, leg_parameters, payload_parameters
 from flexapod.mechanics.leg.leg import leg
 from flexapod.mechanics.leg.own_elements import parts_without_number, refuse_unfit
@@ -30,7 +30,7 @@ from flexapod.mechanics.leg.payload import (
 from flexapod.mechanics.symbolic.functions import NamedFunction, inverse_dynamics, mass_matrix
 from flexapod.mechanics.symbolic.vocabulary import (
     SX,
-    Through,
+    ChainRule,
     cross,
     depends_on,
     dot,
@@ -58,15 +58,15 @@ def leg_tangents(shapes: Shapes) -> NamedFunction:
     """dr/dq and dr/dv of a leg in motion (gyroscopic, centrifugal and convective terms included), Eq. (T4.9)."""
     x = _Leg(shapes)
     r = x.balance()
-    return x.named("leg_tangents", x.moving(), [("r_q", jacobian(r, x.q)), ("r_v", jacobian(r, x.v))])
+    return x.make_function("leg_tangents", x.moving(), [("r_q", jacobian(r, x.q)), ("r_v", jacobian(r, x.v))])
 
 
 def leg_pushes(shapes: Shapes) -> NamedFunction:
-    """What parts that push without an energy add to D and K, Eq. (T20.3)."""
+    """Function of the terms that nonpotential forces of parts add to D and K, Eq. (T20.3)."""
     x = _Leg(shapes)
-    D, K = x.beside()
+    D, K = x.nonpotential_slopes()
     D = substitute(D, (x.v,), (zeros(shapes.size),))
-    return x.named("leg_pushes", [("q", x.q), ("p", x.p_vector)], [("D", D), ("K", K)])
+    return x.make_function("leg_pushes", [("q", x.q), ("p", x.p_vector)], [("D", D), ("K", K)])
 
 
 def leg_carried(shapes: Shapes) -> NamedFunction:
@@ -74,17 +74,17 @@ def leg_carried(shapes: Shapes) -> NamedFunction:
     x = _Leg(shapes)
     first = shapes.index("g")
     M = mass_matrix(x.body.lagrangian)[first : first + 6, :]
-    return x.named("leg_carried", [("q", x.q), ("p", x.p_vector)], [("M", M)])
+    return x.make_function("leg_carried", [("q", x.q), ("p", x.p_vector)], [("M", M)])
 
 
 def leg_tip(shapes: Shapes) -> NamedFunction:
     """Derivatives of the place of the tip by the coordinates of a leg, (3, n)."""
     x = _Leg(shapes)
-    return x.named("leg_tip", [("q", x.q), ("p", x.p_vector)], [("J", x.by_q.jacobian(x.body.tip))])
+    return x.make_function("leg_tip", [("q", x.q), ("p", x.p_vector)], [("J", x.by_q.jacobian(x.body.tip))])
 
 
 def parts_of_elements(shapes: Shapes, values: Sequence[Array]) -> dict[Slot, list[str]]:
-    """Parts of each element from outside that are no number for coordinates, rates and parameters of a leg."""
+    """Parts of each external element that are no number for coordinates, rates and parameters of a leg."""
     x = _Leg(shapes)
     variables = x.variables()
     own = (one for one in shapes.elements if one.kind.at)
@@ -96,7 +96,7 @@ def leg_line(shapes: Shapes) -> NamedFunction:
     x = _Leg(shapes)
     line = x.body.tip - x.body.foot
     outputs = [("line", x.by_q.value(line)), ("J", x.by_q.jacobian(line))]
-    return x.named("leg_line", [("q", x.q), ("p", x.p_vector)], outputs)
+    return x.make_function("leg_line", [("q", x.q), ("p", x.p_vector)], outputs)
 
 
 class _Leg:
@@ -114,7 +114,7 @@ class _Leg:
             symbol("load", LOAD_SIZE),
         )
         self.body = leg(shapes, self.p, self.q, self.v, self.qs, self.vs)
-        self.by_q = Through(x=self.q, y=self.body.theta, of_x=self.body.turn)
+        self.by_q = ChainRule(x=self.q, y=self.body.theta, of_x=self.body.turn)
         self.servos = {
             shapes.index(name): Servo(
                 stiffness=getattr(self.p, f"{drive}_stiffness"),
@@ -130,33 +130,33 @@ class _Leg:
 
     def _asked_of(self, drive: str) -> SX | None:
         beside = drive == "rotor" and not self.shapes.holds(MotorLoop)
-        return asked_beside(self.shapes.elements, self.p, self.qs) if beside else None
+        return extra_loop_force(self.shapes.elements, self.p, self.qs) if beside else None
 
     @property
     def elements(self) -> tuple[Slot, ...]:
-        """Those of the kernel."""
+        """Elements of the kernel."""
         return self.shapes.elements
 
-    def as_moving(self) -> Moving:
-        """The leg as elements ask for it."""
+    def as_moving(self) -> MovingLeg:
+        """Leg as hooks of elements read it."""
         rotor = self.servos.get(self.shapes.index("r")) if self.shapes.has("r") else None
         none = zeros(1)
-        return Moving(
+        return MovingLeg(
             p=self.p, q=self.qs, v=self.vs, q_cmd=none if rotor is None else rotor.q_cmd,
             v_cmd=none if rotor is None else rotor.v_cmd, foot=self.body.foot, tip=self.body.tip,
             elements=self.elements, rate=lambda place: jacobian(place, self.q) @ self.v,
         )  # fmt: skip
 
-    def pushed(self) -> SX:
-        """What elements add to the balance without an energy."""
+    def nonpotential_forces(self) -> SX:
+        """Sum of the elements' nonpotential terms in the balance of coordinates."""
         r, x = zeros(self.shapes.size), self.as_moving()
         for element in self.elements:
-            for name, push in element.pushes(x).items():
+            for name, push in element.nonpotential_force(x).items():
                 r[self.shapes.index(name)] += push
         return r
 
-    def damped(self) -> dict[int, SX]:
-        """What damps coordinates without a dissipation, by position; of coordinates of several numbers a column."""
+    def element_damping(self) -> dict[int, SX]:
+        """Damping forces without a dissipation, by position; of coordinates of several numbers a column."""
         found: dict[int, SX] = {}
         for element in self.elements:
             for name, force in self.damping_forces(element).items():
@@ -171,7 +171,7 @@ class _Leg:
             size = dict(self.shapes.layout).get(name)
             if size != SX(force).numel():
                 held = f"one of {size} numbers" if size else "that a leg does not have"
-                raise refused(element.kind, "damping_force", f"is on a coordinate {held}", value=name)
+                raise hook_error(element.kind, "damping_force", f"is on a coordinate {held}", value=name)
         return {name: SX(force) for name, force in found.items()}
 
     def variables(self) -> tuple[tuple[str, SX], ...]:
@@ -179,7 +179,7 @@ class _Leg:
         return ("q", self.q), ("v", self.v), ("p", self.p_vector)
 
     def refuse_unfit(self) -> None:
-        """Refuse elements from outside that have no equations of motion, with class and file."""
+        """Refuse external elements that have no equations of motion, with class and file."""
         variables = self.variables()
         for one in self.elements:
             if one.kind.at:
@@ -190,7 +190,7 @@ class _Leg:
         found = (x for element in self.elements for x in element.inertia(self.p).items())
         return {self.shapes.index(name): pair for name, pair in found}
 
-    def named(self, name: str, inputs: list[tuple[str, SX]], outputs: list[tuple[str, SX]]) -> NamedFunction:
+    def make_function(self, name: str, inputs: list[tuple[str, SX]], outputs: list[tuple[str, SX]]) -> NamedFunction:
         """Function of expressions that are differentiated."""
         here, value = self.body.present
         return NamedFunction(name, inputs, [(key, substitute(y, (here,), (value,))) for key, y in outputs])
@@ -201,16 +201,16 @@ class _Leg:
         return [*state, ("p", self.p_vector), *self.outside()]
 
     def outside(self) -> list[tuple[str, SX]]:
-        """Inputs from outside the leg: the payload's pose, or the load on a tip without payload."""
-        if self.shapes.posed:
+        """External inputs of the leg: the payload's pose, or the load on a tip without payload."""
+        if self.shapes.reads_pose:
             return [("pose", self.pose)]
-        return [("load", self.load)] if self.shapes.loaded else []
+        return [("load", self.load)] if self.shapes.has_tip_load else []
 
-    def closed(self, step: SX) -> tuple[SX, SX]:
-        """What the closure asks to vanish (of a point closure: the tip), and the wrench of ``lam`` on the payload."""
+    def closure_terms(self, step: SX) -> tuple[SX, SX]:
+        """Residual of the closure (of a point closure: the tip), and the wrench of ``lam`` on the payload."""
         if self.shapes.has("gamma1"):
             return pose_closure(self.body, self.qs, self.p, self.lam, self.pose, step)
-        if self.shapes.posed:
+        if self.shapes.reads_pose:
             return ball_closure(self.body, self.qs, self.p, self.lam, self.pose, step)
         return self.body.tip[: self.shapes.rows], zeros(0)
 
@@ -220,44 +220,46 @@ class _Leg:
         Of the drives only the springs are here: forces on driven and held coordinates are added by who knows them.
         """
         r = inverse_dynamics(self.body.lagrangian, self.v_dot)
-        r += self.by_q.gradient(dot(self.closed(zeros(6))[0], self.lam))
-        if self.shapes.loaded:
+        r += self.by_q.gradient(dot(self.closure_terms(zeros(6))[0], self.lam))
+        if self.shapes.has_tip_load:
             r -= self.load_force()
         for i, servo in self.servos.items():
             r[i] -= servo.force
         for i, (mass, damper) in self.own_inertia().items():
             r[i] += mass * self.v_dot[i] + damper * self.v[i]
-        for i, force in self.damped().items():
+        for i, force in self.element_damping().items():
             r[i : i + force.numel()] += force
-        return r + self.pushed()
+        return r + self.nonpotential_forces()
 
-    def beside(self) -> tuple[SX, SX]:
+    def nonpotential_slopes(self) -> tuple[SX, SX]:
         """Derivatives by rates and by places, at rest, of what has no energy."""
-        rows, still = self.pushed(), zeros(self.shapes.size)
+        rows, still = self.nonpotential_forces(), zeros(self.shapes.size)
         for i, servo in self.servos.items():
             if servo.more is not None:
                 rows[i] -= servo.more
         return jacobian(rows, self.v), substitute(jacobian(rows, self.q), (self.v,), (still,))
 
     def looping(self) -> NamedFunction:
-        """What loops about other places, and lags, add to D and K, not symmetric; what is measured, and its slope."""
-        (D, K), place = self.beside(), MotorLoop.place(self.as_moving())
+        """Function of the unsymmetric terms of loops and lags in D and K, the measured place and its slope."""
+        (D, K), place = self.nonpotential_slopes(), MotorLoop.place(self.as_moving())
         outputs = [("D", D), ("K", K), ("place", place), ("slope", jacobian(place, self.q).T)]
-        return self.named("leg_loop", [("q", self.q), ("p", self.p_vector)], outputs)
+        return self.make_function("leg_loop", [("q", self.q), ("p", self.p_vector)], outputs)
 
     def residual(self) -> NamedFunction:
         """Balance, closure, powers (lost, given, of a load) and forces of the drives' springs."""
         loss = dot(self.v, gradient(self.body.lagrangian.dissipation, self.v))
-        lost = sum((servo.lost for servo in self.servos.values()), loss)
-        for i, force in self.damped().items():
+        lost = sum((servo.damper_power for servo in self.servos.values()), loss)
+        for i, force in self.element_damping().items():
             lost += dot(force, self.v[i : i + force.numel()])
-        given = sum((servo.given for servo in self.servos.values()), zeros(1))
-        given += sum((x for element in self.elements if (x := element.given(self.as_moving())) is not None), zeros(1))
-        powers = [lost, given, *([dot(self.load_force(), self.v)] if self.shapes.loaded else [])]
-        gap, wrench = (self.by_q.value(x) for x in self.closed(zeros(6)))
-        meeting = [("gap", gap), ("wrench", wrench)] if self.shapes.posed else [("tip", self.body.tip)]
+        given = sum((servo.input_power for servo in self.servos.values()), zeros(1))
+        given += sum(
+            (x for element in self.elements if (x := element.input_power(self.as_moving())) is not None), zeros(1)
+        )
+        powers = [lost, given, *([dot(self.load_force(), self.v)] if self.shapes.has_tip_load else [])]
+        gap, wrench = (self.by_q.value(x) for x in self.closure_terms(zeros(6)))
+        meeting = [("gap", gap), ("wrench", wrench)] if self.shapes.reads_pose else [("tip", self.body.tip)]
         outputs = [("r", self.balance()), *meeting, ("powers", vertcat(*powers)), ("drive", self.forces())]
-        return self.named("leg_residual", self.moving(), outputs)
+        return self.make_function("leg_residual", self.moving(), outputs)
 
     def load_force(self) -> SX:
         """Generalised force of the load on the tip."""
@@ -268,7 +270,7 @@ class _Leg:
         forces = [servo.force for servo in self.servos.values()]
         if self.shapes.holds(MotorLoop):
             x = self.as_moving()
-            forces[-1] += MotorLoop.force(x, MotorLoop.asks(x))
+            forces[-1] += MotorLoop.force(x, MotorLoop.requested_force(x))
         if self.shapes.has("r"):
             series = self.body.elements[Slot(DriveTrain)]
             forces[0] -= gradient(series.strain, self.qs.l) + gradient(series.dissipation, self.vs.l)
@@ -277,11 +279,11 @@ class _Leg:
     def matrices(self) -> NamedFunction:
         """M, D and K at rest under ``lam``, geometric stiffness included, and the closure's derivatives, Eq. (T4.8)."""
         e, step = self.body.lagrangian, symbol("step", 6)
-        gap, wrench = self.closed(step)
+        gap, wrench = self.closure_terms(step)
         here = _undisplaced(gap, step)
         D = self.damping()
         K = self.by_q.hessian(e.potential + dot(here, self.lam))
-        if self.shapes.loaded:
+        if self.shapes.has_tip_load:
             K -= jacobian(self.load_force(), e.q)
         for i, servo in self.servos.items():
             D[i, i] += servo.damping
@@ -290,13 +292,13 @@ class _Leg:
         for i, (mass, damper) in self.own_inertia().items():
             M[i, i], D[i, i] = M[i, i] + mass, D[i, i] + damper
         outputs = [("M", M), ("D", D), ("K", K), ("J", self.by_q.jacobian(here))]
-        if self.shapes.posed:  # (T13.14)-(T13.15)
+        if self.shapes.reads_pose:  # (T13.14)-(T13.15)
             outputs += [
                 (name, self.by_q.value(_undisplaced(-jacobian(y, step), step)))
                 for name, y in (("P", gap), ("H", wrench))
             ]
             outputs.append(("X", -self.by_q.jacobian(_undisplaced(wrench, step)).T))
-        return self.named(
+        return self.make_function(
             "leg_matrices", [("q", self.q), ("lam", self.lam), ("p", self.p_vector), *self.outside()], outputs
         )
 
@@ -304,27 +306,27 @@ class _Leg:
         """Slope of what dissipations and damping forces do by the rates, at rest."""
         e = self.body.lagrangian
         D = hessian(e.dissipation, e.v)
-        for i, force in self.damped().items():
+        for i, force in self.element_damping().items():
             D[i : i + force.numel(), :] += jacobian(force, e.v)
         return substitute(D, (e.v,), (zeros(self.shapes.size),)) if depends_on(D, e.v) else D
 
     def closing(self) -> NamedFunction:
-        """What the closure asks to vanish, and its rate (of a point closure: those of the tip)."""
+        """Function of the closure's residual and its rate (of a point closure: those of the tip)."""
         step, u = symbol("step", 6), symbol("u", 6)
-        gap = self.closed(step)[0]
+        gap = self.closure_terms(step)[0]
         here = _undisplaced(gap, step)
         rate = self.by_q.jacobian(here) @ self.v
         inputs = [("q", self.q), ("v", self.v), ("p", self.p_vector), *self.outside()]
-        if self.shapes.posed:
+        if self.shapes.reads_pose:
             rate += self.by_q.value(_undisplaced(jacobian(gap, step), step)) @ u
             inputs.append(("u", u))
-        return self.named("leg_closing", inputs, [("gap", self.by_q.value(here)), ("rate", rate)])
+        return self.make_function("leg_closing", inputs, [("gap", self.by_q.value(here)), ("rate", rate)])
 
     def energies(self) -> NamedFunction:
         """Kinetic energy, potential of gravity and strain energy, the drives' springs included."""
         body = self.body
         strain = sum((servo.energy for servo in self.servos.values()), body.strain)
-        return self.named(
+        return self.make_function(
             "leg_energies",
             [("q", self.q), ("v", self.v), ("command", self.command), ("p", self.p_vector)],
             [("energies", vertcat(body.lagrangian.kinetic, body.gravity, strain)), ("drive", self.forces())],
@@ -356,7 +358,7 @@ def _undisplaced(expression: SX, step: SX) -> SX:
 
 
 def payload_functions(shapes: Shapes) -> list[NamedFunction]:
-    """Residual, matrices at rest and energies of the payload, with the plate below it where it stands on a mount."""
+    """Residual, matrices at rest and energies of the payload, with the plate below it if it is on a mount."""
     p_vector, p = symbols(payload_parameters(shapes), "p")
     pose, step = symbol("pose", 7), symbol("step", 6)
     u, u_dot, net, wrench = (symbol(name, 6) for name in ("u", "u_dot", "net", "wrench"))

@@ -1,4 +1,4 @@
-"""What kernels read and in which order: coordinates and parameters of a leg and of the payload. No casadi here."""
+"""Order of coordinates and parameters of a leg and of the payload, as kernels read them. No casadi here."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -72,7 +72,7 @@ def columns(layout: tuple[tuple[str, int], ...], name: str) -> slice:
 
 @dataclass(frozen=True, kw_only=True)
 class Shapes:
-    """What one kernel is made of: the beam, the joints and the elements of a leg.
+    """Composition of one kernel: the beam, the joints and the elements of a leg.
 
     Attributes
     ----------
@@ -111,18 +111,18 @@ class Shapes:
         return self.chain.rows
 
     @property
-    def shared(self) -> tuple[int, ...]:
+    def shared_coordinates(self) -> tuple[int, ...]:
         """Positions of the coordinates that all legs share: those of the plates on mounts, the payload's first."""
         return tuple(self.index(name) + k for name in ("m", "f") if self.has(name) for k in range(6))
 
     @property
     def plate(self) -> int:
-        """How many of them the payload's functions know."""
+        """Number of shared coordinates that the payload's functions read."""
         return 6 * self.has("m")
 
     @property
-    def posed(self) -> bool:
-        """Whether the functions of a leg read the payload's pose; otherwise those of a ball on the payload do."""
+    def reads_pose(self) -> bool:
+        """True where the functions of a leg read the payload's pose; else those of a ball on the payload do."""
         return self.has("gamma1") or self.has("m")
 
     @cached_property
@@ -142,25 +142,25 @@ class Shapes:
         return COMMAND_SIZE * len(self.drives)
 
     @property
-    def loaded(self) -> bool:
-        """Whether a load acts on the tip, in space without a payload."""
-        return self.chain.loaded
+    def has_tip_load(self) -> bool:
+        """True where a load acts on the tip, in space without a payload."""
+        return self.chain.has_tip_load
 
     @property
-    def rubbing(self) -> tuple[tuple[Slot, int], ...]:
+    def friction_elements(self) -> tuple[tuple[Slot, int], ...]:
         """Elements with friction, and in how many directions they slide: a bristle for each."""
-        found = ((slot, len(slot.kind.ways(self.has))) for slot in self.elements)
+        found = ((slot, len(slot.kind.friction_directions(self.has))) for slot in self.elements)
         return tuple((slot, count) for slot, count in found if count)
 
     @property
-    def sliding(self) -> tuple[tuple[str, int], ...]:
-        """The same by the name of their parameters."""
-        return tuple((slot.parameters[0][0], count) for slot, count in self.rubbing)
+    def friction_parameters(self) -> tuple[tuple[str, int], ...]:
+        """Number of sliding directions of each element with friction, by the name of its parameters."""
+        return tuple((slot.parameters[0][0], count) for slot, count in self.friction_elements)
 
     @cached_property
     def bristles(self) -> int:
         """Number of bristles of the leg."""
-        return sum(count for _, count in self.sliding)
+        return sum(count for _, count in self.friction_parameters)
 
     @property
     def l_index(self) -> int:
@@ -168,11 +168,11 @@ class Shapes:
         return self.index("l")
 
     def holds(self, kind: type[Physics]) -> bool:
-        """Whether an element of a kind is among them."""
+        """Test whether the leg has an element of a kind."""
         return any(element.kind is kind for element in self.elements)
 
     def has(self, name: str) -> bool:
-        """Whether the leg has a coordinate of this name."""
+        """Test whether the leg has a coordinate of this name."""
         return name in self._first
 
     def index(self, name: str) -> int:

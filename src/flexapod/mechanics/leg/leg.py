@@ -11,7 +11,7 @@ from flexapod.mechanics.elements.distribution import Line, PistonMotion
 from flexapod.mechanics.elements.element import Along
 from flexapod.mechanics.elements.flexible_cylinder import flexible_cylinder, head, hole, mouth
 from flexapod.mechanics.elements.flexure import Flexures, base_angles, platform_angles, springs
-from flexapod.mechanics.elements.flexure import displaced as three
+from flexapod.mechanics.elements.flexure import joint_displacement as three
 from flexapod.mechanics.elements.frames import Energies, small_rotation
 from flexapod.mechanics.elements.guide import (
     bushings,
@@ -30,14 +30,14 @@ from flexapod.mechanics.elements.stepped_piston import (
     SteppedShapes,
     stepped_piston,
     stepped_shapes,
-    straight,
+    straight_shapes,
 )
 from flexapod.mechanics.leg.joints import carriage, cylinder, universal
 from flexapod.mechanics.leg.layout import Shapes
 from flexapod.mechanics.leg.leg_beam import LegBeam
 from flexapod.mechanics.shapes import LateralBasis
 from flexapod.mechanics.symbolic.functions import Lagrangian
-from flexapod.mechanics.symbolic.vocabulary import SX, expanded, symbol, vertcat, zeros
+from flexapod.mechanics.symbolic.vocabulary import SX, symbol, taylor_series, vertcat, zeros
 
 INNER = ("cuts", "rhoA", "load", "place", "shrink")
 
@@ -68,7 +68,7 @@ def leg(shapes: Shapes, p: SimpleNamespace, q: SX, v: SX, qs: SimpleNamespace, v
     """Energies and tip of one leg from its coordinates; ``qs`` and ``vs`` are the named pieces of q and v."""
     base = None
     for one in shapes.elements:
-        base = one.carries(base, p, qs, vs)
+        base = one.base_frame(base, p, qs, vs)
     ground, carried = carriage(shapes.chain.carriage, p, qs, vs, base)
     foot, flexes = ground.origin, shapes.holds(Flexures)  # a flexure gives way in axes that do not turn with the leg
     if flexes:
@@ -127,12 +127,12 @@ def _of_sections(
     of_plane = np.concatenate([beam.b.tip, np.zeros(beam.shear * beam.b.count)])
     tip = np.tile(of_plane, len(beam.planes))
     if not tip.size:
-        none = straight(beam.axial.count)
+        none = straight_shapes(beam.axial.count)
         return none, None if beam.guide is None else none, (zeros(0), zeros(0))
     part = Part(p=p, s=s, l=l, end=l, tapers=beam.tapers)
-    integrals = stepped_shapes(part, beam.b, beam.sheared, beam.axial, beam.planes)
+    integrals = stepped_shapes(part, beam.b, beam.shear_basis, beam.axial, beam.planes)
     if beam.guide is None:
-        near, present = expanded(list(integrals.values()), l)
+        near, present = taylor_series(list(integrals.values()), l)
         return SteppedShapes(count=tip.size, tip=tip, **dict(zip(integrals, near, strict=True))), None, present
     own = {f"section_{name}": getattr(p, f"inner_{name}") for name in (*INNER, *(f"EI_{k}" for k in beam.planes))}
     within = Part(
@@ -140,7 +140,7 @@ def _of_sections(
         tapers=beam.tapers, there=p.inner_there,
     )  # fmt: skip
     inside = stepped_shapes(within, beam.guide, None, beam.axial, beam.planes)
-    near, present = expanded([*integrals.values(), *inside.values()], l)
+    near, present = taylor_series([*integrals.values(), *inside.values()], l)
     outer, inner = near[: len(integrals)], near[len(integrals) :]
     head = np.tile(beam.guide.tip, len(beam.planes))
     return (
@@ -151,7 +151,7 @@ def _of_sections(
 
 
 def _line(beam: LegBeam, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleNamespace) -> Line:
-    """Line of the piston through the mouth: that of a cylinder that bends, and what the gland gives way to it."""
+    """Line of the piston through the mouth: that of a bending cylinder, and the gland's displacement from it."""
     place, slope, place_rate, slope_rate = (zeros(2) for _ in range(4))
     if beam.cylinder is not None:
         (place, slope), (place_rate, slope_rate) = (mouth(beam.cylinder, p, x) for x in (qs, vs))
@@ -164,7 +164,7 @@ def _line(beam: LegBeam, p: SimpleNamespace, qs: SimpleNamespace, vs: SimpleName
 def _inside(
     beam: LegBeam, f: PistonMotion, p: SimpleNamespace, inner: LateralBasis | SteppedShapes | None
 ) -> tuple[Energies, SX, SX, tuple[SX, SX]]:
-    """What is inside of a mouth that gives way: energies, shift and turn of the tip beyond those of the piston.
+    """Parts inside of a compliant mouth: energies, shift and turn of the tip beyond those of the piston.
 
     Returned are also the symbols for what depends on the stroke alone, and what to put for them.
     """

@@ -1,6 +1,6 @@
-"""What the beam is made of that a leg is: shapes of piston and cylinder, and what kernels read of their sections.
+"""Beam of a leg: shapes of piston and cylinder, and parameters of sections, bushings and bending cylinders.
 
-Parameters of pistons in bushings and of cylinders that bend, in the order in which kernels read them.
+Parameters are in the order in which kernels read them.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ POWERS = 5  # of a section that tapers: its EI is of fourth order
 
 @dataclass(frozen=True, kw_only=True)
 class LegBeam:
-    """The bases of a leg, and what its piston is made of; of legs that differ what any of them has.
+    """Bases of a leg, and the make of its piston; of legs that differ what any of them has.
 
     Attributes
     ----------
@@ -66,16 +66,16 @@ class LegBeam:
 
     @property
     def bases(self) -> list[AxialBasis | LateralBasis]:
-        """All of them."""
+        """All bases of the leg: of bending, stretch, inner part and cylinder."""
         return [x for x in (self.a, self.b, self.axial, self.guide, self.cylinder) if x is not None]
 
     @property
     def made_of(self) -> tuple[int, ...]:
-        """What they are made of, beside the bases."""
+        """Number of sections, and whether they are strips, taper and shear."""
         return self.sections, self.strips, self.tapers, self.shear
 
     @property
-    def sheared(self) -> LateralBasis | None:
+    def shear_basis(self) -> LateralBasis | None:
         """Shapes by whose forces pistons shear: those without a moment at the tip, whose forces are independent."""
         return lateral_basis("tip-load", self.b.count) if self.shear else None
 
@@ -86,7 +86,7 @@ class LegBeam:
 
     @property
     def amplitudes(self) -> tuple[tuple[str, int], ...]:
-        """Of stretch and of bending in both planes."""
+        """Amplitudes of stretch and of bending in both planes, with their numbers."""
         return ("c", self.axial.count), ("a", self.a.count), ("b", self.b.count)
 
     @property
@@ -100,7 +100,7 @@ class LegBeam:
 
     @property
     def section_parameters(self) -> tuple[tuple[str, int], ...]:
-        """Of pistons of several sections, or that shear, from the tip to the driven end; those of the whole are there.
+        """Parameters of pistons of several sections, or that shear, from the tip to the driven end.
 
         Of what tapers along with a section the powers of the distance from its end at the tip follow each other, up to
         the fourth, else the value alone.
@@ -133,7 +133,7 @@ class LegBeam:
 
     @property
     def _inner_parameters(self) -> tuple[tuple[str, int], ...]:
-        """The same of guided pistons for the part inwards of the mouth, sections from its end there."""
+        """Parameters of guided pistons for the part inwards of the mouth, sections from its end there."""
         if self.guide is None:
             return ()
         sections, powers = self.sections, POWERS if self.tapers else 1
@@ -150,6 +150,6 @@ class LegBeam:
 
     @property
     def guide_parameters(self) -> tuple[tuple[str, int], ...]:
-        """Of pistons in bushings, and of cylinders that bend."""
+        """Parameters of pistons in bushings, and of cylinders that bend."""
         guide, cylinder = self.guide is not None, self.cylinder is not None
         return GUIDE_PARAMETERS * guide + CYLINDER_PARAMETERS * cylinder

@@ -85,12 +85,12 @@ class LegChain:
         return ("alpha", "beta", "l", "gamma1", "gamma2", last)[: self.rows]
 
     @property
-    def loaded(self) -> bool:
-        """Whether a load acts on the tip, in space without a payload."""
+    def has_tip_load(self) -> bool:
+        """True where a load acts on the tip, in space without a payload."""
         return self.closure == "none" and not self.planar
 
     @property
     def parameters(self) -> tuple[tuple[str, int], ...]:
-        """What its base has beside that of every leg."""
+        """Parameters of the leg's base beside those of every leg: of carriage, crank and spin."""
         crank = CRANK_PARAMETERS if self.carriage == "crank" else ()
         return CARRIAGE_PARAMETERS * bool(self.carriage) + crank + SPIN_PARAMETERS * self.spin

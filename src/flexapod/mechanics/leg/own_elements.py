@@ -1,4 +1,4 @@
-"""Energies and forces of elements from outside, looked at before code is made of them: what has no equations of motion.
+"""Check of external elements' energies and forces before code is made of them: which have no equations of motion.
 
 What fails here would fail later in casadi or in the compiler, without a name.
 """
@@ -12,7 +12,7 @@ import numpy as np
 from flexapod.common.arrays import Array
 from flexapod.mechanics.elements.frames import Energies
 from flexapod.mechanics.elements.slot import Slot
-from flexapod.mechanics.elements.trial import refused
+from flexapod.mechanics.elements.trial import hook_error
 from flexapod.mechanics.symbolic.c_functions import without_text
 from flexapod.mechanics.symbolic.functions import Interpreted, NamedFunction
 from flexapod.mechanics.symbolic.vocabulary import (
@@ -44,16 +44,18 @@ def refuse_unfit(slot: Slot, e: Energies, forces: Mapping[str, SX], variables: V
     kind, (q, v, _) = slot.kind, (symbols for _, symbols in variables)
     for part in PARTS:
         if SX(getattr(e, part)).numel() != 1:
-            raise refused(kind, "energy", f"gives a {part} energy that is not one number", value=getattr(e, part))
+            raise hook_error(kind, "energy", f"gives a {part} energy that is not one number", value=getattr(e, part))
     for part in ("gravity", "strain"):
         if depends_on(SX(getattr(e, part)), v):
             words = f"gives a {part} energy that depends on rates"
-            raise refused(kind, "energy", words, allowed="coordinates; what brakes is a dissipation or a damping_force")
+            raise hook_error(
+                kind, "energy", words, allowed="coordinates; what brakes is a dissipation or a damping_force"
+            )
     if depends_on(hessian(SX(e.kinetic), v), v):
-        raise refused(kind, "energy", "gives a kinetic energy that is not quadratic in the rates")
+        raise hook_error(kind, "energy", "gives a kinetic energy that is not quadratic in the rates")
     made = NamedFunction("element", variables, list(_with_derivatives(e, forces, q, v)))
     if missing := without_text(made.build()):
-        raise refused(
+        raise hook_error(
             kind, "energy", f"uses what has no C text: {', '.join(missing)}",
             allowed="functions of flexapod.mechanics.symbolic.vocabulary and .elementary",
         )  # fmt: skip
@@ -90,12 +92,12 @@ def _refuse_at_rest(slot: Slot, e: Energies, forces: Mapping[str, SX], variables
             rest, begun, moving = trial(*(rng.uniform(0.2, 1.0, x.numel()) for _, x in variables))
             rest, begun, moving = (float(np.abs(np.nan_to_num(x)).max()) for x in (rest, begun, moving))
             if rest > LEFT * moving:
-                raise refused(
+                raise hook_error(
                     slot.kind, hook, "has a force at rest, too", value=rest, allowed="what is 0 while all rates are 0",
                     next_step="Say a force at rest by a strain energy",
                 )  # fmt: skip
             if begun > JUMPS * moving:
-                raise refused(
+                raise hook_error(
                     slot.kind, hook, "jumps where a rate changes its sign", value=begun,
                     allowed="what grows from 0 with the rates", next_step="Say friction by `ways` and `slides`",
                 )  # fmt: skip

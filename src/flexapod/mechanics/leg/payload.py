@@ -1,6 +1,6 @@
-"""The payload as a rigid body on SE(3) and its joints, Eqs. (T4.3)-(T4.6).
+"""Payload as a rigid body on SE(3) with its joints, and closures of legs, Eqs. (T4.3)-(T4.6), (T13.12)-(T13.16).
 
-How a leg meets the payload where it knows its pose; loads on a tip without payload, Eqs. (T13.12)-(T13.16).
+Closures are of a point, or of the pose where a leg knows the payload's; a tip without payload has loads.
 """
 
 from __future__ import annotations
@@ -8,12 +8,12 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 from flexapod.mechanics.elements.frames import Frame, from_quaternion, hat, small_rotation
-from flexapod.mechanics.elements.mount import displaced, turn
+from flexapod.mechanics.elements.mount import displaced_frame, roll_pitch_yaw
 from flexapod.mechanics.leg.joints import gimbal
 from flexapod.mechanics.leg.leg import LegEquations
 from flexapod.mechanics.symbolic.vocabulary import (
     SX,
-    Through,
+    ChainRule,
     cross,
     dot,
     jacobian,
@@ -64,11 +64,11 @@ def plate_frame(p: SimpleNamespace, R: SX, u: SX, moved: SX, rate: SX) -> Frame:
     ``moved``, ``rate`` (6): displacement along platform axes and roll, pitch, yaw of the plate against the payload.
     """
     payload = Frame(origin=zeros(3), axes=R, velocity=R.T @ u[:3], omega=u[3:])
-    return displaced(payload, p.plate_at, moved, rate).moved(p.plate_at, zeros(3))
+    return displaced_frame(payload, p.plate_at, moved, rate).moved(p.plate_at, zeros(3))
 
 
 def plate_balance(p: SimpleNamespace, R: SX, u: SX, u_dot: SX, m: tuple[SX, ...]) -> SX:
-    """What the plate adds to the balances of the payload (6) and of the mount's coordinates (6), Eq. (T24.6).
+    """Terms of the plate in the balances of the payload (6) and of the mount's coordinates (6), Eq. (T24.6).
 
     ``m``: the mount's coordinates, rates and accelerations. Momentum and spin projected on the motions that the
     coordinates allow.
@@ -103,7 +103,7 @@ def pose_closure(
     in_platform, axes, tip = matrix33(p.platform_frame), body.tip_axes @ matrix33(p.leg_frame), body.tip
     joint = _joint(qs, p)
     if hasattr(qs, "m"):
-        in_platform = turn(qs.m[3:]) @ in_platform
+        in_platform = roll_pitch_yaw(qs.m[3:]) @ in_platform
     if hasattr(p, "platform_flexure"):
         tip += axes @ vertcat(qs.e1, qs.e2, qs.e3)
     Q = (R @ in_platform).T @ gimbal(axes, qs)
@@ -117,7 +117,7 @@ def pose_closure(
 def ball_closure(
     body: LegEquations, qs: SimpleNamespace, p: SimpleNamespace, lam: SX, pose: SX, step: SX
 ) -> tuple[SX, SX]:
-    """Of a ball on a plate below the payload, on a mount: gap (3) and wrench (6) as of `pose_closure`."""
+    """Closure of a ball on a plate below the payload, on a mount: gap (3) and wrench (6) as of `pose_closure`."""
     x, R = displaced_pose(pose, step)
     joint = _joint(qs, p)
     return body.tip - joint_point(joint, x, R), joint_wrench(joint, R, lam)
@@ -127,7 +127,7 @@ def _joint(qs: SimpleNamespace, p: SimpleNamespace) -> SX:
     """Place of the joint from the payload's CoM in platform axes, moved by the mount of its plate, Eq. (T24.5)."""
     if not hasattr(qs, "m"):
         return p.joint
-    return p.platform_mount_at + qs.m[:3] + turn(qs.m[3:]) @ (p.joint - p.platform_mount_at)
+    return p.platform_mount_at + qs.m[:3] + roll_pitch_yaw(qs.m[3:]) @ (p.joint - p.platform_mount_at)
 
 
 def _skew(Q: SX) -> SX:
@@ -135,7 +135,7 @@ def _skew(Q: SX) -> SX:
     return vertcat(Q[2, 1] - Q[1, 2], Q[0, 2] - Q[2, 0], Q[1, 0] - Q[0, 1])
 
 
-def load_force(body: LegEquations, by_q: Through, load: SX) -> SX:
+def load_force(body: LegEquations, by_q: ChainRule, load: SX) -> SX:
     """Generalised force of a load on the tip, Eq. (T13.16).
 
     ``load`` (12): force and moment in the world's axes, then force and moment that follow the tip's axes.

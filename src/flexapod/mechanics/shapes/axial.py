@@ -38,7 +38,7 @@ class AxialBasis:
 
     @property
     def from_inside(self) -> Array:
-        """The same as `series` in eta, the distance from the driven end: sin(n pi eta) is odd about either end."""
+        """Coefficients as `series`, in eta from the driven end: sin(n pi eta) is odd about either end."""
         return np.concatenate(
             [np.eye(1, MOMENTS, 1), *(-((-1.0) ** n) * self.series[n : n + 1] for n in range(1, self.count))]
         )[: self.count]

@@ -1,11 +1,9 @@
-"""Eigenfunctions of uniform Euler-Bernoulli beams clamped at zeta = 0, without cancellation.
+"""Eigenfunctions of uniform beams clamped at zeta = 0, without cancellation, and the symmetric eigenproblem.
 
-Every function is written as ``A cos(e z) + B sin(e z) + C exp(-e z) + D exp(-e (1 - z))``, Eq. (T1.2): all four terms
-stay below one in magnitude, so that high modes keep their digits where cosh - sinh would lose them.
-
-The symmetric eigenproblem K x = lambda M x.
-
-By NumPy: importing SciPy's `linalg` takes longer than all a simulation asks of it.
+Every function of the Euler-Bernoulli beams is written as
+``A cos(e z) + B sin(e z) + C exp(-e z) + D exp(-e (1 - z))``, Eq. (T1.2): all four terms stay below one in
+magnitude, so that high modes keep their digits where cosh - sinh would lose them. The eigenproblem
+K x = lambda M x is solved by NumPy: importing SciPy's `linalg` takes longer than all a simulation asks of it.
 """
 
 from __future__ import annotations
@@ -104,7 +102,7 @@ def clamped_free(count: int) -> list[BeamFunction]:
     return clamped_tip_mass(count, 0.0, 0.0)
 
 
-def finite(*matrices: Array) -> None:
+def check_finite(*matrices: Array) -> None:
     """Refuse numbers that are not finite: LAPACK answers them with noise, or not at all.
 
     Raises
@@ -135,7 +133,7 @@ def eigh(K: Array, M: Array) -> tuple[Array, Array]:
     numpy.linalg.LinAlgError
         M is not positive definite.
     """
-    finite(K, M)
+    check_finite(K, M)
     root = np.linalg.cholesky(M)
     half = np.linalg.solve(root, K)
     A = np.linalg.solve(root, half.T)

@@ -1,8 +1,8 @@
-"""Hermite cubics: beam elements of equal length on the free length, clamped at the mouth, Eq. (T1.15).
+"""Polynomial and piecewise shapes on the free length, clamped at the mouth, Eqs. (T1.13)-(T1.15).
 
-Piecewise-linear shapes: rigid segments with hinge springs, Eqs. (T1.13)-(T1.14).
-
-Polynomial shapes of the ``tip-load`` basis: the static shape under a tip force and modes with the tip held.
+Hermite cubics are beam elements of equal length, Eq. (T1.15); piecewise-linear shapes are rigid segments with
+hinge springs, Eqs. (T1.13)-(T1.14). Polynomials of the ``tip-load`` basis are the static shape under a tip
+force and modes with the tip held.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
-"""The named lateral bases; each is one line, all pass the same contract test.
+"""Named lateral bases, and load-dependent shapes of the ``tip-load`` basis, Eq. (T1.16).
 
-Load-dependent shapes of the ``tip-load`` basis where a body turns at the tip or the beam turns, Eq. (T1.16).
+Each basis is one line; all pass the same contract test. Shapes depend on the load where a body turns at the tip
+or the beam turns.
 """
 
 from __future__ import annotations

@@ -79,7 +79,7 @@ class _Rows:
         raise ValueError(f"operation {operation} of casadi has no row here")
 
     def of(self, value: int) -> list[int]:
-        """What a row reads."""
+        """Values that a row reads."""
         if value in self.sums:
             return [x for term in self.sums[value] for x in term]
         return list(self.others[value][1:])

@@ -59,7 +59,7 @@ def c_source(function: NamedFunction) -> str:
     )
 
 
-def of_one_unit(function: NamedFunction) -> str:
+def unit_source(function: NamedFunction) -> str:
     """C text for callers in the same unit: ``NAME_double`` where it is called for one body, else ``NAME_lanes``."""
     lines = _kinds(function, function.build(), ("double",) if function.alone else ("lanes",))
     lines = [f"{x}\n  (void)in; (void)out; (void)w;" if x.startswith(PART) else x for x in lines]

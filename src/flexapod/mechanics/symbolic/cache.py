@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from flexapod.common.errors import ComputationError, InputError
-from flexapod.common.files import UNFINISHED, read_bytes, whole
+from flexapod.common.files import UNFINISHED, atomic_file, read_bytes
 
 #: A kernel takes 0.1 to 1 MB: room for some hundred sets of shapes, and little on any disk.
 DEFAULT_MEGABYTES = 256.0
@@ -35,7 +35,7 @@ _log = logging.getLogger("flexapod")
 
 @dataclass(frozen=True, kw_only=True)
 class CacheContent:
-    """What the cache holds: ``kernels`` libraries, ``size`` bytes of at most ``limit``; why it is not used, if so."""
+    """Content of the cache: ``kernels`` libraries, ``size`` bytes of at most ``limit``; why it is not used, if so."""
 
     folder: Path
     kernels: int
@@ -107,7 +107,7 @@ def _distrust(path: Path) -> str | None:
 
 @functools.cache
 def warn_unused(folder: Path, reason: str) -> None:
-    """Say, once in a process, that compiled kernels are not kept in `folder`."""
+    """Warn, once in a process, that compiled kernels are not stored in `folder`."""
     _log.warning(
         "Compiled kernels are not kept in %s: %s. Each run compiles its own, some seconds each; "
         "set FLEXAPOD_CACHE to a folder of yours that only you can write to.",
@@ -136,7 +136,7 @@ def store_library(folder: Path, key: str, built: Path) -> Path | None:
     """
     try:
         target = folder / _name(key, built)
-        with whole(target, mode=0o700) as unfinished:
+        with atomic_file(target, mode=0o700) as unfinished:
             unfinished.write_bytes(read_bytes(built, LARGEST))
         _make_room(folder, target)
     except OSError as error:
@@ -158,13 +158,13 @@ def known_text(folder: Path, source: str) -> str | None:
 
 
 def remember_text(folder: Path, source: str, text: str) -> None:
-    """Keep for `known_text`; a folder that cannot be written to is not told again."""
-    with suppress(OSError), whole(folder / f"{source}.text", mode=0o600) as unfinished:
+    """Store a text for `known_text`; a folder that cannot be written to is not reported again."""
+    with suppress(OSError), atomic_file(folder / f"{source}.text", mode=0o600) as unfinished:
         unfinished.write_bytes(text.encode("ascii"))
 
 
 def kept_text(source: str, make: Callable[[], str]) -> str:
-    """The ASCII text that `make` gives, kept here under what it is made from, where there is a folder to be trusted."""
+    """Return the ASCII text of `make`, stored under a digest of its source where there is a trusted folder."""
     folder = cache_directory()
     path = folder / f"{hashlib.sha256(source.encode()).hexdigest()[:32]}.kept"
     with suppress(OSError, ValueError):
@@ -174,7 +174,7 @@ def kept_text(source: str, make: Callable[[], str]) -> str:
     text = make()
     with suppress(OSError):
         if not _distrust(folder):
-            with whole(path, mode=0o600) as unfinished:
+            with atomic_file(path, mode=0o600) as unfinished:
                 unfinished.write_bytes(f"{_digest(text)}\n{text}".encode("ascii"))
     return text
 
@@ -209,7 +209,7 @@ def _make_room(folder: Path, newest: Path) -> None:
 
 
 def cache_content() -> CacheContent:
-    """What the cache holds now; nothing is made or changed."""
+    """Read the present content of the cache; nothing is made or changed."""
     folder = cache_directory()
     kernels = _kernels(folder)
     return CacheContent(
@@ -267,7 +267,7 @@ def _matching(folder: Path, pattern: re.Pattern[str]) -> list[Path]:
 
 
 def _stat(path: Path) -> os.stat_result | None:
-    """None if another process has removed it meanwhile."""
+    """Status of a file; None if another process has removed it meanwhile."""
     with suppress(OSError):
         return path.stat()
     return None

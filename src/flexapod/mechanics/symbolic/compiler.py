@@ -23,8 +23,8 @@ import numpy as np
 
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError
-from flexapod.common.files import scratch
-from flexapod.common.processes import calls
+from flexapod.common.files import temporary_folder
+from flexapod.common.processes import run_programs
 from flexapod.mechanics.symbolic.cache import (
     intact_libraries,
     known_text,
@@ -91,7 +91,7 @@ def _say_passed_over(chosen: str, found: str) -> None:
 
 
 def address(array: Array) -> int:
-    """Where an array begins; by its buffer, which takes a tenth of the time of `ndarray.ctypes`, where that can be."""
+    """Address of an array; by its buffer where possible, in a tenth of the time of `ndarray.ctypes`."""
     return ctypes.addressof(_BUFFER.from_buffer(array.data)) if array.flags.carray else array.ctypes.data
 
 
@@ -168,7 +168,7 @@ def compiled_library(
     if cache and (text := known_text(cache, source)):
         if found := _first(intact_libraries(cache, _name([text], FLAGS, command))):
             return found
-    with _announced(), scratch() as folder:
+    with _announced(), temporary_folder() as folder:
         units = _generated(functions(), callers)
         text = _hash(units)
         found = _library(_name([text], FLAGS, command), units, FLAGS, command, cache, folder)
@@ -183,7 +183,7 @@ def written_library(sources: Sequence[Path], command: list[str]) -> ctypes.CDLL:
     cache, name = open_cache(), _name([unit], LOOPS, command)
     if cache and (found := _first(intact_libraries(cache, name))):
         return found[0]
-    with _announced(), scratch() as folder:
+    with _announced(), temporary_folder() as folder:
         return _library(name, [unit], LOOPS, command, cache, folder)[0]
 
 
@@ -198,7 +198,7 @@ def shared_object(texts: Mapping[str, str], sources: Sequence[str], flags: Seque
     command = compiler()
     if command is None:
         raise ComputationError("there is no C compiler", next_step="Install gcc or clang, or `pip install ziglang`.")
-    with _announced(), scratch() as folder:
+    with _announced(), temporary_folder() as folder:
         for name, text in texts.items():
             (folder / name).write_text(text)
         program = os.path.abspath(shutil.which(command[0]) or command[0])
@@ -258,7 +258,7 @@ def _library(
 
 @contextmanager
 def _announced() -> Iterator[None]:
-    """What takes longer than a moment is told."""
+    """Log a message if the block takes longer than a moment."""
     words = "Compiling the equations of motion: once for each number of shapes, some seconds"
     timer = threading.Timer(SILENT, _log.info, [words])
     timer.daemon = True
@@ -290,7 +290,7 @@ def _hash(parts: Sequence[object]) -> str:
 
 @cache
 def _processor() -> str:
-    """What this processor is and can do: a kernel made for it may not run on another that shares the cache."""
+    """Name and features of this processor: a kernel made for it may not run on another that shares the cache."""
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:
@@ -348,9 +348,9 @@ def _build(units: list[str], flags: Sequence[str], command: list[str], folder: P
 
 
 def _fault(lines: list[list[str]], command: list[str], folder: Path) -> str:
-    """What went wrong in these calls, side by side, of a compiler; empty if nothing did."""
+    """Error of the first of these compiler calls, run side by side, that fails; empty if none does."""
     own = {"TMPDIR": str(folder)}  # of its files, too, nothing stays if it is killed
-    for said, status in calls(lines, folder, LONGEST, own):
+    for said, status in run_programs(lines, folder, LONGEST, own):
         if status is None:
             raise _failed(command, f"it did not end within {LONGEST:g} s and was stopped")
         if status:

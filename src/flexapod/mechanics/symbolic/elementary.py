@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexapod.common.lazy_imports import lazy
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.mechanics.symbolic.vocabulary import cos, exp, sin, sqrt
 
 if TYPE_CHECKING:
     import casadi
 else:
-    casadi = lazy("casadi")
+    casadi = LazyModule("casadi")
 
 __all__ = [
     "acos",

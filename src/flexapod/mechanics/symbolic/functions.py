@@ -1,6 +1,6 @@
-"""Named functions of dense arrays: the only thing that leaves the symbolic layer.
+"""Named functions of dense arrays, and Lagrange's equations by differentiation, Eqs. (T3.1)-(T3.3).
 
-Lagrange's equations by differentiation, Eqs. (T3.1)-(T3.3).
+Named functions are the only thing that leaves the symbolic layer.
 """
 
 from __future__ import annotations

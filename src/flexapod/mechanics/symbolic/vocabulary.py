@@ -1,4 +1,4 @@
-"""The few words in which the equations are written; casadi loads with the first of them: tables do without it."""
+"""Vocabulary in which the equations are written; casadi loads with the first of these: tables do without it."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.common.lazy_imports import lazy
+from flexapod.common.lazy_imports import LazyModule
 
 if TYPE_CHECKING:
     import casadi
     from casadi import SX
 else:
-    casadi = lazy("casadi")
+    casadi = LazyModule("casadi")
 
 
 def __getattr__(name: str) -> Any:
@@ -61,12 +61,12 @@ def trace(matrix: SX) -> SX:
 
 
 def vertcat(*parts: SX | float) -> SX:
-    """One below the other."""
+    """Matrices one below the other."""
     return casadi.vertcat(*parts)
 
 
 def horzcat(*parts: SX | float) -> SX:
-    """One beside the other."""
+    """Matrices one beside the other."""
     return casadi.horzcat(*parts)
 
 
@@ -91,7 +91,7 @@ def jacobian(expression: SX, x: SX) -> SX:
 
 
 def jtimes(expression: SX, x: SX, way: SX) -> SX:
-    """Derivative along a way."""
+    """Directional derivative."""
     return casadi.jtimes(expression, x, way)
 
 
@@ -121,7 +121,7 @@ def substitute(expression: SX, old: Sequence[SX], new: Sequence[SX]) -> SX:
 
 
 def depends_on(expression: SX, x: SX) -> bool:
-    """Whether any symbol of a column is in an expression."""
+    """Test whether any symbol of a column is in an expression."""
     return bool(x.numel()) and casadi.depends_on(expression, x)
 
 
@@ -136,7 +136,7 @@ def hessian(expression: SX, x: SX) -> SX:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Through:
+class ChainRule:
     """Derivatives by x of expressions that are written in x and in a few symbols y that stand for functions of x."""
 
     x: SX
@@ -190,7 +190,7 @@ def bilinear(x: SX, matrix: np.ndarray | SX, y: SX) -> SX:
     return dot(x, mtimes(casadi.sparsify(casadi.SX(matrix)), y))
 
 
-def expanded(expressions: Sequence[SX], x: SX) -> tuple[list[SX], tuple[SX, SX]]:
+def taylor_series(expressions: Sequence[SX], x: SX) -> tuple[list[SX], tuple[SX, SX]]:
     """Expressions of a symbol as their Taylor series of second order about its value; what stands for that value.
 
     To be differentiated twice at most, by anything: what is in the expressions is differentiated here, by x alone.

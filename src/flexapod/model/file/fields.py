@@ -32,12 +32,12 @@ def read_fields(text: str, path: str | Path | None, files: NamedFiles | None = N
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError:
         return []
-    notes, _ = listened(data, files or (Path(path).parent if path else Path()))
+    notes, _ = read_notes(data, files or (Path(path).parent if path else Path()))
     return list(notes.fields.values())
 
 
-def listened(data: Mapping[str, Any], files: Path | NamedFiles) -> tuple[Notes, InputError | None]:
-    """What is asked of a study's tables, and why they are refused, if they are."""
+def read_notes(data: Mapping[str, Any], files: Path | NamedFiles) -> tuple[Notes, InputError | None]:
+    """Notes on what is asked of a study's tables, and why they are refused, if they are."""
     notes = Notes()
     try:
         read_study(Section(data, "", None, files, notes), "-")

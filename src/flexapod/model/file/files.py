@@ -10,12 +10,12 @@ from os import PathLike
 from pathlib import Path
 from typing import Literal, TypeVar, overload
 
-from flexapod.common.errors import InputError, check_kind, closest
+from flexapod.common.errors import InputError, check_kind, suggest_word
 from flexapod.common.files import LARGEST_TEXT, check_name, path_of, read_text
 from flexapod.common.tables.named_files import NamedFiles
 from flexapod.common.tables.section import Section
 from flexapod.common.tables.table import Table
-from flexapod.common.tables.toml import parsed
+from flexapod.common.tables.toml import parse_toml
 from flexapod.model.file.plausible import size_remarks
 from flexapod.model.laws import Load
 from flexapod.model.leg.actuator import Actuator, ActuatorInitial, read_drives
@@ -128,7 +128,7 @@ def loads(text: str, *, path: str | Path | None = None) -> Study | ActuatorStudy
 
 
 def loads_among(text: str, path: str | Path | None, files: NamedFiles | None = None) -> Study | ActuatorStudy:
-    """As `loads`; `files`: those that the study may name, in place of all that its path leads to."""
+    """Read a study as `loads`; `files`: those that it may name, in place of all that its path leads to."""
     return read_study(_tables(text, path, files), text)
 
 
@@ -147,7 +147,7 @@ def _tables(text: str, path: str | Path | None, files: NamedFiles | None = None)
     file = None if path is None else str(path_of(path, "path"))
     check_name(file or "")
     beside = Path(path).parent if path else Path()
-    top = Section(parsed(text, file or "study text"), "", file, beside if files is None else files)
+    top = Section(parse_toml(text, file or "study text"), "", file, beside if files is None else files)
     if ("robot" in top) == ("actuator" in top):
         found = "both [robot] and [actuator]" if "robot" in top else "neither [robot] nor [actuator]"
         raise InputError(f"has {found}", file=file or "study text", allowed="one of the two")
@@ -195,7 +195,7 @@ def preset_text(name: str) -> str:
             key="preset",
             value=name if isinstance(name, str) else type(name).__name__,
             allowed=", ".join(PRESETS),
-            next_step=closest(name, PRESETS) if isinstance(name, str) else None,
+            next_step=suggest_word(name, PRESETS) if isinstance(name, str) else None,
         )
     return files("flexapod.model").joinpath("presets", f"{name}.toml").read_text(encoding="utf-8")
 
@@ -250,9 +250,9 @@ def _lookup(data: object, path: str) -> str:
 
 
 def _study(top: Section, text: str) -> Study:
-    top.only("robot", "payload", "leg", *_AS_BUILT, *_COMMON, "disturbance", "control")
+    top.check_keys("robot", "payload", "leg", *_AS_BUILT, *_COMMON, "disturbance", "control")
     fixed = platform_fixed(top)
-    top.need("robot", *(() if fixed else ("payload",)), "leg", *(() if fixed else ("motion",)))
+    top.require_keys("robot", *(() if fixed else ("payload",)), "leg", *(() if fixed else ("motion",)))
     settings = top.section("simulation")
     simulation = read_simulation(settings, basis="tip-load", bases=("tip-load", "clamped-free"))
     robot = read_robot(top)
@@ -269,7 +269,7 @@ def _study(top: Section, text: str) -> Study:
         path=top.file,
         notes=(*unused_settings(settings, simulation), *_unused_axial_modes(top, simulation)),
     )
-    return study.keep(top.written)
+    return study.attach_source(top.source_table)
 
 
 def _motion(section: Section) -> Motion:
@@ -289,7 +289,7 @@ def _unused_axial_modes(top: Section, simulation: Simulation) -> tuple[str, ...]
 
 
 def _actuator_study(top: Section, text: str) -> ActuatorStudy:
-    top.only("actuator", *_COMMON)
+    top.check_keys("actuator", *_COMMON)
     settings = top.section("simulation")
     bases = ("clamped-free", "tip-load", "tip-mass")
     simulation = read_simulation(settings, basis="clamped-free", bases=bases)
@@ -305,4 +305,4 @@ def _actuator_study(top: Section, text: str) -> ActuatorStudy:
         path=top.file,
         notes=unused_settings(settings, simulation),
     )
-    return study.keep(top.written)
+    return study.attach_source(top.source_table)

@@ -1,4 +1,4 @@
-"""What a study file may hold as a JSON schema: an editor completes its keys, shows their words, and marks wrong ones.
+"""JSON schema of what a study file may hold: an editor completes its keys, shows their words, and marks wrong ones.
 
 It is made of what the readers ask of all examples of the reference, so a text that it accepts may still be refused:
 what belongs together, and units of another kind, only reading tells.
@@ -17,7 +17,7 @@ from typing import Any
 from flexapod.common.tables.columns import Column
 from flexapod.common.tables.reference import plain_path, reference
 from flexapod.common.units import DIMENSIONS
-from flexapod.model.file.fields import NotedField, Notes, listened
+from flexapod.model.file.fields import NotedField, Notes, read_notes
 from flexapod.model.file.page import study_data, words_of
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
@@ -51,7 +51,7 @@ def json_schema() -> str:
         for file, text in reference().files.items():
             (Path(name) / file).write_text(text, encoding="utf-8")
         for entry in reference().entries:
-            _take(top, listened(study_data(entry), Path(name))[0])
+            _take(top, read_notes(study_data(entry), Path(name))[0])
     found = {"$schema": DRAFT, "title": "A study of flexapod", **_schema(top)}
     return json.dumps(found, indent=1, ensure_ascii=False) + "\n"
 
@@ -77,7 +77,7 @@ def _take(top: _Node, notes: Notes) -> None:
 
 
 def _forms(asked: NotedField) -> Iterator[dict[str, Any]]:
-    """What may stand where a value is read."""
+    """Forms that may stand where a value is read."""
     if asked.kind == "number":
         units = {DIMENSIONS[dimension].unit for dimension in asked.dimensions} - {""}
         yield _NUMBER | _bounds(asked.bounds.words) | ({"$comment": ", ".join(sorted(units))} if units else {})
@@ -91,7 +91,7 @@ def _forms(asked: NotedField) -> Iterator[dict[str, Any]]:
 
 
 def _others(column: Column) -> Iterator[dict[str, Any]]:
-    """What its class takes as well: a list for all legs, a number or a text in place of a table."""
+    """Forms that its class takes as well: a list for all legs, a number or a text in place of a table."""
     if column.kind == "vector":
         yield _array(_NUMBER)
     if (column.kind == "table" and column.dimensions) or column.short == "number":

@@ -1,4 +1,4 @@
-"""What stands at a key path of a study file, and putting a value there; short forms are spelled out on the way."""
+"""Values at key paths of a study file, read and put there; short forms are spelled out on the way."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from flexapod.common.errors import InputError
-from flexapod.common.tables.key_paths import Step, copied, key_text, similar_key
+from flexapod.common.tables.key_paths import Step, copy_data, key_text, similar_key
 from flexapod.common.units import to_si
 from flexapod.model.leg.circle import Circle
 from flexapod.model.leg.material import MATERIALS
@@ -23,7 +23,7 @@ _ENDS = ("base", "platform")
 
 
 def overlap(one: tuple[Step, ...], other: tuple[Step, ...]) -> bool:
-    """Whether one key holds the other, or one replaces the other: joints their circle, E and density the material's."""
+    """Tell whether one key holds or replaces the other: joints replace their circle, E and density the material."""
     for a, b in zip(_of_leg(one), _of_leg(other), strict=False):
         if {a, b} in _SHORT:
             return True
@@ -58,7 +58,7 @@ def _put(holder: Any, steps: tuple[Step, ...], at: int, value: object) -> None:
         if not isinstance(holder, list) or not 1 <= step <= len(holder):
             raise _no_item(steps, at, holder)
         if last:
-            holder[step - 1] = copied(value)
+            holder[step - 1] = copy_data(value)
         else:
             _put(holder[step - 1], steps, at + 1, value)
         return
@@ -70,7 +70,7 @@ def _put(holder: Any, steps: tuple[Step, ...], at: int, value: object) -> None:
         raise InputError("is not a table", key=key_text(steps[:at]), value=holder)
     _spell_out(holder, steps, at)
     if last:
-        holder[step] = copied(value)
+        holder[step] = copy_data(value)
     else:
         _put(holder.setdefault(step, {}), steps, at + 1, value)
 
@@ -113,7 +113,7 @@ def _place(circle: Any, end: str, plane: str | None) -> None:
 
 
 def leg_count(data: Mapping[str, Any]) -> int:
-    """How many legs the tables of a study file name: "6-UPS" six, "3-UPS+UP" four."""
+    """Number of legs that the tables of a study file name: "6-UPS" six, "3-UPS+UP" four."""
     groups = re.findall(r"(?:^|\+)\s*(\d*)", str(data.get("robot", {}).get("type", "6-UPS")))
     return sum(int(number or 1) for number in groups)
 
@@ -131,12 +131,12 @@ def _each_leg(data: Mapping[str, Any]) -> Any:
     found = []
     for leg, count in zip(legs, counts, strict=True):
         plain = {name: value for name, value in leg.items() if name != "count"} if isinstance(leg, dict) else leg
-        found += [copied(plain) for _ in range(count if isinstance(count, int) else 1)]
+        found += [copy_data(plain) for _ in range(count if isinstance(count, int) else 1)]
     return found
 
 
 def value_at(data: dict[str, Any], steps: tuple[Step, ...]) -> object:
-    """What stands at a path, short forms spelled out in `data`.
+    """Value at a path, short forms spelled out in `data`.
 
     Raises
     ------

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 
 from flexapod.common.tables.columns import Column
-from flexapod.common.tables.csv_tables import POSE, WRENCH, forces, header
+from flexapod.common.tables.csv_tables import POSE, WRENCH, force_columns, header
 from flexapod.common.tables.reference import Entry, plain_path, reference
 from flexapod.common.units import COMMON_UNITS, DIMENSIONS
-from flexapod.model.file.fields import NotedField, Notes, listened
+from flexapod.model.file.fields import NotedField, Notes, read_notes
 from flexapod.model.leg.material import MATERIALS
 from flexapod.model.study.disturbance import FLOOR, FORCE_NOISE, WRENCH_NOISE
 from flexapod.model.study.mount import BASE_ACCELERATION
@@ -32,8 +32,8 @@ _TABLES = {
     ),
     "`robot.base_motion`": (BASE_ACCELERATION, "one at least besides the time; others are 0"),
     '`robot.base_motion` with `of = "displacement"`': (POSE, "one at least besides the time; others are 0"),
-    '`leg.drive` with `law = "csv"`': (forces(6), "all columns, one for each leg"),
-    '`leg.drive` of a screw with `law = "csv"`': (forces(6, "torque"), "all columns, one for each leg"),
+    '`leg.drive` with `law = "csv"`': (force_columns(6), "all columns, one for each leg"),
+    '`leg.drive` of a screw with `law = "csv"`': (force_columns(6, "torque"), "all columns, one for each leg"),
     "`heat.file`": (
         {"piston": "temperature", "cylinder 3": "temperature"},
         "one at least besides the time: base, platform, piston, cylinder, screw, or one of the last three of a leg",
@@ -60,7 +60,7 @@ class PageRow:
 
 
 @dataclass(frozen=True)
-class Listed:
+class ListedEntry:
     """An entry with its rows; `besides`: its keys that an entry of the same table before it has listed already."""
 
     entry: Entry
@@ -69,7 +69,7 @@ class Listed:
 
     @property
     def further(self) -> str:
-        """Its keys that are listed above, in words; nothing where there are none or it has no others."""
+        """Words for its keys that are listed above; nothing where there are none or it has no others."""
         return (
             f"Further keys, as above: {', '.join(f'`{key}`' for key in self.besides)}."
             if self.besides and self.rows
@@ -93,11 +93,11 @@ def study_data(entry: Entry) -> dict[str, Any]:
 
 
 def _whole(table: dict[str, Any]) -> bool:
-    """Whether an example of a table stands for itself: another geometry, a leg of other bodies, another beam."""
+    """Tell whether an example of a table stands for itself: another geometry, a leg of other bodies, another beam."""
     return ("base" in table and "type" in table) or "strut" in table or "length" in table
 
 
-def listed(table: str | None = None) -> list[Listed]:
+def list_entries(table: str | None = None) -> list[ListedEntry]:
     """All entries with their rows, or those of a table and of tables in it.
 
     Raises
@@ -115,14 +115,14 @@ def listed(table: str | None = None) -> list[Listed]:
             rows = list(_rows(entry, Path(name)))
             before = seen.setdefault((entry.study, entry.table), set())
             new = tuple(row for row in rows if row not in before)
-            found.append(Listed(entry, new, tuple(row.key for row in rows if row in before)))
+            found.append(ListedEntry(entry, new, tuple(row.key for row in rows if row in before)))
             before.update(rows)
     return found
 
 
 def _rows(entry: Entry, folder: Path) -> Iterator[PageRow]:
     data = study_data(entry)
-    notes, error = listened(data, folder)
+    notes, error = read_notes(data, folder)
     if error is not None:
         raise ValueError(f"the example of {entry.table} {entry.title!r} in keys.toml is refused: {error}")
     fields = {f.name: f for f in notes.fields.values() if plain_path(f.table) == entry.table}
@@ -141,7 +141,7 @@ def _rows(entry: Entry, folder: Path) -> Iterator[PageRow]:
 
 
 def words_of(notes: Notes, table: str) -> dict[str, str]:
-    """What the keys of a table are, in words: of the classes that it fills, and of keys that are no fields."""
+    """Words for the keys of a table: of the classes that it fills, and of keys that are no fields."""
     columns = _columns(notes, table)
     return {name: column.why for name, column in columns.items() if column.why} | dict(reference().words.get(table, {}))
 
@@ -165,7 +165,7 @@ def _default(entry: Entry, name: str, data: dict[str, Any], folder: Path, notes:
     key = f"{entry.table}.{name}"
     error = None
     if name in entry.data:
-        less, error = listened(_without(data, entry.table.split("."), name), folder)
+        less, error = read_notes(_without(data, entry.table.split("."), name), folder)
         if error is not None and error.what == "is missing":
             return "required"
         notes = notes if error is not None else less
@@ -193,19 +193,19 @@ def _text(value: object) -> str:
     return "none" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def markdown() -> str:
+def study_file_page() -> str:
     """The page ``docs/study-file.md``."""
     parts = [_INTRODUCTION, *_dimensions()]
     for study, title in (("robot", "## A robot"), ("actuator", "## A single actuator")):
         parts.append(title)
-        for item in listed():
+        for item in list_entries():
             if item.entry.study == study:
                 parts += entry_text(item)
     parts += ["## What the choices mean", *_choices(), "## Tables over time", *_tables()]
     return "\n\n".join(_wrapped(part) for part in parts) + "\n"
 
 
-def entry_text(item: Listed) -> Iterator[str]:
+def entry_text(item: ListedEntry) -> Iterator[str]:
     """Heading, words, rows and example of an entry, in Markdown."""
     entry = item.entry
     path = f"[{entry.table}]" if "." not in entry.table else entry.table

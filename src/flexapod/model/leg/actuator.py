@@ -9,12 +9,12 @@ from pydantic import Field, model_validator
 
 from flexapod.common.errors import InputError
 from flexapod.common.quantities import number, text
-from flexapod.common.tables.base import Key, Quantity, agree
+from flexapod.common.tables.base import Key, Quantity, nearly_same
 from flexapod.common.tables.columns import columns_of
 from flexapod.common.tables.table import Table
 from flexapod.model.laws import ConstantLaw, CsvLaw, LoadLaw, MotionLaw, RateLaw, Wrench, read_wrench
 from flexapod.model.leg.damping import BodyDamping
-from flexapod.model.leg.material import OF_MATERIAL, SPELLS, Material, Rectangle, Tube, read_material, spelled
+from flexapod.model.leg.material import OF_MATERIAL, MadeOf, Material, Rectangle, Tube, read_material
 from flexapod.model.motion import check_times
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ _DRIVEN = {  # what a load drives: the load and its dimension, the dimensions of
 }
 
 
-class Actuator(Table):
+class Actuator(MadeOf):
     """A uniform beam in a hub, moving in a plane, or in `space`: about two axes, then of round section.
 
     `length` [m], whole beam; `rhoA` [kg/m]; `EI` [N m^2]; `free_length` [m], outside the hub at t = 0; `tip_mass` [kg];
@@ -45,7 +45,6 @@ class Actuator(Table):
     from its inner end; `tip_axial_inertia`, `hub_axial_inertia` [kg m^2] about its axis.
     """
 
-    spells: ClassVar[Mapping[str, tuple[str, ...]]] = SPELLS
     _source: ClassVar[str] = "section and material"
 
     length: Annotated[float, Quantity("length", above=0, why="whole beam")]
@@ -79,27 +78,22 @@ class Actuator(Table):
     axial_modes: Annotated[int, Key("axial shapes")] = Field(default=2, strict=True, ge=1, le=6)
 
     @classmethod
-    def from_table(cls, section: Section, among: tuple[str, ...] = ()) -> Self:
-        """A beam by its stiffness, or by its section and material."""
-        section.only(*columns_of(cls), *OF_MATERIAL)
-        if "section" not in section:
-            section.need(*_STIFFNESS)
-            for name in ("section", "material", *OF_MATERIAL):
-                if name in section:
-                    raise section.error("needs a section", name, allowed="rhoA and EI, or section and material")
-            return section.read(cls, also=OF_MATERIAL)
+    def fields_from_section(cls, section: Section) -> Mapping[str, object]:
+        """Section and material; nothing of a beam that is given by its stiffness alone."""
+        made_of = [name for name in ("material", *OF_MATERIAL) if name in section]
         by_hand = [name for name in _STIFFNESS if name in section]
-        if by_hand and (len(by_hand) == 1 or any(name in section for name in ("material", *OF_MATERIAL))):
-            allowed = "rhoA and EI, or section and material"
+        allowed = "rhoA and EI, or section and material"
+        if "section" not in section:
+            section.require_keys(*_STIFFNESS)
+            if made_of:
+                raise section.error("needs a section", made_of[0], allowed=allowed)
+            return {}
+        if by_hand and (len(by_hand) == 1 or made_of):
             raise section.error("is given together with section", by_hand[0], allowed=allowed)
-        return section.read(cls, also=OF_MATERIAL, then=cls._of_section)
-
-    @classmethod
-    def _of_section(cls, section: Section) -> Mapping[str, object]:
         inner = section.child(section.data["section"], "section")
         model = Rectangle if "width" in inner or "height" in inner else Tube
         shape = inner.read(model, also=("width", "height") if model is Tube else ())
-        return {"section": shape, "material": None if "EI" in section else read_material(section)}
+        return {"section": shape, "material": None if by_hand else read_material(section)}
 
     def _shown(self) -> dict[str, str]:
         tip = {"tip": f"{number(self.tip_mass, 4)} kg"} if self.tip_mass else {}
@@ -170,7 +164,7 @@ class Actuator(Table):
 
     @classmethod
     def _following(cls, fields: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Its mass and stiffness, of section and material."""
+        """Mass and stiffness, of section and material."""
         given, material = fields.get("section"), Material._of(fields.get("material"))
         if not isinstance(given, Tube | Rectangle) or material is None:
             return {}
@@ -189,7 +183,7 @@ class Actuator(Table):
         """
         follow = self._following({**self._given, **changes})
         given = {name: changes[name] for name in _STIFFNESS if changes.get(name) is not None}
-        by_hand = not follow or any(not agree(value, follow[name]) for name, value in given.items())
+        by_hand = not follow or any(not nearly_same(value, follow[name]) for name, value in given.items())
         if changes.get("material") is None and by_hand:
             changes["material"] = None
         return super().replace(**changes)
@@ -198,11 +192,6 @@ class Actuator(Table):
     def from_section(cls, *, section: Tube | Rectangle, material: Material, **fields: Any) -> Actuator:
         """An actuator whose rhoA and EI follow from section and material; `fields` are the others."""
         return cls(section=section, material=material, **fields)
-
-    def told(self) -> dict[str, object]:
-        """All that it has to say in a file, with the keys of its material."""
-        fields = {name: value for name, value in super().told().items() if name != "material"}
-        return fields if self.material is None else fields | spelled(self.material)
 
 
 class ActuatorMotion(Table):
@@ -226,7 +215,7 @@ class ActuatorMotion(Table):
 
     @property
     def laws(self) -> tuple[MotionLaw | None, ...]:
-        """Of rotation, extension and elevation."""
+        """Laws of rotation, extension and elevation."""
         return self.rotation, self.extension, self.elevation
 
     @property
@@ -236,7 +225,7 @@ class ActuatorMotion(Table):
 
     @property
     def end_time(self) -> float | None:
-        """When the last law with an end has reached it [s]; None where a constant rate never ends."""
+        """Instant at which the last law with an end has reached it [s]; None where a constant rate never ends."""
         ends = []
         for law in self.laws:
             if law is None or law.law in ("rate", "spin-up"):
@@ -290,18 +279,18 @@ class ActuatorInitial(Table):
 
 
 def read_drives(top: Section) -> tuple[ActuatorMotion, ActuatorLoad]:
-    """What moves the actuator: a prescribed coordinate or a load on it; a coordinate with neither is held."""
+    """Motion and load of the actuator: a prescribed coordinate or a load on it; a coordinate with neither is held."""
     motion, load = top.section("motion"), top.section("load")
     laws: dict[str, Any] = {}
     loads: dict[str, Any] = {}
     if load is not None:
-        load.only(*columns_of(ActuatorLoad))
+        load.check_keys(*columns_of(ActuatorLoad))
         if "wrench" in load:
             loads["wrench"] = read_wrench(load)
         if "follow" in load:
             loads["follow"] = load.flag("follow")
     if motion is not None:
-        motion.only(*_DRIVEN)
+        motion.check_keys(*_DRIVEN)
     for name, (drive, dimension, moved) in _DRIVEN.items():
         if load is not None and drive in load:
             loads[drive], laws[name] = _load_law(load, drive, dimension), None
@@ -309,8 +298,8 @@ def read_drives(top: Section) -> tuple[ActuatorMotion, ActuatorLoad]:
                 raise motion.error(f"is prescribed and driven by load.{drive}", name, allowed="one of the two")
         elif motion is not None and name in motion:
             laws[name] = _law(motion.child(motion.data[name], name), ActuatorMotion, name, moved)
-    moved = ActuatorMotion(**laws) if motion is None else ActuatorMotion(**laws).keep(motion.written)
-    return moved, ActuatorLoad() if load is None else load.build(ActuatorLoad, **loads).keep(load.written)
+    moved = ActuatorMotion(**laws) if motion is None else ActuatorMotion(**laws).attach_source(motion.source_table)
+    return moved, ActuatorLoad() if load is None else load.build(ActuatorLoad, **loads).attach_source(load.source_table)
 
 
 def _load_law(load: Section, name: str, dimension: str) -> object:

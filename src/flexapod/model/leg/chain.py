@@ -23,7 +23,7 @@ _TYPES = '"COUNT-CHAIN", several joined by +: "6-UPS", "3-RPS", "3-UPS+UP", "6-P
 
 @dataclass(frozen=True)
 class Chain:
-    """What the letters of a leg say, from base to platform.
+    """Meaning of the letters of a leg, from base to platform.
 
     `carriage`: what moves its foot, "" if that is fixed; `base`, `platform`: letters of its joints, R revolute,
     U universal, S spherical, F fixed or flexure, `platform` "" where the piston is part of the platform; `stroke`: P, C
@@ -37,14 +37,14 @@ class Chain:
 
     @property
     def driven(self) -> Literal["", "stroke", "carriage"]:
-        """What a drive moves: of the letters the first P or C, else the first R before the base joint."""
+        """Part that a drive moves: of the letters the first P or C, else the first R before the base joint."""
         if self.stroke and self.carriage != "slider":
             return "stroke"
         return "carriage" if self.carriage else ""
 
     @property
     def turning(self) -> bool:
-        """Whether the drive turns something: angles and torques in place of lengths and forces."""
+        """Tell whether the drive turns something: angles and torques in place of lengths and forces."""
         return self.driven == "carriage" and self.carriage == "crank"
 
 

@@ -111,13 +111,13 @@ def _shared(section: Section, end: str, count: int, kind: str) -> Array | list[l
     for name, what in (("joints", "rows"), ("angles", "angles")):
         given = section.data.get(name)
         if isinstance(given, list) and len(given) != count:
-            raise section.malformed(
+            raise section.malformed_error(
                 f"places {len(given)} joint{'s' * (len(given) != 1)}",
                 name,
                 allowed=f"{count} {what}, one for each leg of {kind} that has no {end}_joint.at",
             )
     if "joints" in section:
-        section.only("joints", *fixed)
+        section.check_keys("joints", *fixed)
         return section.rows("joints", *(("length",) * 3,) * count)
     circle = section.read(Circle, also=("joints", *fixed), then=lambda s: _angles(s, count))
     return circle.joints(end, section.plane)
@@ -133,7 +133,7 @@ def _angles(section: Section, count: int) -> dict[str, object]:
             next_step=f"For example: angles = {[f'{360 * i // max(count, 1)} deg' for i in range(count)]}",
         )
     if "angles" not in section:
-        section.need("radius", "half_angle" if count == 6 and not section.plane else "angles")
+        section.require_keys("radius", "half_angle" if count == 6 and not section.plane else "angles")
         return {"angles": None}
     if "half_angle" in section:
         raise section.error("is given together with angles", "half_angle", allowed="one of the two")

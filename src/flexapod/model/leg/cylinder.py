@@ -9,12 +9,14 @@ from pydantic import model_validator
 
 from flexapod.common.errors import InputError
 from flexapod.common.tables.base import Key, Quantity
-from flexapod.common.tables.columns import columns_of
 from flexapod.common.tables.table import Table
-from flexapod.model.leg.material import OF_MATERIAL, SPELLS, Material, Tube, read_material, read_tube, spelled
+from flexapod.model.leg.material import OF_MATERIAL, MadeOf, Material, Tube, read_material, read_tube
 
 if TYPE_CHECKING:
     from flexapod.common.tables.section import Section
+
+_BENT = ("diameter", "inner_diameter", "material", "body")  # what one that bends is made of
+_FOLLOW = ("mass", "com", "inertia", "axial_inertia")  # what follows from that
 
 
 class Mounted(Table):
@@ -27,7 +29,7 @@ class Mounted(Table):
     ] = 0.0
 
 
-class Cylinder(Table):
+class Cylinder(MadeOf):
     """The lower part of a leg, rigid unless its section is known.
 
     `mass` [kg]; `com` [m], centre of mass from the universal joint along the axis; `inertia` [kg m^2], transverse,
@@ -36,7 +38,6 @@ class Cylinder(Table):
     what is mounted on it, `body`, it has the masses above.
     """
 
-    spells: ClassVar[Mapping[str, tuple[str, ...]]] = SPELLS
     _source: ClassVar[str] = "the section, with what is mounted on it"
 
     mass: Annotated[float, Quantity("mass", least=0, why="mass")]
@@ -63,26 +64,20 @@ class Cylinder(Table):
     body: Annotated[Mounted | None, Key("table: what is mounted on it")] = None
 
     @classmethod
-    def from_table(cls, section: Section, among: tuple[str, ...] = ()) -> Self:
-        """A rigid cylinder, or one whose section is given."""
-        section.only(*columns_of(cls), *OF_MATERIAL)
-        tube: dict[str, object] = {name: None for name in ("diameter", "inner_diameter", "material", "body")}
-        if not any(name in section for name in (*tube, *OF_MATERIAL)):
-            return section.read(cls, also=OF_MATERIAL, then=lambda _: tube)
-        for name in ("mass", "com", "inertia", "axial_inertia"):
+    def fields_from_section(cls, section: Section) -> Mapping[str, object]:
+        """Section, material and what is mounted on one that bends; none of a rigid one."""
+        if not any(name in section for name in (*_BENT, *OF_MATERIAL)):
+            return dict.fromkeys(_BENT)
+        for name in _FOLLOW:
             if name in section:
                 raise section.error(
                     "follows from section and material of the cylinder", name, allowed="body, for what is mounted on it"
                 )
-        section.need("mouth", "diameter")
-        body = section.section("body")
-        return section.build(
-            cls.tube,
-            mouth=section.number("mouth", "length"),
-            section=read_tube(section),
-            material=read_material(section),
-            body=None if body is None else body.read(Mounted),
-        ).keep(section.written)
+        section.require_keys("mouth", "diameter")
+        body, mouth, tube = section.section("body"), section.number("mouth", "length"), read_tube(section)
+        found = {"mouth": mouth, "diameter": tube.diameter, "inner_diameter": tube.inner_diameter}
+        found |= {"material": read_material(section), "body": body and body.read(Mounted)}
+        return dict.fromkeys(_FOLLOW) | found
 
     @model_validator(mode="after")
     def _real_body(self) -> Cylinder:
@@ -129,7 +124,7 @@ class Cylinder(Table):
 
     @property
     def section(self) -> Tube | None:
-        """Of one that bends."""
+        """Section of one that bends."""
         return None if self.diameter is None else Tube(diameter=self.diameter, inner_diameter=self.inner_diameter)
 
     @property
@@ -139,11 +134,6 @@ class Cylinder(Table):
         if section is None or material is None:
             return 0.0, 0.0, 0.0
         return material.E * section.second_moment, material.E * section.area, material.density * section.area
-
-    def told(self) -> dict[str, object]:
-        """All that it has to say in a file, with the keys of its material."""
-        fields = {name: x for name, x in super().told().items() if name != "material"}
-        return fields if self.material is None else fields | spelled(self.material)
 
 
 def _tube_masses(mouth: float, section: Tube, material: Material, body: Mounted | None) -> dict[str, float]:

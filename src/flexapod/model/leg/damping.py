@@ -25,7 +25,7 @@ class Damping(Table):
     stiffness: Annotated[float, Quantity("time", least=0, why="time by which its stiffness is multiplied")] = 0.0
 
     def __bool__(self) -> bool:
-        """Whether anything is damped, as of a plain number."""
+        """Tell whether anything is damped, as of a plain number."""
         return bool(self.ratio or self.stiffness)
 
 

@@ -1,4 +1,4 @@
-"""What moves a piston: prescribed stroke, servo, force."""
+"""Drives of a piston: prescribed stroke, servo, force."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pydantic import model_validator
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.common.tables.base import FileKey, Key, Quantity, Series
-from flexapod.common.tables.csv_tables import forces
+from flexapod.common.tables.csv_tables import force_columns
 from flexapod.common.tables.named_files import Content, columns_of_table
 from flexapod.common.tables.table import Place, Table
 from flexapod.model.leg.friction import Rubs
@@ -34,12 +34,12 @@ def read_columns(section: Section, dimension: str) -> Mapping[str, object]:
     if section.data.get("law") != "csv" or "file" not in section:
         return {}
     number, count = section.leg
-    found = section.table(forces(count, dimension), needed=True, jumps=True)
+    found = section.table(force_columns(count, dimension), needed=True, jumps=True)
     return {"time": found["time"], dimension: found[f"leg {number}"]}
 
 
-def tabled_columns(leg: int, dimension: str, time: Array | None, values: Array | None) -> Content:
-    """What `read_columns` reads, of the one leg."""
+def drive_columns(leg: int, dimension: str, time: Array | None, values: Array | None) -> Content:
+    """Columns that `read_columns` reads, of the one leg."""
     if time is None or values is None:
         return {}
     return columns_of_table({f"leg {leg}": dimension}, time, values[:, None])
@@ -110,7 +110,7 @@ class ForceDrive(Table):
 
     @classmethod
     def from_table(cls, section: Section, among: tuple[str, ...] = ()) -> Self:
-        """What a table says, with its table of forces, of a crank of torques."""
+        """Drive of a table, with its table of forces, of a crank of torques."""
         dimension = "torque" if "torque" in among else "force"
 
         def columns(section: Section) -> Mapping[str, object]:
@@ -119,13 +119,13 @@ class ForceDrive(Table):
 
         return section.read(cls, among=among, then=columns)
 
-    def tabled(self, place: Place) -> Content:
-        """Its forces, of a crank torques."""
-        return tabled_columns(place.leg, place.force(place.leg), self.time, self.force)
+    def file_content(self, place: Place) -> Content:
+        """Forces, of a crank torques."""
+        return drive_columns(place.leg, place.force(place.leg), self.time, self.force)
 
     @property
     def pushes(self) -> bool:
-        """Whether it is a force that keeps no position."""
+        """Tell whether it is a force that keeps no position."""
         return self.feedback is None or self.feedback.stiffness == 0
 
     @model_validator(mode="after")

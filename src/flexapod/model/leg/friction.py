@@ -106,7 +106,7 @@ class JointFriction(Table):
 
     @property
     def numbers(self) -> tuple[float, ...]:
-        """What the equations read, see `elements.friction.rubbing`; by angles."""
+        """Numbers that the equations read, see `elements.friction.bristle_friction`; by angles."""
         return _numbers(self, self.constant, self.arm, self.stribeck and self.stribeck.moment)
 
 
@@ -137,7 +137,7 @@ class ScrewFriction(Table):
 
     @property
     def numbers(self) -> tuple[float, ...]:
-        """What the equations read, by the screw's angle."""
+        """Numbers that the equations read, by the screw's angle."""
         return _numbers(self, self.torque, 0.0, self.stribeck and self.stribeck.moment)
 
     @property
@@ -173,7 +173,7 @@ class StrokeFriction(Table):
 
     @property
     def numbers(self) -> tuple[float, ...]:
-        """What the equations read, along the stroke."""
+        """Numbers that the equations read, along the stroke."""
         return _numbers(self, self.force, 0.0, self.stribeck and self.stribeck.force)
 
     @property

@@ -2,36 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
 from pydantic import PlainSerializer, PlainValidator
 
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
-from flexapod.common.tables.base import Joints, Quantity, array_of
+from flexapod.common.tables.base import Joints, Quantity, one_or_each
 from flexapod.common.tables.table import Table
 
-if TYPE_CHECKING:
-    from flexapod.common.tables.section import Section
-
-
-def _per_leg(value: object) -> Array:
-    return array_of((None,))([value] if isinstance(value, int | float) else value)
-
-
 #: A number for all legs, (1,), or one for each, (n,).
-PerLeg = Annotated[Array, PlainValidator(_per_leg), PlainSerializer(lambda array: array.tolist())]
+PerLeg = Annotated[Array, PlainValidator(one_or_each(None)), PlainSerializer(lambda array: array.tolist())]
 
 
-def one_for_all(value: object) -> object:
-    """What is the same for all legs as one number."""
-    return value.item() if isinstance(value, np.ndarray) and value.shape == (1,) else value
+class OfLegs(Table):
+    """Base of tables with numbers for all legs or for each."""
+
+    def si_values(self) -> dict[str, object]:
+        """All that it has to say in a file: what is the same for all legs as one number."""
+        si_values = super().si_values()
+        return {key: x.item() if isinstance(x, np.ndarray) and x.shape == (1,) else x for key, x in si_values.items()}
 
 
-class Geometry(Table):
-    """What differs from the drawing, the same at all times; what is left out is as drawn.
+class Geometry(OfLegs):
+    """Differences from the drawing, the same at all times; what is left out is as drawn.
 
     `base_joints` (n, 3) [m] in world axes, `platform_joints` (n, 3) [m] in platform axes: real less drawn place of
     the joints, of a leg with a carriage of its rail or its shaft; `leg_offset` [m]: real less commanded length at
@@ -95,20 +90,6 @@ class Geometry(Table):
         for name in ("leg_offset", "lead"):
             check_legs(getattr(self, name), f"geometry.{name}", count)
 
-    @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
-        """Places of joints leg by leg, and numbers for all legs or for each."""
-        joints = {
-            name: section.rows(name, *(("length",) * 3,) * section.leg[1]) if name in section else None
-            for name in ("base_joints", "platform_joints")
-        }
-        numbers = {"leg_offset": "length", "lead": "number"}
-        return joints | {name: read_each(section, name, dimension) for name, dimension in numbers.items()}
-
-    def told(self) -> dict[str, object]:
-        """All that it has to say in a file: what is the same for all legs as one number."""
-        return {name: one_for_all(value) for name, value in super().told().items()}
-
 
 def check_legs(values: Array | None, key: str, count: int) -> None:
     """Refuse a list that has not a number for each of `count` legs."""
@@ -119,10 +100,3 @@ def check_legs(values: Array | None, key: str, count: int) -> None:
             value=values.tolist(),
             allowed=f"one number, or one for each of {count} legs",
         )
-
-
-def read_each(section: Section, name: str, dimension: str) -> object:
-    """A number, or one for each leg."""
-    if not isinstance(section.data.get(name), list):
-        return section.number(name, dimension)
-    return section.vector(name, *(dimension,) * section.leg[1])

@@ -3,38 +3,33 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import PlainSerializer, PlainValidator, model_validator
+from pydantic import AfterValidator, PlainSerializer, PlainValidator, model_validator
 
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.common.quantities import text
-from flexapod.common.tables.base import Key, Quantity, array_of
+from flexapod.common.tables.base import Key, Quantity, one_or_each
 from flexapod.common.tables.table import Table
 from flexapod.model.leg.friction import Rubs
 
-if TYPE_CHECKING:
-    from flexapod.common.tables.section import Section
+
+def _volumes(pair: Array) -> Array:
+    if pair.min() < 0:
+        raise InputError("is negative", key="dead_volume", value=pair.tolist(), allowed="one volume, or two; 0 or more")
+    return pair
 
 
-def _pair(value: object) -> Array:
-    """One volume for both sides, or two."""
-    found = array_of((2,))([value, value] if isinstance(value, int | float) else value)
-    if found.min() < 0:
-        raise InputError(
-            "is negative", key="dead_volume", value=found.tolist(), allowed="one volume, or two; 0 or more"
-        )
-    return found
-
-
-Pair = Annotated[Array, PlainValidator(_pair), PlainSerializer(lambda pair: pair.tolist())]
+#: One volume for both sides, or two.
+Pair = Annotated[
+    Array, PlainValidator(one_or_each(2)), AfterValidator(_volumes), PlainSerializer(lambda pair: pair.tolist())
+]
 
 
 class HydraulicLimits(Table):
-    """What the supply gives: `pressure` [Pa] over that of the return, `flow` [m^3/s] into one cylinder."""
+    """Limits of the supply: `pressure` [Pa] over that of the return, `flow` [m^3/s] into one cylinder."""
 
     pressure: Annotated[float | None, Quantity("stress", above=0, why="of the supply, over that of the return")] = None
     flow: Annotated[float | None, Quantity("flow", above=0, why="into one cylinder")] = None
@@ -66,19 +61,12 @@ class HydraulicDrive(Table):
     ] = None
     dead_volume: Annotated[
         Pair, Quantity("volume", why="oil beyond the stroke: one volume, or that at the bottom and that at the rod")
-    ] = array_of((2,))([0.0, 0.0])
+    ] = one_or_each(2)(0.0)
     bulk_modulus: Annotated[float, Quantity("stress", above=0, why="of the oil, with its air and hoses")]
     leakage: Annotated[float, Quantity("leakage", least=0, why="flow past the piston by pressure")] = 0.0
     double_ended: Annotated[bool, Key("whether the rod leaves at both ends")] = False
     friction: Rubs = None
     limits: Annotated[HydraulicLimits, Key("table: what the drive is made for")] = HydraulicLimits()
-
-    @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
-        """One dead volume for both sides, or two."""
-        both = isinstance(section.data.get("dead_volume"), list)
-        value = section.vector("dead_volume", "volume", "volume") if both else section.number("dead_volume", "volume")
-        return {"dead_volume": value}
 
     @model_validator(mode="after")
     def _rod_in_bore(self) -> HydraulicDrive:
@@ -93,7 +81,7 @@ class HydraulicDrive(Table):
 
     @property
     def areas(self) -> tuple[float, float]:
-        """On which oil pushes out and pulls in [m^2]."""
+        """Areas on which oil pushes out and pulls in [m^2]."""
         ring = math.pi / 4 * (self.bore**2 - self.rod**2)
         return ring if self.double_ended else math.pi / 4 * self.bore**2, ring
 

@@ -1,4 +1,4 @@
-"""What a leg stands on and ends in: joints, and carriages that move its foot."""
+"""Ends of a leg: joints, and carriages that move its foot."""
 
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ class Joint(Table):
 
     @property
     def lossy(self) -> bool:
-        """Whether a loss factor damps a spring of it."""
+        """Tell whether a loss factor damps a spring of it."""
         return bool(self.loss or self.stiffness_loss)
 
     @property
@@ -196,12 +196,12 @@ class Joint(Table):
 
     @property
     def flexes(self) -> bool:
-        """Whether its place gives way in axes of base or platform, or together with its angles."""
+        """Tell whether its place gives way in axes of base or platform, or together with its angles."""
         return self.stiffness is not None and self.across_and_along is None
 
-    def told(self) -> dict[str, object]:
+    def si_values(self) -> dict[str, object]:
         """All that it has to say in a file: its stiffness as a number, in rows, as a table or by its law."""
-        fields, stiffness = super().told(), self.stiffness
+        fields, stiffness = super().si_values(), self.stiffness
         if self.rolling is not None:
             return fields | {"stiffness": self.rolling}
         if stiffness is None:
@@ -218,9 +218,9 @@ class Joint(Table):
         return fields if self.across_and_along is None else fields | {"stiffness": self.across_and_along[0]}
 
     def told_at(self, place: Array, normal: Array) -> dict[str, object]:
-        """Its keys at its place (3,) [m], directions in words."""
+        """Keys at its place (3,) [m], directions in words."""
         axis = {} if self.axis is None else {"axis": word_of(self.axis, place, normal) or self.axis}
-        return self.data(self.told() | axis)
+        return self.data(self.si_values() | axis)
 
 
 class Travel(Table):
@@ -237,7 +237,7 @@ class Travel(Table):
 
 
 class Carriage(Table):
-    """What moves the foot of a leg: a slider along `axis`, or a crank about it.
+    """Carriage that moves the foot of a leg: a slider along `axis`, or a crank about it.
 
     `axis` (3,), world axes; `arm` (3,) [m], of a crank: from its axis to the base joint at angle 0, world axes;
     `mass` [kg]; of a crank `inertia` [kg m^2] about its axis and `com` [m], its centre of mass from there towards the
@@ -309,9 +309,9 @@ class Carriage(Table):
         return self.axis / np.linalg.norm(self.axis)
 
     def told_at(self, place: Array, normal: Array) -> dict[str, object]:
-        """Its keys at its place (3,) [m], directions in words."""
+        """Keys at its place (3,) [m], directions in words."""
         unused = "mass" if self.kind == "crank" else "inertia"
-        fields = {name: value for name, value in self.told().items() if name != unused or value}
+        fields = {name: value for name, value in self.si_values().items() if name != unused or value}
         return self.data({self.kind: word_of(self.axis, place, normal) or self.axis, **fields})
 
 
@@ -338,11 +338,11 @@ def read_joint(leg: Section, name: str, place: Array, normal: Array) -> Joint | 
 
 
 def read_carriage(section: Section, base: Array, normal: Array) -> Carriage:
-    """What moves the foot of a leg, from its table; `base` (3,) [m]: where it is at 0."""
+    """Carriage that moves the foot of a leg, from its table; `base` (3,) [m]: where it is at 0."""
 
     def parts(section: Section) -> dict[str, object]:
         if kind not in section:
-            section.need("slider")
+            section.require_keys("slider")
         if "crank" in section and "slider" in section:
             raise section.error("is given together with slider", "crank", allowed="one of the two")
         axis = section.direction(kind, base, normal)

@@ -1,4 +1,4 @@
-"""How the stiffness of a joint is written as a table: along and across the leg, or in rows, with what damps it."""
+"""Stiffness of a joint, written as a table: along and across the leg, or in rows, with what damps it."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ class AlongLeg(Table):
     loss: Annotated[Loss | None, Key("loss factor, in place of `damping`; left out: that of the joint")] = None
 
     @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
+    def fields_from_section(cls, section: Section) -> Mapping[str, object]:
         """Dampers, then springs, each above zero."""
         dampers = _dampers(section)
-        section.need("axial", "radial")
+        section.require_keys("axial", "radial")
         return dampers | {name: read_spring(section, name) for name in ("axial", "radial")}
 
     @property
     def of_joint(self) -> dict[str, object]:
-        """What a joint has of it."""
+        """Fields that a joint has of it."""
         along = np.diag([self.radial, self.radial, self.axial, 0.0, 0.0, 0.0])
         return {"stiffness": along, "leg_axes": True, **_damped(self)}
 
@@ -56,13 +56,13 @@ class InRows(Table):
     loss: Annotated[Loss | None, Key("loss factor, in place of `damping`; left out: that of the joint")] = None
 
     @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
+    def fields_from_section(cls, section: Section) -> Mapping[str, object]:
         """Dampers, then rows."""
         return _dampers(section) | {"rows": _rows(section, "rows")}
 
     @property
     def of_joint(self) -> dict[str, object]:
-        """What a joint has of it."""
+        """Fields that a joint has of it."""
         return {"stiffness": self.rows, "leg_axes": bool(self.leg_axes), **_damped(self)}
 
 

@@ -14,7 +14,7 @@ from flexapod.common.tables.base import Key, Quantity, Vec3
 from flexapod.common.tables.columns import columns_of
 from flexapod.common.tables.table import Table
 from flexapod.mechanics.elements.element import Element, registered
-from flexapod.mechanics.elements.registry import read_elements, told_elements
+from flexapod.mechanics.elements.registry import element_values, read_elements
 from flexapod.model.leg.chain import Chain, chain_of
 from flexapod.model.leg.cylinder import Cylinder
 from flexapod.model.leg.damping import BodyDamping, damping_parts
@@ -113,28 +113,28 @@ class Leg(Table):
 
     @property
     def letters(self) -> Chain:
-        """What the letters of its chain say."""
+        """Meaning of the letters of its chain."""
         return chain_of(self.chain)
 
     @property
     def swings(self) -> bool:
-        """Whether both its joints turn freely: nothing holds it across."""
+        """Tell whether both its joints turn freely: nothing holds it across."""
         letters = self.letters
         return letters.base in ("U", "S") and letters.platform == "S"
 
     @property
     def driven(self) -> str:
-        """What its drive moves: "stroke", "carriage", "" of a passive leg."""
+        """Part that its drive moves: "stroke", "carriage", "" of a passive leg."""
         return "" if self.passive else self.letters.driven
 
     @property
     def screw(self) -> ScrewDrive | None:
-        """Its drive, if that is a screw."""
+        """Drive that is a screw, or None."""
         return self.drive if isinstance(self.drive, ScrewDrive) else None
 
     @property
     def gives(self) -> bool:
-        """Whether springs stand between its drive and its piston."""
+        """Tell whether springs stand between its drive and its piston."""
         driven = self.screw is not None or self.cylinder_of_oil is not None
         return driven or any(spring.at == "nut" for spring in self.springs) or self.pressed > 0
 
@@ -149,7 +149,7 @@ class Leg(Table):
 
     @property
     def cylinder_of_oil(self) -> HydraulicDrive | None:
-        """Its drive, if that is hydraulic."""
+        """Drive that is hydraulic, or None."""
         return self.drive if isinstance(self.drive, HydraulicDrive) else None
 
     @property
@@ -164,7 +164,7 @@ class Leg(Table):
 
     @property
     def closed_about(self) -> str:
-        """Where the loop of its motor is closed if that is not the rotor: "stroke", "joint-to-joint"; "" otherwise."""
+        """Place of the loop of its motor if that is not the rotor: "stroke", "joint-to-joint"; "" otherwise."""
         return self.measured if self.screw is not None and self.screw.closes_elsewhere else ""
 
     @property
@@ -180,18 +180,18 @@ class Leg(Table):
 
     @property
     def holds_stroke(self) -> bool:
-        """Whether a drive that holds its command holds the stroke, not a rotor before it."""
+        """Tell whether a drive that holds its command holds the stroke, not a rotor before it."""
         return self.screw.holds_stroke if self.screw is not None else not self.gives
 
     @property
     def turning(self) -> float:
-        """What a turn of the piston in its cylinder adds to the length [m/rad], Eq. (T23.41); 0 inside a loop."""
+        """Length that a turn of the piston in its cylinder adds [m/rad], Eq. (T23.41); 0 inside a loop."""
         unkeyed = self.screw is not None and not self.piston.keyed and self.measured == "rotor"
         return self.screw.per_turn if unkeyed else 0.0  # type: ignore[union-attr]
 
     @property
     def measured(self) -> str:
-        """Where its position is measured: "rotor", "stroke" or "joint-to-joint"; what lies before is made up for."""
+        """Place of its measurement: "rotor", "stroke" or "joint-to-joint"; what lies before is made up for."""
         return "rotor" if self.screw is None else self.screw.encoder.at
 
     def _shown(self) -> dict[str, str]:
@@ -319,8 +319,8 @@ class Leg(Table):
         return self
 
     def told_at(self, base: Array, platform: Array, normal: Array) -> dict[str, object]:
-        """Its keys with its joints at their places (3,) [m]."""
-        fields = self.told()
+        """Keys with its joints at their places (3,) [m]."""
+        fields = self.si_values()
         del fields["chain"]  # the robot's type has it
         if self.letters.platform and not self.passive:
             del fields["passive"]
@@ -333,7 +333,7 @@ class Leg(Table):
         del fields["springs"]
         if self.springs:
             fields["springs"] = {spring.name: spring for spring in self.springs}
-        fields |= told_elements(self.elements)
+        fields |= element_values(self.elements)
         if self.carriage is not None:
             fields["carriage"] = self.carriage.told_at(base, normal)
         if self.strut is not None:
@@ -375,7 +375,7 @@ def read_leg(section: Section, number: int, count: int, chain: str, places: tupl
                 allowed="a drive, or passive = true",
                 next_step="Leave it out",
             )
-        section.need(*(("cylinder", "piston") if letters.stroke else ("strut",)))
+        section.require_keys(*(("cylinder", "piston") if letters.stroke else ("strut",)))
         strut, carriage = section.section("strut"), section.section("carriage")
         cylinder, piston = section.section("cylinder"), section.section("piston")
         return {

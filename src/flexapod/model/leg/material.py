@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 POISSON = 0.3  # where no other is given
 #: Keys of a table of which a material is made.
 OF_MATERIAL = ("E", "density", "yield_stress", "poisson", "expansion")
-SPELLS: Mapping[str, tuple[str, ...]] = {key: ("material",) for key in OF_MATERIAL}
 
 
 class Material(Table):
@@ -134,12 +133,25 @@ class Rectangle(Table):
         return 10 * (1 + poisson) / (12 + 11 * poisson)  # (T8.19)
 
 
-def spelled(material: Material) -> dict[str, object]:
-    """Its name and what differs from that material, where it is one; else its values."""
+class MadeOf(Table):
+    """Base of tables that have the keys of their `material`."""
+
+    also: ClassVar[tuple[str, ...]] = OF_MATERIAL
+    spells: ClassVar[Mapping[str, tuple[str, ...]]] = {key: ("material",) for key in OF_MATERIAL}
+
+    def si_values(self) -> dict[str, object]:
+        """All that it has to say in a file, with the keys of its material."""
+        fields = super().si_values()
+        material = fields.pop("material", None)
+        return fields | material_values(material) if isinstance(material, Material) else fields
+
+
+def material_values(material: Material) -> dict[str, object]:
+    """Name of a material and what differs from it, where it is one; else its values."""
     own = {name: getattr(material, name) for name in ("yield_stress", "poisson", "expansion")}
     known = MATERIALS.get(material.name)
     if known is None or None in own.values() or known.replace(**own) != material:
-        return {name: value for name, value in material.told().items() if name != "name"}
+        return {name: value for name, value in material.si_values().items() if name != "name"}
     named: dict[str, object] = {"material": known.name}
     return named | {name: value for name, value in own.items() if value != getattr(known, name)}
 
@@ -166,6 +178,6 @@ def read_material(section: Section) -> Material:
             allowed=f"material ({', '.join(MATERIALS)}), or E and density",
             next_step=f"Add {section.key('material')}",
         )
-    section.need("E", "density")
+    section.require_keys("E", "density")
     modulus, density = section.number("E", "stress"), section.number("density", "density")
     return section.build(Material, name="given", E=modulus, density=density, **own)

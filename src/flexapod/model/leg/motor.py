@@ -1,4 +1,4 @@
-"""What turns a screw: rotor, motor, brake, encoder, loop, and what these are made for."""
+"""Parts that turn a screw: rotor, motor, brake, encoder, loop, and what these are made for."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Rotor(Table):
-    """What turns with the motor: `inertia` [kg m^2] at the motor, which turns `ratio` times as fast as the screw."""
+    """Rotor of the motor: `inertia` [kg m^2] at the motor, which turns `ratio` times as fast as the screw."""
 
     inertia: Annotated[float, Quantity("inertia", least=0, why="at the motor, with brake and coupling")] = 0.0
     ratio: Annotated[float, Quantity("number", above=0, why="turns of the motor in a turn of the screw")] = 1.0
@@ -36,7 +36,7 @@ class Motor(Table):
 
 
 class Limits(Table):
-    """What the drive is made for.
+    """Limits of what the drive is made for.
 
     `force` [N] on the screw; `speed` [rad/s], `torque` and `rms_torque` [N m] of the motor.
     """
@@ -69,7 +69,7 @@ class Brake(Table):
 
 
 class Encoder(Table):
-    """Where the position is measured: the motor's angle, the stroke, or the distance of both joints of the leg.
+    """Measurement of the position: the motor's angle, the stroke, or the distance of both joints of the leg.
 
     `resolution`: what it tells apart [m], of the motor's angle [rad]. `rate` "rotor": a loop about another place takes
     the rate, which its damping acts on, from the motor's angle.

@@ -1,4 +1,4 @@
-"""What bends in a leg: its piston, or a strut in its place."""
+"""Beams that bend in a leg: its piston, or a strut in its place."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
-from flexapod.common.tables.base import Key, Quantity, agree
+from flexapod.common.tables.base import Key, Quantity, nearly_same
 from flexapod.common.tables.columns import columns_of
 from flexapod.common.tables.table import Table
 from flexapod.model.leg.cylinder import check_axial
@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 STIFFNESS = ("EI", "EA", "rhoA")
 #: What stands by hand in place of a part of the material.
 _BY_HAND = {"E": ("EI", "EA", "GJ"), "density": ("rhoA",)}
+#: What any may have, whatever it is made of.
+_BESIDE = ("axial_inertia", "bow", "shear")
 
 
 class Piston(Table):
@@ -47,6 +49,7 @@ class Piston(Table):
     have rotary inertia (Timoshenko's beam).
     """
 
+    also: ClassVar[tuple[str, ...]] = ("material",)
     silent: ClassVar[tuple[str, ...]] = ("poisson", "keyed", "sections", "shear", "axial_inertia")
     _source: ClassVar[str] = "section and material"
 
@@ -137,57 +140,52 @@ class Piston(Table):
                 )  # fmt: skip
 
     @classmethod
-    def from_table(cls, section: Section, among: tuple[str, ...] = ()) -> Self:
-        """One of several sections, of a stiffness, or of a round section and a material."""
-        keyed = None if "keyed" in cls.derived else section.flag("keyed")
-        section.only(*(name for name in columns_of(cls) if name not in cls.derived), "material")
+    def fields_from_section(cls, section: Section) -> Mapping[str, object]:
+        """Sections, or a round section and a material; nothing of those where its stiffness is given."""
+        keyed = {} if "keyed" in cls.derived else {"keyed": section.flag("keyed")}
         if "sections" in section:
             found = cls._of_sections(section)
         elif any(name in section for name in (*STIFFNESS, "GJ")):
-            found = cls._of_stiffness(section)
+            cls._check_stiffness(section)
+            return keyed
         else:
             found = cls._of_section(section)
-        return (found if keyed is None else found.replace(keyed=keyed)).keep(section.written)
+        return dict.fromkeys(name for name in columns_of(cls) if name not in _BESIDE) | found | keyed
 
     @classmethod
-    def _of_sections(cls, section: Section) -> Self:
+    def _of_sections(cls, section: Section) -> dict[str, object]:
         for name in section.data:
-            if name not in ("sections", "axial_inertia", "bow", "keyed", "shear"):
+            if name not in ("sections", "keyed", *_BESIDE):
                 raise section.error(
                     "is given together with sections", name, allowed="in a section, or without sections"
                 )
         given = section.data["sections"]
         if not isinstance(given, list):
-            raise section.malformed("is not a list", "sections", allowed="[{ length, diameter, material }, ...]")
-        tables = [section.child(data, f"sections[{k}]") for k, data in enumerate(given, start=1)]
-        pieces = [table.read(PistonSection) for table in tables]
-        return section.build(cls.stepped, sections=pieces, **cls._besides(section))
+            raise section.malformed_error("is not a list", "sections", allowed="[{ length, diameter, material }, ...]")
+        if not given:
+            raise section.error("is empty", "sections", allowed="a section or more, from the driven end to the tip")
+        tables = (section.child(data, f"sections[{k}]") for k, data in enumerate(given, start=1))
+        return {"sections": tuple(table.read(PistonSection) for table in tables)}
 
     @classmethod
-    def _of_stiffness(cls, section: Section) -> Self:
+    def _check_stiffness(cls, section: Section) -> None:
         shaped, material = "diameter" in section or "section" in section, ("material", *_BY_HAND)
         follows = {other for name in material[1:] if shaped and name in section for other in _BY_HAND[name]}
-        section.need("length", *(name for name in STIFFNESS if name not in follows))
+        section.require_keys("length", *(name for name in STIFFNESS if name not in follows))
         for name in material:
             if name in section and any(other in section for other in _BY_HAND.get(name, (*STIFFNESS, "GJ"))):
                 raise section.error("is given together with EI, EA, rhoA", name, allowed="either of the two")
-        return section.read(cls, also=("material",))
 
     @classmethod
-    def _of_section(cls, section: Section) -> Self:
-        section.need("length", "diameter")
-        length = section.number("length", "length")
-        tube, material = read_tube(section), read_material(section)
-        return section.build(cls.round, length=length, section=tube, material=material, **cls._besides(section))
-
-    @classmethod
-    def _besides(cls, section: Section) -> dict[str, Any]:
-        axial, bow = section.number("axial_inertia", "inertia"), section.number("bow", "length")
-        return {"axial_inertia": axial, "bow": bow, "shear": section.flag("shear")}
+    def _of_section(cls, section: Section) -> dict[str, object]:
+        section.require_keys("length", "diameter")
+        length, tube, material = section.number("length", "length"), read_tube(section), read_material(section)
+        found = {"length": length, "diameter": tube.diameter, "inner_diameter": tube.inner_diameter}
+        return found | {name: getattr(material, name) for name in OF_MATERIAL}
 
     @classmethod
     def _following(cls, fields: Mapping[str, Any]) -> Mapping[str, Any]:
-        """What follows from its sections, or from its section and its material."""
+        """Numbers that follow from its sections, or from its section and its material."""
         given = fields.get("sections")
         made = [PistonSection._of(section) for section in given] if isinstance(given, list | tuple) else []
         if sections := [section for section in made if section is not None]:
@@ -221,7 +219,7 @@ class Piston(Table):
         follow, bare = self._following(fields), self._section(fields) is None
         for name, others in () if has_sections(fields) else _BY_HAND.items():
             given = {other: changes[other] for other in others if changes.get(other) is not None}
-            by_hand = any(not agree(value, follow.get(other)) for other, value in given.items())
+            by_hand = any(not nearly_same(value, follow.get(other)) for other, value in given.items())
             if changes.get(name) is None and (bare or by_hand):
                 changes[name] = None
         return super().replace(**changes)
@@ -280,7 +278,7 @@ class Piston(Table):
 
     @property
     def steps(self) -> tuple[PistonStep, ...]:
-        """Its uniform pieces, from the driven end to the tip; none of a uniform piston."""
+        """Uniform pieces, from the driven end to the tip; none of a uniform piston."""
         return tuple(step for section in self.sections for step in section.steps)
 
     @property
@@ -368,16 +366,17 @@ class Strut(Piston):
                 raise InputError("is given together with section", key=name, allowed="either of the two")
 
     @classmethod
-    def _of_section(cls, section: Section) -> Self:
-        section.need("length")
+    def _of_section(cls, section: Section) -> dict[str, object]:
+        section.require_keys("length")
         length, strip = section.number("length", "length"), section.section("section")
         if strip is None:
             return super()._of_section(section)
         for name in ("diameter", "inner_diameter", "axial_inertia"):
             if name in section:
                 raise section.error("is given together with section", name, allowed="either of the two")
-        shape, material, bow = strip.read(Strip), read_material(section), section.number("bow", "length")
-        return section.build(cls.strip, length=length, section=shape, material=material, bow=bow)
+        shape, material = strip.read(Strip), read_material(section)
+        made_of = {name: getattr(material, name) for name in OF_MATERIAL if name != "poisson"}
+        return {"length": length, "section": shape, **made_of, **dict.fromkeys(("axial_inertia", "shear"))}
 
     @property
     def depth(self) -> float | None:
@@ -386,7 +385,7 @@ class Strut(Piston):
 
     @classmethod
     def _section(cls, fields: Mapping[str, Any]) -> Tube | Rectangle | None:
-        """Of a strip that bends across its thickness, or round."""
+        """Section of a strip that bends across its thickness, or a round one."""
         strip = Strip._of(fields.get("section"))
         return super()._section(fields) if strip is None else Rectangle(width=strip.width, height=strip.thickness)
 

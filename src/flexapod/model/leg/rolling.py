@@ -106,5 +106,5 @@ class RollingLaw(Table):
 
     @property
     def _shared(self) -> int:
-        """How many bearings of a yoke share the load."""
+        """Number of bearings of a yoke that share the load."""
         return 1 if self.series in AXIAL else 2

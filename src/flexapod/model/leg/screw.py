@@ -13,10 +13,10 @@ from flexapod.common.quantities import number
 from flexapod.common.tables.base import FileKey, Key, Loss, Quantity, Series
 from flexapod.common.tables.named_files import Content
 from flexapod.common.tables.table import Place, Table
-from flexapod.model.leg.drive import ForceDrive, PrescribedDrive, ServoDrive, read_columns, tabled_columns
+from flexapod.model.leg.drive import ForceDrive, PrescribedDrive, ServoDrive, drive_columns, read_columns
 from flexapod.model.leg.friction import ScrewFriction
 from flexapod.model.leg.hydraulic import HydraulicDrive
-from flexapod.model.leg.material import OF_MATERIAL, SPELLS, Material, read_material, spelled
+from flexapod.model.leg.material import MadeOf, Material, read_material
 from flexapod.model.leg.motor import Brake, Encoder, Limits, Loop, Motor, Rotor, summing
 from flexapod.model.leg.spring import check_lossy
 from flexapod.model.motion import check_times
@@ -135,7 +135,7 @@ class Bearing(Table):
         return 3 * preload / approach * UM
 
 
-class ScrewDrive(Table):
+class ScrewDrive(MadeOf):
     """A screw that the motor turns in a thrust bearing in the cylinder; its nut is the piston's inner end.
 
     `lead` [m] a turn; the shaft between bearing and nut by its `root_diameter` [m], `length` [m] from the bearing and
@@ -148,8 +148,6 @@ class ScrewDrive(Table):
     """
 
     derived: ClassVar[tuple[str, ...]] = ("time", "torque")
-    also: ClassVar[tuple[str, ...]] = OF_MATERIAL
-    spells: ClassVar[Mapping[str, tuple[str, ...]]] = SPELLS
 
     type: Annotated[Literal["screw"], Key("kind of drive")] = "screw"
     lead: Annotated[float, Quantity("length", above=0, why="travel of the nut in a turn of the screw")]
@@ -194,13 +192,13 @@ class ScrewDrive(Table):
         return TURNING
 
     @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
-        """Its material, and torques over time."""
+    def fields_from_section(cls, section: Section) -> Mapping[str, object]:
+        """Material, and torques over time."""
         return {"material": read_material(section), **read_columns(section, "torque")}
 
-    def tabled(self, place: Place) -> Content:
-        """Its torques."""
-        return tabled_columns(place.leg, "torque", self.time, self.torque)
+    def file_content(self, place: Place) -> Content:
+        """Torques over time."""
+        return drive_columns(place.leg, "torque", self.time, self.torque)
 
     @model_validator(mode="after")
     def _sensible(self) -> ScrewDrive:
@@ -273,7 +271,7 @@ class ScrewDrive(Table):
 
     @property
     def area(self) -> float:
-        """Of the shaft [m^2]."""
+        """Area of the shaft [m^2]."""
         return math.pi / 4 * self.root_diameter**2
 
     @property
@@ -283,7 +281,7 @@ class ScrewDrive(Table):
 
     @property
     def inertia(self) -> float:
-        """Of everything that turns, about the screw's axis [kg m^2], Eq. (T15.12)."""
+        """Inertia of everything that turns, about the screw's axis [kg m^2], Eq. (T15.12)."""
         polar = math.pi / 32 * self.root_diameter**4
         return self.material.density * self.length * polar + self.rotor.ratio**2 * self.rotor.inertia
 
@@ -301,22 +299,22 @@ class ScrewDrive(Table):
 
     @property
     def holds(self) -> bool:
-        """Whether it keeps its command, whatever the force."""
+        """Tell whether it keeps its command, whatever the force."""
         return self.command == "position"
 
     @property
     def rests(self) -> bool:
-        """Whether it keeps its command at rest: a loop that sums its error leaves none."""
+        """Tell whether it keeps its command at rest: a loop that sums its error leaves none."""
         return self.holds or self.integral > 0
 
     @property
     def pushes(self) -> bool:
-        """Whether it is a torque that keeps no position."""
+        """Tell whether it is a torque that keeps no position."""
         return self.command == "torque" and not (self.loop is not None and self.loop.stiffness > 0)
 
     @property
     def holds_stroke(self) -> bool:
-        """Whether the loop is closed behind the nut."""
+        """Tell whether the loop is closed behind the nut."""
         return self.encoder.at != "rotor"
 
     @property
@@ -326,12 +324,12 @@ class ScrewDrive(Table):
 
     @property
     def closes_elsewhere(self) -> bool:
-        """Whether its loop is closed about another place than the rotor on which the motor acts."""
+        """Tell whether its loop is closed about another place than the rotor on which the motor acts."""
         return self.holds_stroke and not self.holds
 
     @property
     def loops(self) -> bool:
-        """Whether its motor is more than a spring and a damper on its rotor."""
+        """Tell whether its motor is more than a spring and a damper on its rotor."""
         return self.lag > 0 or self.closes_elsewhere
 
     @property
@@ -339,10 +337,6 @@ class ScrewDrive(Table):
         """Least length that its encoder tells apart [m], 0 where none is given, Eq. (T23.12)."""
         turns = self.per_turn / self.rotor.ratio if self.encoder.at == "rotor" else 1.0
         return (self.encoder.resolution or 0.0) * turns
-
-    def told(self) -> dict[str, object]:
-        """All that it has to say in a file, with the keys of its material."""
-        return {name: x for name, x in super().told().items() if name != "material"} | spelled(self.material)
 
 
 Drive = Annotated[PrescribedDrive | ServoDrive | ForceDrive | ScrewDrive | HydraulicDrive, Field(discriminator="type")]

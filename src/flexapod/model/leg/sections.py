@@ -77,8 +77,8 @@ class PistonSection(Table):
     ] = None
 
     @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
-        """What it is made of."""
+    def fields_from_section(cls, section: Section) -> Mapping[str, object]:
+        """Material of which it is made."""
         material = read_material(section)
         return {name: getattr(material, name) for name in OF_MATERIAL}
 
@@ -110,7 +110,7 @@ class PistonSection(Table):
 
     @property
     def tapered(self) -> bool:
-        """Whether its diameter changes along it."""
+        """Tell whether its diameter changes along it."""
         return self.tip_diameter not in (None, self.diameter)
 
     @property
@@ -212,6 +212,6 @@ def as_uniform(sections: Sequence[PistonSection]) -> dict[str, Any]:
 
 
 def has_sections(fields: Mapping[str, Any]) -> bool:
-    """Whether these fields have sections."""
+    """Tell whether these fields have sections."""
     sections = fields.get("sections")
     return isinstance(sections, list | tuple) and bool(sections)

@@ -79,7 +79,7 @@ def read_springs(section: Section | None) -> tuple[AxialSpring, ...] | None:
     """Springs along a leg by name: a number, or a table."""
     if section is None:
         return None
-    section.any_names()
+    section.accept_any_keys()
     found = []
     for name, value in section.data.items():
         spring = section.child(value if isinstance(value, Mapping) else {}, name)

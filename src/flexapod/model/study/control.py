@@ -38,7 +38,7 @@ NoiseOfStroke = Annotated[
 
 
 class _Sampled(Table):
-    """What all have: `sample` [s] from one reading to the next, `delay_samples`, limits, noise of the readings.
+    """Base of all: `sample` [s] from one reading to the next, `delay_samples`, limits, noise of the readings.
 
     ``reads``: the channels that it reads.
     """
@@ -187,13 +187,13 @@ class FileControl(_Sampled):
     own: Annotated[float | None, Quantity("time", above=0)] = None
 
     @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
-        """Its matrices and channels."""
+    def fields_from_section(cls, section: Section) -> Mapping[str, object]:
+        """Matrices and channels."""
         found = section.linear_system()
         return found | {"own": found.pop("sample")}
 
-    def tabled(self, place: Place) -> Content:
-        """Its matrices and channels."""
+    def file_content(self, place: Place) -> Content:
+        """Matrices and channels."""
         parts = {name: getattr(self, name) for name in ("A", "B", "C", "D", "inputs", "outputs")}
         return {name: ("", value) for name, value in (parts | {"sample": self.own}).items()}
 

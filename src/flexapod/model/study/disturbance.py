@@ -1,4 +1,4 @@
-"""What shakes a robot at rest: one-sided power spectral densities of floor, wrench and drives."""
+"""Disturbances that shake a robot at rest: one-sided power spectral densities of floor, wrench and drives."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ class Spectrum(Table):
     frequency: Annotated[Series, Quantity("frequency")]
     density: Annotated[Densities, Quantity("force spectrum", "torque spectrum")]
 
-    def told(self) -> dict[str, object]:
+    def si_values(self) -> dict[str, object]:
         """All that it has to say in a file."""
         return {"spectrum": self.spectrum or ""}
 
-    def tabled(self, place: Place) -> Content:
-        """Its densities, of the wrench at the tool, of all drives, or of each."""
+    def file_content(self, place: Place) -> Content:
+        """Densities, of the wrench at the tool, of all drives, or of each."""
         count = self.density.shape[1]
         if place.key.endswith("wrench"):
             return columns_of_table(WRENCH_NOISE, self.frequency, self.density, "frequency")
@@ -80,14 +80,14 @@ class Floor(Table):
     frequency: Annotated[Series, Quantity("frequency")]
     density: Annotated[Densities, Quantity("acceleration spectrum", "velocity spectrum", "displacement spectrum")]
 
-    def told(self) -> dict[str, object]:
+    def si_values(self) -> dict[str, object]:
         """All that it has to say in a file."""
         if self.curve is not None:
             return {"curve": self.curve}  # the rest follows
         return {"spectrum": self.spectrum or "", "of": self.of}
 
-    def tabled(self, place: Place) -> Content:
-        """Its densities along x, y, z; nothing of a curve."""
+    def file_content(self, place: Place) -> Content:
+        """Densities along x, y, z; nothing of a curve."""
         if self.curve is not None:
             return {}
         return columns_of_table(FLOOR[self.of], self.frequency, self.density, "frequency")
@@ -126,7 +126,7 @@ class Floor(Table):
 
 
 class Disturbance(Table):
-    """What shakes a robot: floor, wrench at the tool, forces of drives.
+    """Disturbance of a robot: floor, wrench at the tool, forces of drives.
 
     `wrench`: columns Fx Fy Fz [N^2/Hz], Mx My Mz [(N m)^2/Hz], world axes; `force_noise` of the drives [N^2/Hz, of
     cranks (N m)^2/Hz]: a column for all or one for each leg.
@@ -178,7 +178,7 @@ def check_density(frequency: Array, density: Array) -> None:
 
 
 def read_disturbance(top: Section, robot: Robot) -> Disturbance | None:
-    """What shakes the robot of a study file."""
+    """Disturbance that shakes the robot of a study file."""
     section = top.section("disturbance")
     if section is None:
         return None
@@ -213,7 +213,7 @@ def _floor(section: Section) -> Floor:
     if "curve" not in section:
         of = section.text("of", KINDS) or KINDS[0]
         return _spectrum(section, Floor, FLOOR[of], tuple("xyz"))
-    section.only("curve")
+    section.check_keys("curve")
     return section.build(Floor.by_curve, curve=section.text("curve", tuple(CURVES)))
 
 

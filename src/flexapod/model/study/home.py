@@ -1,4 +1,4 @@
-"""Where a robot stands at home: the platform's pose, the positions of the carriages."""
+"""Home of a robot: the platform's pose, the positions of the carriages."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Home(Table):
     ] = Field(default=(0.0, 0.0, 0.0), validate_default=True)
 
     @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
+    def fields_from_section(cls, section: Section) -> Mapping[str, object]:
         """Rotation of a planar robot: a number, about the normal."""
         if section.plane is None or isinstance(section.data.get("rotation"), list):
             return {}
@@ -111,12 +111,12 @@ def _turn(angle: float) -> float:
 
 
 def read_home(robot: Section, fixed: bool) -> Home:
-    """Where the platform is at home, of a table [robot]; `fixed`: at 0 unless that is given."""
+    """Pose of the platform at home, of a table [robot]; `fixed`: at 0 unless that is given."""
     home = robot.section("home")
     if home is None:
         height = robot.number("home_height", "length")
         if height is None and not (robot.plane or fixed):
-            robot.need("home_height")
+            robot.require_keys("home_height")
         try:
             return Home(position=np.array([0.0, 0.0, height or 0.0]))
         except InputError as error:

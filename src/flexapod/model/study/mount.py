@@ -1,4 +1,4 @@
-"""What base and platform stand on, and how the base is moved."""
+"""Mounts on which base and platform stand, and motion of the base."""
 
 from __future__ import annotations
 
@@ -26,7 +26,6 @@ _UNITS = {
     "stiffness": ("stiffness", "force", "rotational stiffness"),
     "damping": ("damping", "impulse", "rotational damping"),
 }
-_INERTIAS = ("inertia",) * 3
 
 ORIGIN = np.zeros(3)
 LEVEL = 1e-9  # of the largest number of a matrix, by which it may miss being one of a spring
@@ -58,13 +57,11 @@ class Mount(Table):
     ] = Field(default=np.zeros((3, 3)), validate_default=True)
 
     @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
+    def fields_from_section(cls, section: Section) -> Mapping[str, object]:
         """Springs, dampers and inertia by six or three numbers, or by rows."""
-        section.need("stiffness")
-        found: dict[str, object] = {name: _matrix(section, name) for name in _UNITS if name in section}
-        if not _has_rows(section, "inertia"):
-            return found | {"inertia": np.diag(section.vector("inertia", *_INERTIAS) or (0.0,) * 3)}
-        return found | {"inertia": section.rows("inertia", *(_INERTIAS,) * 3)}
+        section.require_keys("stiffness")
+        found = {name: section.matrix(name, *_UNITS[name]) for name in _UNITS if name in section}
+        return found | {"inertia": section.matrix("inertia", "inertia")}
 
     @model_validator(mode="after")
     def _sensible(self) -> Mount:
@@ -101,7 +98,7 @@ def _of_a_spring(matrix: Matrix6, key: str, least: float, words: str) -> None:
 
 
 class BaseMotion(Table):
-    """How the base, or the floor under its mount, is moved from t = 0 on: a table from `file`.
+    """Motion of the base, or of the floor under its mount, from t = 0 on: a table from `file`.
 
     `time` (n,) [s], from 0; `values` (n, 6): along x, y, z of the world and roll, pitch, yaw about them through the
     point `at` (3,) [m]; as `of` says displacements [m, rad] or their second derivatives [m/s^2, rad/s^2].
@@ -119,15 +116,15 @@ class BaseMotion(Table):
     values: Annotated[Series6, Quantity("acceleration", "length", "angle")]
 
     @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
-        """Its table."""
+    def fields_from_section(cls, section: Section) -> Mapping[str, object]:
+        """Columns of its table."""
         of = section.text("of", ("acceleration", "displacement")) or "acceleration"
         found = section.table(BASE_ACCELERATION if of == "acceleration" else POSE, jumps=of == "acceleration")
         none = np.zeros(len(found["time"]))
         return {"of": of, "time": found["time"], "values": np.stack([found.get(axis, none) for axis in POSE], axis=1)}
 
-    def tabled(self, place: Place) -> Content:
-        """Its accelerations or displacements."""
+    def file_content(self, place: Place) -> Content:
+        """Accelerations or displacements."""
         return columns_of_table(BASE_ACCELERATION if self.of == "acceleration" else POSE, self.time, self.values)
 
     @model_validator(mode="after")
@@ -142,17 +139,3 @@ class BaseMotion(Table):
                 next_step="Subtract the first row from all",
             )
         return self
-
-
-def _has_rows(section: Section, name: str) -> bool:
-    value = section.data.get(name)
-    return isinstance(value, list) and any(isinstance(row, list) for row in value)
-
-
-def _matrix(section: Section, name: str) -> object:
-    """Six numbers, or six rows."""
-    along, mixed, about = _UNITS[name]
-    if _has_rows(section, name):
-        upper, lower = (along,) * 3 + (mixed,) * 3, (mixed,) * 3 + (about,) * 3
-        return section.rows(name, *(upper,) * 3, *(lower,) * 3)
-    return np.diag(section.vector(name, *(along,) * 3, *(about,) * 3) or ())

@@ -54,13 +54,10 @@ class Payload(Table):
         return {"tool": fields["com"]} if fields.get("tool") is None and "com" in fields else {}
 
     @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
+    def fields_from_section(cls, section: Section) -> Mapping[str, object]:
         """Inertia by principal moments, by rows, or in a plane by a number."""
-        value = section.data.get("inertia")
-        if isinstance(value, list) and any(isinstance(row, list) for row in value):
-            return {"inertia": section.rows("inertia", *(("inertia",) * 3,) * 3)}
-        if section.plane is None or isinstance(value, list):
-            return {"inertia": section.vector("inertia", *("inertia",) * 3)}
+        if section.plane is None or isinstance(section.data.get("inertia"), list):
+            return {"inertia": section.matrix("inertia", "inertia")}
         number = section.number("inertia", "inertia")  # of a flat plate in that plane
         return {} if number is None else {"inertia": number * (1 + normal_of(section.plane)) / 2}
 
@@ -99,9 +96,9 @@ class Payload(Table):
             )
         return self
 
-    def told(self) -> dict[str, object]:
+    def si_values(self) -> dict[str, object]:
         """All that it has to say in a file: principal moments, where the axes are those of the platform."""
-        return super().told() | {"inertia": diagonal(self.inertia)}
+        return super().si_values() | {"inertia": diagonal(self.inertia)}
 
 
 def millimetres(point: Array) -> str:

@@ -14,8 +14,8 @@ from flexapod.common.errors import InputError
 from flexapod.common.quantities import number, text
 from flexapod.common.tables.axes import Plane, axis_of, diagonal, normal_of
 from flexapod.common.tables.base import Joints, Quantity, Vec3
-from flexapod.common.tables.table import Table, plain
-from flexapod.common.tables.toml import Written
+from flexapod.common.tables.table import Table, to_plain_data
+from flexapod.common.tables.toml import SourceTable
 from flexapod.model.heat import Heat
 from flexapod.model.leg.chain import chains_of
 from flexapod.model.leg.circle import read_places
@@ -130,16 +130,16 @@ class Robot(Table):
             else f"{number(payload.mass, 4)} kg, centre of mass at {millimetres(payload.com)}",
         }
 
-    def still_says(self, key: str) -> bool:
-        """Whether what was written under a key still holds; joints beside which legs have places only with these."""
-        return super().still_says(key) and (
-            key not in ("base", "platform") or self.still_says("leg") or not self._places
+    def is_unchanged(self, key: str) -> bool:
+        """Tell whether the text of a key still holds; joints beside which legs have places only with these."""
+        return super().is_unchanged(key) and (
+            key not in ("base", "platform") or self.is_unchanged("leg") or not self._places
         )
 
     @property
     def _places(self) -> bool:
-        """Whether a leg was written with places of its own."""
-        legs = self.written.data["leg"] if self.written is not None else []
+        """Tell whether a leg was written with places of its own."""
+        legs = self.source_table.data["leg"] if self.source_table is not None else []
         tables = legs if isinstance(legs, list) else [legs]
         return any("at" in leg.get(f"{end}_joint", {}) for leg in tables for end in ("base", "platform"))
 
@@ -150,7 +150,7 @@ class Robot(Table):
 
     @property
     def alike(self) -> bool:
-        """Whether the legs are alike, each seen in directions that turn with its place."""
+        """Tell whether the legs are alike, each seen in directions that turn with its place."""
         if all(leg is self.legs[0] for leg in self.legs):
             return True
         joints = zip(self.legs, self.base_joints, self.platform_joints, strict=True)
@@ -202,7 +202,7 @@ class Robot(Table):
 
     @property
     def home_vectors(self) -> Array:
-        """From base to platform joint of every leg at home, (n, 3) [m], world axes."""
+        """Vectors from base to platform joint of every leg at home, (n, 3) [m], world axes."""
         return self.home_tips - self.home_bases
 
     @property
@@ -216,11 +216,11 @@ class Robot(Table):
         return normal_of(self.plane)
 
     def tables(self) -> dict[str, Any]:
-        """Its tables as they stand in a file, by name: as they were written where that still holds, else in SI."""
+        """Tables as they stand in a file, by name: as they were written where that still holds, else in SI."""
         home, fixed = self.home, {"fixed": True} if self.platform_fixed else {}
         above = not (home.rotation.any() or home.position[:2].any())
         places = zip(self.legs, self.base_joints, self.platform_joints, strict=True)
-        legs = [plain(leg.told_at(base, platform, self.normal)) for leg, base, platform in places]
+        legs = [to_plain_data(leg.told_at(base, platform, self.normal)) for leg, base, platform in places]
         alike = all(leg == legs[0] for leg in legs) and len({leg.chain for leg in self.legs}) == 1
         geometry = {
             "type": self.type,
@@ -237,8 +237,8 @@ class Robot(Table):
             **{name: part for name in ("geometry", "heat", "tolerances") if (part := getattr(self, name)) is not None},
         }
         found = self.data(geometry | {name: part for name, part in beside.items() if part is not None})
-        tables = {name: plain(found[name]) for name in found if name in beside}
-        return {"robot": plain({name: found[name] for name in found if name not in beside}), **tables}
+        tables = {name: to_plain_data(found[name]) for name in found if name in beside}
+        return {"robot": to_plain_data({name: found[name] for name in found if name not in beside}), **tables}
 
 
 def _at_height(height: Any, home: Home | None) -> Home:
@@ -281,7 +281,7 @@ def _seen(vector: Array, place: Array, normal: Array) -> Array:
 def _told_mounts(robot: Robot) -> Iterator[tuple[str, object]]:
     for name in ("base_mount", "platform_mount"):
         if (mount := getattr(robot, name)) is not None:
-            short = {key: diagonal(value) for key, value in mount.told().items()}
+            short = {key: diagonal(value) for key, value in mount.si_values().items()}
             given = {key: value for key, value in short.items() if key == "loss" or np.asarray(value).any()}
             yield name, mount.data(given)
     if robot.base_motion is not None:
@@ -291,10 +291,10 @@ def _told_mounts(robot: Robot) -> Iterator[tuple[str, object]]:
 def read_robot(top: Section) -> Robot:
     """The robot of a study file, from its whole-file section."""
     fixed = platform_fixed(top)
-    top.need("robot", *(() if fixed else ("payload",)), "leg")
+    top.require_keys("robot", *(() if fixed else ("payload",)), "leg")
     section = top.child(top.data["robot"], "robot")
-    section.only("type", "plane", "base", "platform", "home_height", "home", "gravity", *_MOUNTS)
-    section.need(*_ENDS)
+    section.check_keys("type", "plane", "base", "platform", "home_height", "home", "gravity", *_MOUNTS)
+    section.require_keys(*_ENDS)
     plane = top.plane = section.plane = section.text("plane", ("xy", "yz", "zx"))
     kind = section.text("type")
     kind = "6-UPS" if kind is None else kind
@@ -326,11 +326,11 @@ def read_robot(top: Section) -> Robot:
         **_tables(section, _MOUNTS),
     )
     beside = {name: top.data[name] for name in _BESIDE if name in top}
-    return robot.keep(Written({**section.data, **beside}))
+    return robot.attach_source(SourceTable({**section.data, **beside}))
 
 
 def platform_fixed(top: Section) -> bool:
-    """Whether a study file says that the platform is held."""
+    """Tell whether a study file says that the platform is held."""
     robot = top.data.get("robot")
     platform = robot.get("platform") if isinstance(robot, Mapping) else None
     if not isinstance(robot, Mapping) or not isinstance(platform, Mapping):
@@ -343,7 +343,7 @@ def _leg_tables(top: Section, chains: tuple[str, ...], kind: str) -> list[Sectio
     value, count = top.data["leg"], len(chains)
     single = not isinstance(value, list)
     sections = [top.child(value, "leg")] if single else [top.child(leg, f"leg[{i}]") for i, leg in enumerate(value, 1)]
-    counts = [section.whole("count") or (count if single else 1) for section in sections]
+    counts = [section.integer("count") or (count if single else 1) for section in sections]
     if min(counts, default=0) < 1 or sum(counts) != count:
         legs = "1 leg" if count == 1 else f"{count} legs"
         times = "appears once" if len(sections) == 1 else f"appears {len(sections)} times"
@@ -372,11 +372,11 @@ def _tables(section: Section, kinds: Mapping[str, type[Table]]) -> dict[str, Tab
 
 
 def _turns(leg: Section) -> bool:
-    """Whether the leg has directions that depend on where it stands."""
+    """Tell whether the leg has directions that depend on where it stands."""
     tables = [leg.data.get(name) for name in ("base_joint", "platform_joint", "carriage")]
     return any(isinstance(table, Mapping) and {"slider", "crank", "axis"} & table.keys() for table in tables)
 
 
 def _columns(leg: Leg) -> bool:
-    """Whether a table has a column for each leg."""
+    """Tell whether a table has a column for each leg."""
     return getattr(leg.drive, "time", None) is not None

@@ -1,4 +1,4 @@
-"""What a robot must fulfil before its kinematics are looked at: counts, places, lengths at home."""
+"""Checks that a robot must pass before its kinematics are looked at: counts, places, lengths at home."""
 
 from __future__ import annotations
 

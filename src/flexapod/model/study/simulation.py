@@ -1,4 +1,4 @@
-"""How a study is computed: fidelity, basis, time, tolerance; and how it starts."""
+"""Settings of a computation: fidelity, basis, time, tolerance; and how it starts."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ class Simulation(Table):
         copy = self.model_copy()
         object.__setattr__(copy, "basis", basis)
         copy.model_fields_set.add("basis")
-        return copy if self.written is None else copy.keep(self.written)
+        return copy if self.source_table is None else copy.attach_source(self.source_table)
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
@@ -172,7 +172,7 @@ class Simulation(Table):
 
     @property
     def unused(self) -> tuple[str, ...]:
-        """What of these settings has no effect, in words."""
+        """Words for those of the settings that have no effect."""
         if self.tolerance is None or self.rho_inf == type(self).model_fields["rho_inf"].default:
             return ()
         return (
@@ -203,10 +203,10 @@ class Simulation(Table):
         """Number of intervals between stored results in `duration` [s]; a rest shorter than one is left out."""
         return math.floor(duration / self.stored_step + 1e-6)
 
-    def told(self) -> dict[str, object]:
+    def si_values(self) -> dict[str, object]:
         """All that it has to say in a file: no basis that its fidelity does not use."""
         unused = ("basis",) if self.fidelity in OWN_BASIS else ()
-        return {name: value for name, value in super().told().items() if name not in unused}
+        return {name: value for name, value in super().si_values().items() if name not in unused}
 
 
 def own_fidelity(basis: object) -> str | None:

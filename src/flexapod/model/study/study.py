@@ -9,7 +9,7 @@ from pydantic import field_validator, model_validator
 
 from flexapod.common.errors import InputError, check_kind
 from flexapod.common.tables.axes import plane_order
-from flexapod.common.tables.table import Table, plain
+from flexapod.common.tables.table import Table, to_plain_data
 from flexapod.common.tables.toml import toml_text
 from flexapod.model.laws import Load
 from flexapod.model.leg.actuator import Actuator, ActuatorInitial, ActuatorLoad, ActuatorMotion
@@ -191,7 +191,7 @@ class Study(_Documented):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is legal but doubtful, in words."""
+        """Remarks on what is legal but doubtful."""
         return (
             *robot_remarks(self.robot),
             *settings_remarks(self.robot, self.simulation),
@@ -287,7 +287,7 @@ class ActuatorStudy(_Documented):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is legal but doubtful, in words."""
+        """Remarks on what is legal but doubtful."""
         basis = self.simulation.lateral_basis if self.simulation.lateral_shapes else None
         return (*actuator_remarks(self.actuator, basis), *self._ignored, *self.simulation.unused, *self.notes)
 
@@ -390,11 +390,11 @@ def to_toml(study: Table) -> str:
 
 
 def _tables(study: Table) -> dict[str, Any]:
-    if study.written is not None and not study.written.changed:
-        return dict(study.written.data)
+    if study.source_table is not None and not study.source_table.changed:
+        return dict(study.source_table.data)
     found: dict[str, object] = {}
     for name in type(study).model_fields:
         part = getattr(study, name)
         found |= part.tables() if isinstance(part, Robot) else {name: part} if isinstance(part, Table) else {}
-    tables = {name: plain(part) for name, part in study.data(found).items()}
+    tables = {name: to_plain_data(part) for name, part in study.data(found).items()}
     return {name: table for name, table in tables.items() if table}

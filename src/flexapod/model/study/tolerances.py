@@ -1,4 +1,4 @@
-"""How far parts may be from the drawing: standard deviations, boxes, accuracy classes."""
+"""Tolerances of parts about the drawing: standard deviations, boxes, accuracy classes."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ class Tolerances(Table):
     ] = None
 
     @classmethod
-    def resolved(cls, section: Section) -> Mapping[str, object]:
+    def fields_from_section(cls, section: Section) -> Mapping[str, object]:
         """Spreads by a number or a table, the lead by its class as well."""
         lengths = {
             name: _read_spread(section, name, LengthSpread, "length")

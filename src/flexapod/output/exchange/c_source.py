@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from flexapod import model
 from flexapod.common.generalized_alpha import GeneralizedAlpha
 from flexapod.mechanics.symbolic.compiler import PRELUDE, STRAIGHT
-from flexapod.output.exchange.c_source_data import OF_PAYLOAD, Channel, Marched, marched
+from flexapod.output.exchange.c_source_data import OF_PAYLOAD, Channel, CMarch, prepare_c_march
 from flexapod.output.exchange.formats import Content
 from flexapod.solve.kernel import FOR_LOOPS, Equations, text_of_one_unit
 from flexapod.solve.time import native
@@ -46,9 +46,9 @@ def c(study: model.Study, commands: str = "inputs", step: float | str | None = N
     Raises
     ------
     InputError
-        As of `marched`.
+        As of `prepare_c_march`.
     """
-    found = marched(study, commands, step)
+    found = prepare_c_march(study, commands, step)
     flags = " ".join(FLAGS)
     remarks = (
         f"Compile with `cc {flags} robot.c main.c -lm`; `./a.out 1000` makes 1000 steps and prints the longest.",
@@ -56,11 +56,11 @@ def c(study: model.Study, commands: str = "inputs", step: float | str | None = N
         "another order.",
     )
     return Content(
-        files=texts(found) | {"main.c": (HERE / "main.c").read_text()}, left_out=found.left_out, remarks=remarks
+        files=source_texts(found) | {"main.c": (HERE / "main.c").read_text()}, left_out=found.left_out, remarks=remarks
     )
 
 
-def texts(found: Marched) -> dict[str, str]:
+def source_texts(found: CMarch) -> dict[str, str]:
     """`robot.h` and `robot.c` of a march."""
     before = "enum { ROBOT_ALIGNMENT"
     header = (HERE / "robot.h").read_text().replace(before, f"{_public(found)}\n{before}")
@@ -82,8 +82,8 @@ def _prelude(equations: str) -> str:
     return ours if "RowInput" in equations else ours.partition(TABLES)[0]
 
 
-def _public(found: Marched) -> str:
-    """What callers read: sizes, the step, and what each number is."""
+def _public(found: CMarch) -> str:
+    """Public part of `robot.h`: sizes, the step, and a comment on each number."""
     inputs, outputs = (sum(x.size for x in channels) for channels in (found.inputs, found.outputs))
     room = found.march.system
     call = native.settings(room, GeneralizedAlpha(1.0), 1.0, 1)
@@ -124,7 +124,7 @@ def _names(name: str, channels: Iterable[Channel]) -> str:
     return f"const char *const {name}[] = {{{words or '0'}}};"
 
 
-def _constants(found: Marched) -> Mapping[str, int]:
+def _constants(found: CMarch) -> Mapping[str, int]:
     system, firsts = found.march.system, {x.name: x.first for x in (*found.inputs, *found.outputs)}
     at = record_places(system)
     used = found.matrix != 0
@@ -139,7 +139,7 @@ def _constants(found: Marched) -> Mapping[str, int]:
     }  # fmt: skip
 
 
-def _numbers(found: Marched) -> str:
+def _numbers(found: CMarch) -> str:
     """All numbers of the robot."""
     system, start, robot = found.march.system, found.start, found.study.robot
     table, load = found.law(np.zeros(1))
@@ -175,15 +175,15 @@ def _numbers(found: Marched) -> str:
     )
 
 
-def _known(found: Marched) -> Equations:
-    """What compiled loops know of the equations; `marched` refuses others."""
+def _known(found: CMarch) -> Equations:
+    """Equations as compiled loops know them; `prepare_c_march` refuses others."""
     equations = found.march.system.kernel.equations
     if equations is None:
         raise RuntimeError("these equations are not compiled")
     return equations
 
 
-def _equations(found: Marched) -> str:
+def _equations(found: CMarch) -> str:
     equations = _known(found)
     there = [name for name in FOR_LOOPS if getattr(equations, name)]
     kinds = {name: "double" if name.startswith("payload") else "lanes" for name in there}
@@ -192,7 +192,7 @@ def _equations(found: Marched) -> str:
     return f"static const Equations EQUATIONS = {{{', '.join(fields)}}};"
 
 
-def _settings(found: Marched) -> str:
+def _settings(found: CMarch) -> str:
     system, method = found.march.system, found.march.problem.method
     weights = {name: repr(float(getattr(method, name))) for name in ("alpha_m", "alpha_f", "beta", "gamma")}
     fields = {

@@ -8,9 +8,9 @@ import numpy as np
 
 from flexapod import kinematics, model
 from flexapod.analysis.results.leg_results import drive_forms, leg_results
-from flexapod.analysis.results.legs import per_turn
+from flexapod.analysis.results.legs import screw_travel
 from flexapod.analysis.results.rigid_path import RigidPath
-from flexapod.analysis.results.time_history import Record, kept
+from flexapod.analysis.results.time_history import Record, recorded_arrays
 from flexapod.analysis.results.variables import VARIABLES
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
@@ -45,12 +45,12 @@ class Channel:
 
     @property
     def size(self) -> int:
-        """Its numbers."""
+        """Number of values in the channel."""
         return int(np.prod(self.shape))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Marched:
+class CMarch:
     """A prepared march and all that its C has to know beside the equations.
 
     ``row``: record of the start; ``drive_port``, ``force_port`` (legs,): ports that commands and forces of the drives
@@ -82,11 +82,11 @@ class Marched:
 
     @property
     def start(self) -> Flow:
-        """Where it begins."""
+        """State in which the march begins."""
         return self.march.start
 
 
-def marched(study: model.Study, commands: str, step: float | str | None) -> Marched:
+def prepare_c_march(study: model.Study, commands: str, step: float | str | None) -> CMarch:
     """The march of a study with fixed steps, prepared for C.
 
     Raises
@@ -120,10 +120,10 @@ def marched(study: model.Study, commands: str, step: float | str | None) -> Marc
     if not commanded:
         end = problem.outputs * problem.output_step
         knots = [t for t in problem.knots.tolist() if 0 < t < end]
-        edges, series = Series(problem.tables, [0.0, *knots, end], FINEST).between(0.0, end)
+        edges, series = Series(problem.tables, [0.0, *knots, end], FINEST).covering_pieces(0.0, end)
     parts = _drives(march, study)
     matrix, offset, outputs = _outputs(study, march, row[0])
-    return Marched(
+    return CMarch(
         study=study, march=march, law=problem.tables, commanded=commanded, row=row[0], **parts,
         inputs=_inputs(study, march, parts, commanded), outputs=outputs, edges=edges, series=series,
         matrix=matrix, offset=offset, left_out=_left_out(study, march, commanded),
@@ -155,7 +155,7 @@ def _drives(march: RobotMarch, study: model.Study) -> dict[str, Array]:
     driven, pushed = push_ports(system, robot), force_ports(system, robot)
     at = {int(coordinate): k for k, coordinate in enumerate(system.ports)}
     drive = np.array([at.get(int(x), -1) for x in driven])
-    keeps = np.array([k >= 0 and bool(system.enforced[i, driven[i]]) for i, k in enumerate(drive)])
+    keeps = np.array([k >= 0 and bool(system.enforced_mask[i, driven[i]]) for i, k in enumerate(drive)])
     force = np.array([-1 if keeps[i] or k < 0 else at[int(pushed[i])] for i, k in enumerate(drive)])
     zero = kinematics.robot_limbs(robot).carriage_zero * (driven != system.kernel.shapes.l_index)
     stretch, shift = np.ones(len(drive)), np.zeros(len(drive))
@@ -164,7 +164,7 @@ def _drives(march: RobotMarch, study: model.Study) -> dict[str, Array]:
         size, at_drive = part.size(np.zeros(1)).position[0], (np.arange(len(drive)), np.where(carried, CHI, L))
         stretch, shift = stretch + size * part.share[at_drive], shift + size * part.fixed[at_drive]
     return {
-        "drive_port": drive, "force_port": force, "keeps": keeps, "turns": per_turn(robot),
+        "drive_port": drive, "force_port": force, "keeps": keeps, "turns": screw_travel(robot),
         "zero": np.broadcast_to(zero, drive.shape).astype(float), "stretch": stretch, "shift": shift,
     }  # fmt: skip
 
@@ -202,7 +202,7 @@ def _outputs(study: model.Study, march: RobotMarch, row: Array) -> tuple[Array, 
 
     def of_legs(rows: Array) -> dict[str, Array]:
         record = _record(march, rows)
-        made = leg_results(robot, system, path, record)
+        made = leg_results(system, path, record)
         return {name: np.asarray(x() if callable(x := made[name]) else x) for name in OF_LEGS}
 
     each = np.arange(len(row))
@@ -247,7 +247,7 @@ def _outputs(study: model.Study, march: RobotMarch, row: Array) -> tuple[Array, 
 
 def _record(march: RobotMarch, rows: Array) -> Record:
     """Rows of numbers as a record."""
-    parts = kept(unpack(march.system, np.zeros(len(rows)), rows), ())
+    parts = recorded_arrays(unpack(march.system, np.zeros(len(rows)), rows), ())
     return Record(
         **parts, smallest_step=0.0, largest_error=0.0, force_error=None, wall_time=0.0, failure=None, interrupted=False
     )

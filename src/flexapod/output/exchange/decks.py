@@ -1,9 +1,7 @@
-"""Decks: models as text that Abaqus and CalculiX both read, made of translations only.
+"""Decks: finite element models as text for Abaqus and CalculiX; those of a clamped solid beam.
 
-Every keyword here means the same to both programs: solid elements, point masses, axial springs, linear equations
-between displacements. Rotations, beam sections and rigid bodies, which they treat differently, do not occur.
-
-A solid beam with one end clamped as a deck: frequencies, or its release from a bent shape.
+Every keyword here means the same to both programs: solid elements, point masses, axial springs, linear
+equations between displacements. Rotations, beam sections and rigid bodies differ between them and do not occur.
 """
 
 from __future__ import annotations
@@ -44,11 +42,11 @@ class Deck:
         return "\n".join(self._lines) + "\n"
 
     @property
-    def heavy(self) -> tuple[str, ...]:
+    def mass_sets(self) -> tuple[str, ...]:
         """Names of all sets of elements that have mass."""
         return tuple(self._heavy)
 
-    def say(self, *paragraphs: str) -> None:
+    def comment(self, *paragraphs: str) -> None:
         """Comments, a paragraph each, wrapped."""
         for words in paragraphs:
             self._lines += [f"** {line}".rstrip() for line in textwrap.wrap(words, _WIDTH) or [""]]
@@ -73,7 +71,7 @@ class Deck:
         for i, row in enumerate(connectivity, first):
             self._lines += _wrapped([str(i), *map(str, row)])
 
-    def solid(self, name: str, *, E: float, density: float, poisson: float = 0.0) -> None:
+    def solid_section(self, name: str, *, E: float, density: float, poisson: float = 0.0) -> None:
         """Material and section of the solid elements `name`: Young's modulus [Pa], density [kg/m^3]."""
         self._heavy.append(name)
         self.write(f"*MATERIAL, NAME={name}", "*ELASTIC", f"{number(E)}, {number(poisson)}")
@@ -90,12 +88,12 @@ class Deck:
         self.elements("SPRINGA", np.array(pairs), name)
         self.write(f"*SPRING, ELSET={name}", "", number(stiffness))
 
-    def grounded(self, node: int, stiffness: float, name: str) -> None:
+    def ground_spring(self, node: int, stiffness: float, name: str) -> None:
         """A spring [N/m] on the displacement of a node along x."""
         self.elements("SPRING1", np.array([[node]]), name)
         self.write(f"*SPRING, ELSET={name}", "1", number(stiffness))
 
-    def fixed(self, nodes: Iterable[int]) -> None:
+    def fix_nodes(self, nodes: Iterable[int]) -> None:
         """Nodes that do not move."""
         self.write("*BOUNDARY", *(f"{node}, 1, 3" for node in nodes))
 
@@ -151,7 +149,7 @@ def cross_matrix(r: Array) -> Array:
     return np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
 
 
-def solved(ties: Sequence[Tie], keep: Collection[Term] = ()) -> dict[Term, dict[Term, float]]:
+def dependent_displacements(ties: Sequence[Tie], keep: Collection[Term] = ()) -> dict[Term, dict[Term, float]]:
     """The ties without their q, solved for as many displacements as they determine: ``{a: {b: factor}}``.
 
     No a is a b. Ties are independent, each with an unknown motion of its own; those in `keep` are not solved for.
@@ -216,11 +214,11 @@ def clamped_release(mesh: SolidMesh, *, E: float, density: float, force: float, 
 def _clamped(mesh: SolidMesh, E: float, density: float, poisson: float, reduced: bool) -> tuple[Deck, Numbers]:
     """The beam without steps, and the nodes at its end."""
     deck = Deck("Clamped beam")
-    deck.say("Written by flexapod. Units: m, kg, s, N, Pa, Hz. Along x, clamped at x = 0.")
+    deck.comment("Written by flexapod. Units: m, kg, s, N, Pa, Hz. Along x, clamped at x = 0.")
     nodes = deck.nodes(mesh.nodes, "BEAM")
     deck.elements(ELEMENTS[mesh.kind, reduced], nodes[mesh.elements.astype(np.int64)], "BODY")
-    deck.solid("BODY", E=E, density=density, poisson=poisson)
-    deck.fixed(nodes[mesh.plane(0).astype(np.int64)])
+    deck.solid_section("BODY", E=E, density=density, poisson=poisson)
+    deck.fix_nodes(nodes[mesh.plane(0).astype(np.int64)])
     tip = nodes[mesh.plane(1).astype(np.int64)]
     deck.nset("TIP", tip)
     return deck, tip

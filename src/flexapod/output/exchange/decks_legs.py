@@ -12,7 +12,7 @@ from flexapod.common.errors import InputError
 from flexapod.kinematics.leg_geometry import FREE, Limbs, limbs
 from flexapod.kinematics.mechanism import legs_at
 from flexapod.kinematics.screws import screws
-from flexapod.mechanics.elements.springs import Place, before_piston, in_series, springs_along
+from flexapod.mechanics.elements.springs import Place, series_stiffness, springs_along, springs_before_piston
 
 _STIFF = 1e5  # of a locked drive, in EA / l: adds 1e-5 of a leg's compliance
 _NAMES: tuple[str, ...] = ("chi", "alpha", "beta", "spin", "l", "gamma1", "gamma2", "gamma3")
@@ -22,7 +22,7 @@ _LENGTH = _NAMES.index("l")
 
 @dataclass(frozen=True, kw_only=True)
 class CarriageAtPose:
-    """What moves the foot of a leg and gives way: along `direction` (3,) at the base joint, turning by `turn` (3,).
+    """A compliant carriage: it moves the base joint along `direction` (3,) and turns the leg by `turn` (3,).
 
     Turns are [1/m]; `mass` [kg] that moves along; `spring` [N/m], 0 without drive; `force` [N] of a force drive.
     """
@@ -75,12 +75,12 @@ class LegAtPose:
 
     @property
     def length(self) -> float:
-        """Joint to joint [m]."""
+        """Length of the leg from joint to joint [m]."""
         return float(np.linalg.norm(self.tip - self.base))
 
     @property
     def free_length(self) -> float:
-        """Of the piston, outside the cylinder [m]."""
+        """Length of the piston outside the cylinder [m]."""
         return self.length - self.mouth
 
     @property
@@ -93,7 +93,7 @@ class LegAtPose:
         """Stiffness of the spring that holds the piston's end [N/m]."""
         return min(self.drive, _STIFF * self.EA / self.length)
 
-    def at(self, place: float | Array) -> Array:
+    def axis_points(self, place: float | Array) -> Array:
         """Points on the axis at distances from the universal joint, (3,) or (n, 3) [m]."""
         return self.base + np.multiply.outer(place, self.axes[:, 2])
 
@@ -108,7 +108,7 @@ class PayloadAtPose:
 
 
 def axial_inertia(leg: model.Leg) -> float:
-    """Inertia about the axis of what spins with the cylinder, as far as a body with its transverse one can have it."""
+    """Axial inertia of what spins with the cylinder, where a body with its transverse inertia can have it."""
     whole = leg.cylinder.axial_inertia + leg.piston.axial_inertia
     return whole if leg.cylinder.mass and whole <= 2 * leg.cylinder.inertia else leg.cylinder.axial_inertia
 
@@ -156,7 +156,9 @@ def _leg(i: int, leg: model.Leg, real: Limbs, columns: Array, tip: Array, length
     )
     on_carriage = leg.driven == "carriage"
     own = np.column_stack([np.cross(y, z), y, z])
-    (base_gives, base_springs), (tip_gives, tip_springs) = (_gives(leg, own, at) for at in ("base", "platform"))
+    (base_gives, base_springs), (tip_gives, tip_springs) = (
+        _joint_compliance(leg, own, at) for at in ("base", "platform")
+    )
     if force and len(base_gives):
         allowed = "prescribed, servo, screw, or a base joint and springs that do not give way"
         raise _refused("leg.drive.type", allowed, value=leg.drive.type, next_step='Take "prescribed" for the deck')
@@ -188,19 +190,19 @@ def _leg(i: int, leg: model.Leg, real: Limbs, columns: Array, tip: Array, length
     )
 
 
-def _gives(leg: model.Leg, axes: Array, at: Place) -> tuple[Array, Array]:
-    """Directions (k, 3) in which a joint gives way, and springs (k,) [N/m]; `axes` (3, 3): columns, of the leg."""
+def _joint_compliance(leg: model.Leg, axes: Array, at: Place) -> tuple[Array, Array]:
+    """Directions (k, 3) in which a joint is compliant, and springs (k,) [N/m]; `axes` (3, 3): columns, of the leg."""
     joint = leg.base_joint if at == "base" else leg.platform_joint
     if joint.flexes:
         raise _refused(f"leg.{at}_joint.stiffness", "{ axial, radial }, bending and torsion")
-    along = in_series((spring for spring in springs_along(leg) if spring.at == at), 0.0, 0.0)[0]
+    along = series_stiffness((spring for spring in springs_along(leg) if spring.at == at), 0.0, 0.0)[0]
     across = joint.across_and_along[0] if joint.across_and_along else 0.0
     springs = np.array([across, across, along])
     return axes.T[springs > 0], springs[springs > 0]
 
 
 def _carriage(leg: model.Leg, twist: Array, reach: Array, force: float) -> CarriageAtPose | None:
-    """The carriage of a leg where it gives way; of a crank at the end of its arm. `twist` (6,) of the tip."""
+    """The carriage of a leg where it is compliant; of a crank at the end of its arm. `twist` (6,) of the tip."""
     spring = drive_stiffness(leg, 0.0)
     if leg.carriage is None or np.isinf(spring):
         return None
@@ -218,7 +220,7 @@ def drive_stiffness(leg: model.Leg, length: float) -> float:
     if leg.passive:
         return 0.0
     if leg.gives:
-        softness = sum(float(spring.at_length(np.array(length))) for spring in before_piston(leg))
+        softness = sum(float(spring.at_length(np.array(length))) for spring in springs_before_piston(leg))
         return np.inf if (leg.drive.holds and leg.holds_stroke) or not softness else 1 / softness
     if drive.type == "servo":
         return drive.stiffness

@@ -16,9 +16,9 @@ from scipy.linalg import qr
 
 from flexapod.common.arrays import Array
 from flexapod.model import Rectangle
-from flexapod.output.exchange.decks import Deck, Term, Tie, cross_matrix, number, solved
+from flexapod.output.exchange.decks import Deck, Term, Tie, cross_matrix, dependent_displacements, number
 from flexapod.output.exchange.decks_legs import LegAtPose, PayloadAtPose
-from flexapod.solve.fem.hexahedra import extruded
+from flexapod.solve.fem.hexahedra import extrude_section
 from flexapod.solve.fem.section_mesh import section_mesh
 
 Carriers = dict[Term, Array]
@@ -31,7 +31,7 @@ _BEHIND = 0.05  # of the leg: where the drive of a piston is anchored that ends 
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Guided:
+class _GuidedNode:
     """A node whose displacement along `directions` is `motion` (k, n) @ the motions of its leg.
 
     `directions` (k, 3), or (1, 1) of a node that moves along x alone.
@@ -73,7 +73,7 @@ def write_payload(deck: Deck, payload: PayloadAtPose, held: NDArray[np.bool_]) -
     causes[~held] = np.linalg.inv(motion[np.ix_(free, np.flatnonzero(~held))])
     carriers = {terms[j]: causes[:, k] for k, j in enumerate(free)}
     share = motion @ causes
-    deck.say("The payload moves as one body:")
+    deck.comment("The payload moves as one body:")
     deck.equations(
         {
             terms[i]: {term: float(x) for term, x in zip(carriers, share[i], strict=True) if abs(x) > 1e-12}
@@ -94,11 +94,13 @@ def _masses(deck: Deck, points: Array, masses: Array, name: str) -> list[int]:
 
 def write_leg(deck: Deck, leg: LegAtPose, name: str, count: int, payload: PayloadAtPose, carriers: Carriers) -> None:
     """A leg, with `count` solid elements along the free piston; `carriers` from `write_payload`."""
-    deck.say("", f"{name}: {leg.length:.6g} m from joint to joint, {leg.free_length:.6g} m of the piston free.")
+    deck.comment("", f"{name}: {leg.length:.6g} m from joint to joint, {leg.free_length:.6g} m of the piston free.")
     mouth, tip = _free_piston(deck, leg, name, count)
-    guided = [*mouth, *_inside(deck, leg, name, count), *_cylinder(deck, leg, name), *_foot(deck, leg, name)]
-    deck.say("The cylinder turns about its joint, the piston slides in it, the payload holds the tip:")
-    deck.equations(solved([_guide(guided), _joint(deck, leg, tip, payload, carriers, name)], keep=carriers.keys()))
+    guided = [*mouth, *_inner_piston(deck, leg, name, count), *_cylinder(deck, leg, name), *_foot(deck, leg, name)]
+    deck.comment("The cylinder turns about its joint, the piston slides in it, the payload holds the tip:")
+    deck.equations(
+        dependent_displacements([_guide(guided), _joint(deck, leg, tip, payload, carriers, name)], keep=carriers.keys())
+    )
 
 
 def drive_shift(leg: LegAtPose, name: str) -> list[str]:
@@ -112,75 +114,77 @@ def drive_shift(leg: LegAtPose, name: str) -> list[str]:
 def _turned(leg: LegAtPose, point: Array) -> Array:
     """Displacements (3, k) of a point of the cylinder by the motions of the leg but those of the piston."""
     turns = cross_matrix(point - leg.base) @ leg.turns.T / leg.length
-    return np.column_stack([_carried_along(leg, point), turns, leg.base_gives.T])
+    return np.column_stack([_carriage_motion(leg, point), turns, leg.base_gives.T])
 
 
-def _carried_along(leg: LegAtPose, point: Array) -> Array:
-    """Displacement (3, 1) of a point of the cylinder where the carriage gives way; (3, 0) where nothing does."""
+def _carriage_motion(leg: LegAtPose, point: Array) -> Array:
+    """Displacement (3, 1) of a point of the cylinder by a compliant carriage; (3, 0) without one."""
     foot = leg.carriage
     return np.zeros((3, 0)) if foot is None else (foot.direction + np.cross(foot.turn, point - leg.base))[:, None]
 
 
-def _carried(leg: LegAtPose, node: int, point: Array, *, slides: bool) -> _Guided:
+def _cylinder_node(leg: LegAtPose, node: int, point: Array, *, slides: bool) -> _GuidedNode:
     """A node on the cylinder, or on a section of the piston that slides in it."""
     z = leg.axes[:, 2]
     turn = np.cross(z, point - leg.base)[:, None] / leg.side if leg.piston_turns else np.zeros((3, 0))
     motion = np.column_stack([_turned(leg, point), z * slides, turn * slides])
-    return _Guided(node=node, directions=np.eye(3), motion=motion)
+    return _GuidedNode(node=node, directions=np.eye(3), motion=motion)
 
 
-def _sprung(deck: Deck, motion: Array, stiffness: float, size: float, name: str) -> _Guided:
+def _spring_node(deck: Deck, motion: Array, stiffness: float, size: float, name: str) -> _GuidedNode:
     """A node that moves along x by the one motion of `motion` (n,), `size` [m] times an angle or 1, sprung."""
     node = int(deck.nodes(np.zeros(3), name)[0])
     deck.write("*BOUNDARY", f"{node}, 2, 3")
-    deck.grounded(node, stiffness / size**2, name)
-    return _Guided(node=node, directions=np.eye(1), motion=motion[None])
+    deck.ground_spring(node, stiffness / size**2, name)
+    return _GuidedNode(node=node, directions=np.eye(1), motion=motion[None])
 
 
-def _foot(deck: Deck, leg: LegAtPose, name: str) -> list[_Guided]:
-    """What gives way at the base: springs of the joint, mass and drive of a carriage."""
+def _foot(deck: Deck, leg: LegAtPose, name: str) -> list[_GuidedNode]:
+    """Write the compliance at the base: springs of the joint, mass and drive of a carriage."""
     moves, gives = leg.carriage is not None, len(leg.base_gives)
     motions = np.eye(moves + len(leg.turns) + gives + 1 + leg.piston_turns)[moves:]
     found = [
-        _sprung(deck, motions[k], stiffness, leg.length, f"{name}TURN{k + 1}")
+        _spring_node(deck, motions[k], stiffness, leg.length, f"{name}TURN{k + 1}")
         for k, stiffness in enumerate(leg.turn_springs)
         if stiffness
     ]
     found += [
-        _sprung(deck, motions[len(leg.turns) + k], stiffness, 1.0, f"{name}GIVES{k + 1}")
+        _spring_node(deck, motions[len(leg.turns) + k], stiffness, 1.0, f"{name}GIVES{k + 1}")
         for k, stiffness in enumerate(leg.base_springs)
     ]
     if leg.carriage is not None:
         place, anchor = leg.base, leg.base - _BEHIND * leg.length * leg.carriage.direction
         node, held = (int(deck.nodes(at, f"{name}{part}")[0]) for at, part in ((place, "SLIDE"), (anchor, "FOOT")))
-        deck.fixed([held])
+        deck.fix_nodes([held])
         if leg.carriage.mass:
             deck.mass([node], leg.carriage.mass, f"{name}CARRIAGE")
         if leg.carriage.spring:
             deck.springs([(held, node)], leg.carriage.spring, f"{name}FOOTDRIVE")
-        found.append(_carried(leg, node, place, slides=False))
+        found.append(_cylinder_node(leg, node, place, slides=False))
     return found
 
 
-def _free_piston(deck: Deck, leg: LegAtPose, name: str, count: int) -> tuple[list[_Guided], list[tuple[int, Array]]]:
-    """The part outside: its section at the mouth, and nodes and places of that at the tip."""
+def _free_piston(
+    deck: Deck, leg: LegAtPose, name: str, count: int
+) -> tuple[list[_GuidedNode], list[tuple[int, Array]]]:
+    """Write the piston outside the cylinder: nodes of its section at the mouth, nodes and places of that at the tip."""
     square = section_mesh(Rectangle(width=leg.side, height=leg.side), leg.side, "hex20")
-    part = extruded(square, leg.free_length, count)
-    points = leg.at(leg.mouth) + part.nodes @ leg.axes[:, [2, 0, 1]].T
+    part = extrude_section(square, leg.free_length, count)
+    points = leg.axis_points(leg.mouth) + part.nodes @ leg.axes[:, [2, 0, 1]].T
     nodes = deck.nodes(points, name)
     deck.elements("C3D20", nodes[part.elements.astype(np.int64)], f"{name}FREE")
-    deck.solid(f"{name}FREE", E=leg.EA / leg.side**2, density=leg.rhoA / leg.side**2)
+    deck.solid_section(f"{name}FREE", E=leg.EA / leg.side**2, density=leg.rhoA / leg.side**2)
     mouth, tip = part.plane(0), part.plane(1)
-    clamped = [_carried(leg, int(nodes[i]), points[i], slides=True) for i in mouth]
+    clamped = [_cylinder_node(leg, int(nodes[i]), points[i], slides=True) for i in mouth]
     return clamped, [(int(nodes[i]), points[i]) for i in tip]
 
 
-def _inside(deck: Deck, leg: LegAtPose, name: str, count: int) -> list[_Guided]:
-    """The part inside, springs and masses on the axis, and the drive that holds its end."""
+def _inner_piston(deck: Deck, leg: LegAtPose, name: str, count: int) -> list[_GuidedNode]:
+    """Write the piston inside the cylinder: springs and masses on the axis, and the drive that holds its end."""
     depth = leg.piston_length - leg.free_length
     pieces = 2 * max(1, round(0.5 * count * depth / leg.free_length)) if depth > _NOTHING * leg.length else 0
     places = leg.mouth - np.linspace(0.0, depth, pieces + 1)
-    points = leg.at(places)
+    points = leg.axis_points(places)
     nodes = [int(node) for node in deck.nodes(points, f"{name}AXIS")]
     if pieces:
         deck.springs(list(pairwise(nodes)), leg.EA * pieces / depth, f"{name}STRETCH")
@@ -191,32 +195,32 @@ def _inside(deck: Deck, leg: LegAtPose, name: str, count: int) -> list[_Guided]:
             deck.mass(nodes[2:-1:2], 2 * share, f"{name}EVEN")
     across, still, driven = leg.axes[:, :2].T, np.zeros((2, 1 + leg.piston_turns)), []
     if leg.drive:
-        place = leg.at(0.0 if abs(places[-1]) > _NEAR * leg.length else -_BEHIND * leg.length)
+        place = leg.axis_points(0.0 if abs(places[-1]) > _NEAR * leg.length else -_BEHIND * leg.length)
         held = int(deck.nodes(place, f"{name}BASE")[0])
         deck.springs([(held, nodes[-1])], leg.drive_spring, f"{name}DRIVE")
         if leg.carriage is None and not len(leg.base_gives):
-            deck.fixed([held])
+            deck.fix_nodes([held])
         else:
-            driven = [_carried(leg, held, place, slides=False)]
+            driven = [_cylinder_node(leg, held, place, slides=False)]
     loose = [
-        _Guided(node=node, directions=across, motion=np.column_stack([across @ _turned(leg, point), still]))
+        _GuidedNode(node=node, directions=across, motion=np.column_stack([across @ _turned(leg, point), still]))
         for node, point in zip(nodes[1:], points[1:], strict=True)
     ]
-    return [_carried(leg, nodes[0], points[0], slides=True), *loose, *driven]
+    return [_cylinder_node(leg, nodes[0], points[0], slides=True), *loose, *driven]
 
 
-def _cylinder(deck: Deck, leg: LegAtPose, name: str) -> list[_Guided]:
+def _cylinder(deck: Deck, leg: LegAtPose, name: str) -> list[_GuidedNode]:
     if not leg.mass:
         return []
     z = leg.axes[:, 2]
     inertia = leg.inertia * np.eye(3) + (leg.axial_inertia - leg.inertia) * np.outer(z, z)
     places, masses = point_masses(leg.mass, inertia)
-    points = leg.at(leg.com) + places
+    points = leg.axis_points(leg.com) + places
     nodes = _masses(deck, points, masses, f"{name}CYLINDER")
-    return [_carried(leg, node, point, slides=False) for node, point in zip(nodes, points, strict=True)]
+    return [_cylinder_node(leg, node, point, slides=False) for node, point in zip(nodes, points, strict=True)]
 
 
-def _guide(guided: Sequence[_Guided]) -> Tie:
+def _guide(guided: Sequence[_GuidedNode]) -> Tie:
     """All that moves with carriage, base joint and the slide of the piston's section at the mouth."""
     terms = [(g.node, axis) for g in guided for axis in ((1, 2, 3) if g.directions.shape[1] == 3 else (1,))]
     rows = np.zeros((sum(len(g.directions) for g in guided), len(terms)))
@@ -239,12 +243,12 @@ def _joint(
     moved = np.column_stack([*carriers.values(), np.zeros((6, 0))])
     motions = np.eye(len(axes) + len(leg.tip_gives))
     springs = [
-        _sprung(deck, motions[k] * leg.length / leg.side, stiffness, leg.length, f"{name}END{k + 1}")
+        _spring_node(deck, motions[k] * leg.length / leg.side, stiffness, leg.length, f"{name}END{k + 1}")
         for k, stiffness in enumerate(leg.end_springs)
         if stiffness
     ]
     springs += [
-        _sprung(deck, motions[len(axes) + k], stiffness, 1.0, f"{name}TIPGIVES{k + 1}")
+        _spring_node(deck, motions[len(axes) + k], stiffness, 1.0, f"{name}TIPGIVES{k + 1}")
         for k, stiffness in enumerate(leg.tip_springs)
     ]
     rows = np.zeros((3 * len(tip) + len(springs), 3 * len(tip) + len(springs) + len(carriers)))

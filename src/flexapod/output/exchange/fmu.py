@@ -15,8 +15,8 @@ from flexapod import model
 from flexapod.common.errors import InputError
 from flexapod.common.version import __version__
 from flexapod.mechanics.symbolic.compiler import shared_object
-from flexapod.output.exchange.c_source import FLAGS, texts
-from flexapod.output.exchange.c_source_data import Channel, Marched, marched
+from flexapod.output.exchange.c_source import FLAGS, source_texts
+from flexapod.output.exchange.c_source_data import Channel, CMarch, prepare_c_march
 from flexapod.output.exchange.formats import Content
 
 WRAPPER = Path(__file__).parent / "c" / "fmi3.c"
@@ -57,12 +57,12 @@ def fmu(study: model.Study, commands: str = "inputs", step: float | str | None =
     Raises
     ------
     InputError
-        As of `marched`; a kind of machine that FMI has no name for.
+        As of `prepare_c_march`; a kind of machine that FMI has no name for.
     ComputationError
         The compiler failed.
     """
-    (folder, ending), found = _machine(), marched(study, commands, step)
-    sources = texts(found)
+    (folder, ending), found = _machine(), prepare_c_march(study, commands, step)
+    sources = source_texts(found)
     token = hashlib.sha256("\0".join([__version__, *sources.values()]).encode()).hexdigest()[:32]
     sources["fmi3.c"] = _numbers(found, token) + WRAPPER.read_text()
     files: dict[str, str | bytes] = {
@@ -93,14 +93,14 @@ def _machine() -> tuple[str, str]:
     return f"{machine}-{system}", ending
 
 
-def _numbers(found: Marched, token: str) -> str:
+def _numbers(found: CMarch, token: str) -> str:
     channels = [(1, x) for x in found.inputs] + [(0, x) for x in found.outputs]
     rows = ", ".join(f"{{{kind}, {x.first}, {x.size}}}" for kind, x in channels)
     built_in = int(not found.commanded)
     return f'#define TOKEN "{token}"\n#define VARIABLES {{{rows}}}\nenum {{ BUILT_IN = {built_in} }};\n'
 
 
-def _description(found: Marched, token: str) -> str:
+def _description(found: CMarch, token: str) -> str:
     root = xml.Element(
         "fmiModelDescription", fmiVersion="3.0", modelName=NAME, instantiationToken=token,
         description="Parallel robot with elastic legs in fixed steps", generationTool=f"flexapod {__version__}",

@@ -1,10 +1,7 @@
-"""What a study can be written as, and the one way to write it.
+"""Formats in which a study can be exported, and `export`, which writes them all.
 
-What the writer of a format hands back.
-
-A robot about rest as matrices with named channels.
-
-Frequency responses as a universal file of datasets 58, ASCII: one for each input and output.
+The writer of a format returns `Content`. Two are here: `state_space`, a robot about rest as matrices with named
+channels, and `uff`, frequency responses as a universal file of datasets 58, one for each input and output.
 """
 
 from __future__ import annotations
@@ -18,11 +15,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import model
-from flexapod.analysis.results.arguments import LoadLike, PoseLike, RobotLike, at_pose
+from flexapod.analysis.results.arguments import LoadLike, PoseLike, RobotLike, study_at_pose
 from flexapod.common.arrays import Array
-from flexapod.common.errors import InputError, closest
-from flexapod.common.files import path_of, replacing, scratch
-from flexapod.common.lazy_imports import lazy
+from flexapod.common.errors import InputError, suggest_word
+from flexapod.common.files import path_of, replace_file, temporary_folder
+from flexapod.common.lazy_imports import LazyModule
 
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset
@@ -30,13 +27,13 @@ if TYPE_CHECKING:
     from flexapod.analysis import linear
     from flexapod.output.exchange import c_source, fmu, gltf, mjcf, pose_deck, vtk
 else:
-    linear = lazy("flexapod.analysis.linear")
-    c_source = lazy("flexapod.output.exchange.c_source")
-    fmu = lazy("flexapod.output.exchange.fmu")
-    gltf = lazy("flexapod.output.exchange.gltf")
-    mjcf = lazy("flexapod.output.exchange.mjcf")
-    pose_deck = lazy("flexapod.output.exchange.pose_deck")
-    vtk = lazy("flexapod.output.exchange.vtk")
+    linear = LazyModule("flexapod.analysis.linear")
+    c_source = LazyModule("flexapod.output.exchange.c_source")
+    fmu = LazyModule("flexapod.output.exchange.fmu")
+    gltf = LazyModule("flexapod.output.exchange.gltf")
+    mjcf = LazyModule("flexapod.output.exchange.mjcf")
+    pose_deck = LazyModule("flexapod.output.exchange.pose_deck")
+    vtk = LazyModule("flexapod.output.exchange.vtk")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,7 +106,7 @@ FORMATS: Mapping[str, Format] = {
 
 @dataclass(frozen=True, kw_only=True)
 class Exported:
-    """What was written: `path`, a file or a folder; `files`, all of them; `left_out`, `remarks` as of `Content`.
+    """A finished export: `path`, a file or a folder; `files`, all of them; `left_out`, `remarks` as of `Content`.
 
     Stands for its path wherever a path is asked for.
     """
@@ -187,13 +184,13 @@ def export(
         "pose": pose, "load": load, "title": title, "elements": elements, "modes": modes, "fidelity": fidelity,
         "data": data, "magnify": magnify, "commands": commands, "step": step, "inputs": inputs, "outputs": outputs,
     }  # fmt: skip
-    return written(
-        at_pose(study), format, path_of(out, "out"), {k: value for k, value in given.items() if value is not None}
+    return write_format(
+        study_at_pose(study), format, path_of(out, "out"), {k: value for k, value in given.items() if value is not None}
     )
 
 
-def written(study: model.Study, format: str, path: Path, given: Mapping[str, object]) -> Exported:
-    """As `export`, with those options that are `given`."""
+def write_format(study: model.Study, format: str, path: Path, given: Mapping[str, object]) -> Exported:
+    """Write a study in a format to a path with the options that are `given`; others have their defaults."""
     kind = format_of(format)
     check_options(format, given)
     check_place(format, path)
@@ -202,7 +199,7 @@ def written(study: model.Study, format: str, path: Path, given: Mapping[str, obj
     beside = path.parent if kind.endings else path
     places = {beside / name if name else path: content for name, content in found.files.items()}
     for place, content in sorted(places.items(), key=lambda each: each[0] == path):  # last what names the others
-        with replacing(place) as temporary:
+        with replace_file(place) as temporary:
             temporary.write_bytes(content if isinstance(content, bytes) else content.encode())
     return Exported(path=path, files=tuple(places), left_out=found.left_out, remarks=found.remarks)
 
@@ -212,7 +209,7 @@ def format_of(name: str) -> Format:
     if not isinstance(name, str) or name not in FORMATS:
         allowed = "; ".join(f"{known}, {kind.words}" for known, kind in FORMATS.items())
         raise InputError(
-            "is not a format", key="format", value=name, allowed=allowed, next_step=closest(str(name), FORMATS)
+            "is not a format", key="format", value=name, allowed=allowed, next_step=suggest_word(str(name), FORMATS)
         )
     return FORMATS[name]
 
@@ -268,7 +265,7 @@ def state_space(
         drives="force" if pushed else "given",
         load=load,
     )
-    with scratch() as folder:
+    with temporary_folder() as folder:
         content = found.save(folder / Path(name).name).read_bytes()
     left = ["all that is not linear about the equilibrium", "frequencies above those of the shapes"]
     left += ["[control]: the loop of a controller"] * (study.control is not None)

@@ -1,6 +1,6 @@
 """A motion as one GLB file: a node for each rigid body, and pistons that bend as morph targets.
 
-Binary glTF 2.0: arrays as accessors of one buffer, and the file that holds them.
+The file is binary glTF 2.0; its arrays are accessors of one buffer (`Glb`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from flexapod.common.arguments import number
 from flexapod.common.arrays import Array
 from flexapod.common.version import __version__
 from flexapod.kinematics.rotations import quaternion
-from flexapod.output.exchange.drawn import DrawnRobot, drawn_robot
+from flexapod.output.exchange.animation import RobotAnimation, robot_animation
 from flexapod.output.exchange.formats import Content
 from flexapod.output.scene.geometry import orientation, plate, tube, tube_faces
 from flexapod.output.scene.skeleton import STATIONS
@@ -110,7 +110,7 @@ def gltf(study: model.Study, *, data: Dataset | None = None, magnify: float = 1.
     unit long, scaled to the length of the free part; weights of their morph targets are the amplitudes of their shapes.
     """
     magnify = number(magnify, "magnify", above=0.0, most=LARGEST)
-    robot = drawn_robot(study, data, magnify)
+    robot = robot_animation(study, data, magnify)
     file = Glb(f"flexapod {__version__}")
     time = file.store(robot.time, name="time")
     nodes = [_base(file, robot), _payload(file, robot, time)]
@@ -133,7 +133,7 @@ def _material(file: Glb, name: str, colour: str) -> int:
     return file.add("materials", {"name": name, "doubleSided": True, "pbrMetallicRoughness": pbr})
 
 
-def _plate(file: Glb, points: Array, robot: DrawnRobot, name: str, colour: str) -> int:
+def _plate(file: Glb, points: Array, robot: RobotAnimation, name: str, colour: str) -> int:
     vertices, faces = plate(points, 0.02 * robot.skeleton.size)
     primitive = {
         "attributes": {"POSITION": file.store(vertices, VERTICES)},
@@ -155,7 +155,7 @@ def _rod(file: Glb, line: Array, radii: Array, material: int) -> Entry:
     }
 
 
-def _base(file: Glb, robot: DrawnRobot) -> int:
+def _base(file: Glb, robot: RobotAnimation) -> int:
     rails = robot.guides[0].reshape(-1, 3)
     mesh = _plate(file, robot.base[0] if not len(rails) else robot.skeleton.robot.base_joints, robot, "base", GREY)
     if not len(rails) or not _still(robot.guides):
@@ -165,7 +165,7 @@ def _base(file: Glb, robot: DrawnRobot) -> int:
     return file.add("nodes", {"name": "base", "mesh": mesh})
 
 
-def _payload(file: Glb, robot: DrawnRobot, time: int) -> int:
+def _payload(file: Glb, robot: RobotAnimation, time: int) -> int:
     mesh = _plate(file, robot.skeleton.robot.platform_joints, robot, "payload", PLATE)
     node = file.add("nodes", {"name": "payload", "mesh": mesh})
     _place(file, node, time, robot.centre, "platform_position")
@@ -173,7 +173,7 @@ def _payload(file: Glb, robot: DrawnRobot, time: int) -> int:
     return node
 
 
-def _leg(file: Glb, robot: DrawnRobot, time: int, i: int) -> int:
+def _leg(file: Glb, robot: RobotAnimation, time: int, i: int) -> int:
     """Nodes of a leg: the cylinder, and in it the piston."""
     number, mouth, radii = i + 1, float(robot.mouth[i]), robot.radii[i]
     colour = _material(file, f"leg_{number}", LEG_COLORS[i % len(LEG_COLORS)])
@@ -200,7 +200,7 @@ def _leg(file: Glb, robot: DrawnRobot, time: int, i: int) -> int:
     return node
 
 
-def _bending(robot: DrawnRobot, i: int) -> tuple[Array, Array, list[str]]:
+def _bending(robot: RobotAnimation, i: int) -> tuple[Array, Array, list[str]]:
     """Weights (T, targets), displacements along x or y at the stations (targets, STATIONS, 3), names of the targets."""
     weights, shapes = robot.weights[:, i], robot.shapes[i]
     moving = np.abs(weights).max(axis=0) > 0
@@ -211,7 +211,7 @@ def _bending(robot: DrawnRobot, i: int) -> tuple[Array, Array, list[str]]:
     return weights[:, moving], np.array(found).reshape(-1, STATIONS, 3), names
 
 
-def _carriages(file: Glb, robot: DrawnRobot, time: int) -> list[int]:
+def _carriages(file: Glb, robot: RobotAnimation, time: int) -> list[int]:
     """Cranks turn about their shafts; what slides is a short piece around its base joint."""
     nodes, size = [], 0.03 * robot.skeleton.size
     turning = not _still(robot.guides)

@@ -13,7 +13,7 @@ from flexapod.kinematics.rotations import quaternion
 from flexapod.mechanics.elements.registry import refuse_tables
 from flexapod.output.exchange.formats import Content
 from flexapod.output.exchange.mjcf_springs import Drive, LegSprings, flexible_springs, rigid_springs
-from flexapod.output.exchange.mjcf_trees import LEAST, Gives, leg_body, numbers, payload_inertia
+from flexapod.output.exchange.mjcf_trees import LEAST, LegCompliance, leg_body, numbers, payload_inertia
 from flexapod.solve.statics.ideal_robot import rigid_forces
 
 STEPS = 2  # in which what holds a loop closed pulls a gap together
@@ -33,7 +33,7 @@ def mjcf(study: model.Study, *, fidelity: str | None = None) -> Content:
     rigid = simulation.fidelity == "rigid"
     springs = rigid_springs(robot) if rigid else flexible_springs(robot, simulation.lateral_shapes > 0)
     limbs = kinematics.rigid_limbs(robot) if rigid else kinematics.robot_limbs(robot)
-    missing = left_out(study, rigid)
+    missing = mjcf_omissions(study, rigid)
     text = "\n".join([
         f'<mujoco model="{robot.type}">',
         *_comment(springs, rigid, missing),
@@ -53,8 +53,8 @@ def mjcf(study: model.Study, *, fidelity: str | None = None) -> Content:
     return Content(files={"": text + "\n"}, left_out=tuple(missing), remarks=(_remark(springs),))
 
 
-def left_out(study: model.Study, rigid: bool) -> list[str]:
-    """What of the robot the file does not have, in words."""
+def mjcf_omissions(study: model.Study, rigid: bool) -> list[str]:
+    """Parts and effects of the robot that the MJCF file omits, as text."""
     robot, found = study.robot, ["the study's motion: commands of the drives come from outside"]
     if rigid:
         found.append("all that gives way but servos")
@@ -136,11 +136,11 @@ def _closures(limbs: kinematics.Limbs, springs: LegSprings) -> Iterator[str]:
             at = numbers(limbs.platform[i - 1])
             yield f'<weld name="loop_{i}" body1="tip_{i}" body2="payload" anchor="{at}" {how}/>'
         else:
-            body, place = _end(gives, i)
+            body, place = _tip_body(gives, i)
             yield f'<connect name="loop_{i}" body1="{body}" body2="payload" anchor="0 0 {numbers(place)}" {how}/>'
 
 
-def _end(gives: Gives, i: int) -> tuple[str, float]:
+def _tip_body(gives: LegCompliance, i: int) -> tuple[str, float]:
     """The body that ends in the platform joint, and where that is on its axis z [m]."""
     return (f"piston_{i}", 0.0) if gives.piston is None else (f"bend_{i}", 0.5 * gives.piston.free)
 
@@ -159,7 +159,8 @@ def _actuators(springs: LegSprings) -> Iterator[str]:
 def _home(robot: model.Robot, springs: LegSprings) -> list[float]:
     """Commands at home; forces are those that hold the rigid robot."""
     pushed = any(drive.push for _, drive in _numbered(springs))
-    force = rigid_forces(robot, as_pose(robot, None), np.zeros((1, 6))).drive_force[0] if pushed else np.zeros(0)
+    home = kinematics.RigidPoses(robot, as_pose(robot, None))
+    force = rigid_forces(home, np.zeros((1, 6))).drive_force[0] if pushed else np.zeros(0)
     found = []
     for i, drive in _numbered(springs):
         found += [drive.home] if drive.servo is not None else []

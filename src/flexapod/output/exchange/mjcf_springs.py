@@ -1,4 +1,4 @@
-"""What of a leg gives way in MuJoCo, and what its drive is there."""
+"""Compliance of a leg as springs of MuJoCo, and its drive as an actuator."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import numpy as np
 from flexapod import kinematics, model
 from flexapod.analysis.results.arguments import as_pose
 from flexapod.common.errors import InputError
-from flexapod.mechanics.elements.springs import Place, in_series, springs_along
+from flexapod.mechanics.elements.springs import Place, series_stiffness, springs_along
 from flexapod.model.leg.damping import damping_parts
 from flexapod.output.exchange.decks_legs import LegAtPose, drive_stiffness, legs_at_pose
-from flexapod.output.exchange.mjcf_trees import Bending, Gives, JointSpring
+from flexapod.output.exchange.mjcf_trees import Bending, JointSpring, LegCompliance
 
 STEP = {"rigid": 2e-5, "shortest": 1e-6, "longest": 1e-4}  # s
 SHARE = 0.3  # of a leg's own time sqrt(m / k) that a step may have
@@ -38,15 +38,15 @@ class Drive:
 
 @dataclass(frozen=True, kw_only=True)
 class LegSprings:
-    """Of all legs what gives way, their drives (None: passive), and the step [s] for which they are made."""
+    """Compliance `gives` and drives of all legs (None: passive), and the step [s] for which they are made."""
 
-    gives: list[Gives]
+    gives: list[LegCompliance]
     drives: list[Drive | None]
     step: float
 
 
 def rigid_springs(robot: model.Robot) -> LegSprings:
-    """Nothing gives way but servos; a prescribed drive is one as stiff as the steps and its own mass let it be."""
+    """Springs of rigid legs: servos only; a prescribed drive is as stiff as the step and its own mass allow."""
     limbs, step = kinematics.rigid_limbs(robot), STEP["rigid"]
     light = {f"gamma{k}": JointSpring(armature=LIGHT * _turning(robot)) for k in (1, 2, 3)}
     drives = []
@@ -56,7 +56,7 @@ def rigid_springs(robot: model.Robot) -> LegSprings:
         hard = JointSpring(stiffness=mass * (SHARE / step) ** 2, damping=SHARE * mass / step)
         own = JointSpring(stiffness=stiffness, damping=max(_damping(leg), stiffness * step))
         drives.append(_drive(limbs, i, leg, own if np.isfinite(stiffness) else hard))
-    gives = [Gives(joints=light, begin=float(zero)) for zero in limbs.carriage_zero]
+    gives = [LegCompliance(joints=light, begin=float(zero)) for zero in limbs.carriage_zero]
     return LegSprings(gives=gives, drives=drives, step=step)
 
 
@@ -83,12 +83,12 @@ def flexible_springs(robot: model.Robot, bends: bool) -> LegSprings:
         between = JointSpring(stiffness=outer, damping=outer * delay)
         piston = _bending(leg, at, step, between, twists=bool(limbs.pose_closure[i])) if bends else None
         begin = float(limbs.carriage_zero[i])
-        gives.append(Gives(joints=joints, base=_base(leg, step), piston=piston, begin=begin))
+        gives.append(LegCompliance(joints=joints, base=_base(leg, step), piston=piston, begin=begin))
     return LegSprings(gives=gives, drives=drives, step=step)
 
 
 def _step(robot: model.Robot, along: list[tuple[float, float]], legs: list[LegAtPose]) -> float:
-    """A share of the shortest time in which a part of a piston swings on what is along it [s]."""
+    """Step: a share of the shortest time in which a part of a piston oscillates on the springs along it [s]."""
     times = []
     for leg, at, (inner, outer) in zip(robot.legs, legs, along, strict=True):
         mass, cut = leg.piston.mass, bool(np.isfinite(outer))
@@ -168,8 +168,8 @@ def _base(leg: model.Leg, step: float) -> dict[str, JointSpring]:
 
 
 def _softness(leg: model.Leg, at: Place) -> float:
-    """Of the springs along a leg at its base or platform joint [m/N], 0 without any."""
-    stiffness = in_series((spring for spring in springs_along(leg) if spring.at == at), 0.0, 0.0)[0]
+    """Compliance of the springs along a leg at its base or platform joint [m/N], 0 without any."""
+    stiffness = series_stiffness((spring for spring in springs_along(leg) if spring.at == at), 0.0, 0.0)[0]
     return 1 / stiffness if stiffness else 0.0
 
 
@@ -188,7 +188,7 @@ def _drive(limbs: kinematics.Limbs, i: int, leg: model.Leg, servo: JointSpring) 
 
 
 def _damping(leg: model.Leg) -> float:
-    """Of a servo or a feedback [N s/m, N m s/rad]; 0 of other drives."""
+    """Damping of a servo or a feedback [N s/m, N m s/rad]; 0 of other drives."""
     drive = leg.drive
     if isinstance(drive, model.ForceDrive):
         return drive.feedback.damping if drive.feedback else 0.0
@@ -200,7 +200,7 @@ def _length(limbs: kinematics.Limbs, i: int) -> float:
 
 
 def _arm(limbs: kinematics.Limbs, i: int) -> float:
-    """Of a crank [m]; 1 of what slides."""
+    """Length of a crank's arm [m]; 1 where the carriage slides."""
     return float(np.linalg.norm(limbs.carriage_arm[i])) or 1.0
 
 

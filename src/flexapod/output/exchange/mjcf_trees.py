@@ -1,4 +1,4 @@
-"""Legs of a robot as trees of bodies for MuJoCo: a coordinate that moves is a joint, what gives way another."""
+"""Legs of a robot as trees of bodies for MuJoCo: each coordinate that moves and each compliance is a joint."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class JointSpring:
 
     @property
     def text(self) -> str:
-        """Its attributes, those that are not 0."""
+        """MJCF attributes of the spring that are not 0."""
         given = ((name, getattr(self, name)) for name in ("stiffness", "damping", "armature"))
         return "".join(f' {name}="{numbers(value)}"' for name, value in given if value)
 
@@ -48,8 +48,8 @@ class Bending:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Gives:
-    """What gives way in a leg beside the coordinates of the rigid one.
+class LegCompliance:
+    """Compliance of a leg beside the coordinates of the rigid one.
 
     `joints`: springs by coordinate; `base`: at the base joint by leg axis, x, y, z; `piston`: None, it is one piece.
     `begin`: what the coordinate of the carriage is at home [m, rad].
@@ -61,7 +61,7 @@ class Gives:
     begin: float = 0.0
 
 
-RIGID = Gives()
+RIGID = LegCompliance()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,7 +77,7 @@ class TreeBody:
 
     @property
     def text(self) -> str:
-        """As MJCF."""
+        """MJCF element of the body and of all that it carries."""
         start = f'<body name="{self.name}" pos="{numbers(self.place)}" quat="{numbers(quaternion(self.turn))}">'
         return "\n".join([start, *self.joints, *self.parts, *(body.text for body in self.inside), "</body>"])
 
@@ -88,7 +88,9 @@ def joint(name: str, kind: str, axis: Array, spring: JointSpring | None = None, 
     return f'<joint name="{name}" type="{kind}" axis="{numbers(axis)}"{more}{held}/>'
 
 
-def leg_body(robot: Robot, limbs: kinematics.Limbs, i: int, gives: Gives = RIGID, looks: bool = False) -> TreeBody:
+def leg_body(
+    robot: Robot, limbs: kinematics.Limbs, i: int, gives: LegCompliance = RIGID, looks: bool = False
+) -> TreeBody:
     """Leg i at home: `carriage`, `cylinder`, `piston`, of a piston that bends its outer part `bend`, and `tip`.
 
     A joint of a coordinate (`kinematics.COORDINATES`) has its name and the number of the leg: that of the carriage, of
@@ -107,19 +109,19 @@ def leg_body(robot: Robot, limbs: kinematics.Limbs, i: int, gives: Gives = RIGID
         **{f"gamma{k}": axis for k, axis in enumerate(still, start=1)},
     }
 
-    def held(*names: str) -> list[str]:
+    def moving_hinges(*names: str) -> list[str]:
         moving = [name for name in names if moves[name]]
         return [joint(f"{name}_{number}", "hinge", axes[name], gives.joints.get(name)) for name in moving]
 
     spun = leg.letters.stroke == "C"
     ends = [TreeBody(
-        name=f"tip_{number}", place=none, turn=limbs.leg_frames[i], joints=held("gamma1", "gamma2", "gamma3"),
+        name=f"tip_{number}", place=none, turn=limbs.leg_frames[i], joints=moving_hinges("gamma1", "gamma2", "gamma3"),
         parts=[inertial(0, 0, 0, 0)],
     )] * bool(limbs.pose_closure[i])  # fmt: skip
     along, at = gives.joints.get("l"), f' ref="{numbers(home["l"])}"'
     at += f' springref="{numbers(home["l"])}"' * (along is not None)
     slide = [joint(f"l_{number}", "slide", ALONG, along, at)] if moves["l"] or along else []
-    piston = _piston(leg, number, home["l"], gives, [*held(*["spin"] * spun), *slide], ends, looks)
+    piston = _piston(leg, number, home["l"], gives, [*moving_hinges(*["spin"] * spun), *slide], ends, looks)
     base = [
         joint(f"base_{name}_{number}", "slide", axis, gives.base[name])
         for name, axis in zip("xyz", still, strict=True)
@@ -129,13 +131,14 @@ def leg_body(robot: Robot, limbs: kinematics.Limbs, i: int, gives: Gives = RIGID
     seen = [_capsule(0.0, tube.mouth, 1.5 * _radius(leg))] * (looks and tube.mouth > 0)
     cylinder = TreeBody(
         name=f"cylinder_{number}", place=none if leg.carriage else limbs.base[i],
-        turn=limbs.frames[i] @ exponential(tilt), joints=[*base, *held("alpha", "beta", *["spin"] * (not spun))],
+        turn=limbs.frames[i] @ exponential(tilt),
+        joints=[*base, *moving_hinges("alpha", "beta", *["spin"] * (not spun))],
         parts=[inertial(tube.mass, tube.com, tube.inertia, tube.axial_inertia), *seen], inside=[piston],
     )  # fmt: skip
     return _carriage(leg, limbs, i, gives, cylinder)
 
 
-def _carriage(leg: Leg, limbs: kinematics.Limbs, i: int, gives: Gives, cylinder: TreeBody) -> TreeBody:
+def _carriage(leg: Leg, limbs: kinematics.Limbs, i: int, gives: LegCompliance, cylinder: TreeBody) -> TreeBody:
     if leg.carriage is None:
         return cylinder
     kind, at = ("hinge" if leg.carriage.kind == "crank" else "slide"), numbers(-limbs.carriage_arm[i])
@@ -152,7 +155,13 @@ def _carriage(leg: Leg, limbs: kinematics.Limbs, i: int, gives: Gives, cylinder:
 
 
 def _piston(
-    leg: Leg, number: int, home: float, gives: Gives, joints: Sequence[str], ends: Sequence[TreeBody], looks: bool
+    leg: Leg,
+    number: int,
+    home: float,
+    gives: LegCompliance,
+    joints: Sequence[str],
+    ends: Sequence[TreeBody],
+    looks: bool,
 ) -> TreeBody:
     """The piston, in two parts where it bends: it is cut in the middle of its free part."""
     rod, still = leg.piston, np.eye(3)
@@ -206,7 +215,7 @@ def _capsule(begin: float, end: float, radius: float) -> str:
 
 
 def _radius(leg: Leg) -> float:
-    """Of the drawn piston [m]: half its depth, or that of a round rod of steel with its EA."""
+    """Radius of the drawn piston [m]: half its depth, or that of a round rod of steel with its EA."""
     depth = leg.piston.depth
     return 0.5 * depth if depth else float(np.sqrt(leg.piston.EA / (np.pi * 2.1e11)))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod import kinematics, model
-from flexapod.analysis.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, at_pose
+from flexapod.analysis.results.arguments import LoadLike, PoseLike, RobotLike, as_pose, study_at_pose
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.mechanics.elements.registry import refuse_tables
@@ -14,8 +14,8 @@ from flexapod.output.exchange.decks_legs import LegAtPose, PayloadAtPose, axial_
 from flexapod.output.exchange.decks_robot import Carriers, drive_shift, write_leg, write_payload
 from flexapod.output.exchange.formats import Content
 from flexapod.solve.modal.at_poses import locked_poses
-from flexapod.solve.statics.locked_robot import the_equilibrium
-from flexapod.solve.statics.static_loads import at_drives
+from flexapod.solve.statics.locked_robot import single_equilibrium
+from flexapod.solve.statics.static_loads import drive_values
 
 ELEMENTS = 20
 """Solid elements along the free part of each piston: first bending right to 5e-5, second to 3e-4."""
@@ -64,7 +64,7 @@ def abaqus_deck(
         A pose out of reach, a pure force drive, a piston that does not reach back to the mouth or has no mass, a
         cylinder with inertia and no mass, numbers of elements or modes out of range.
     """
-    study = at_pose(robot, load)
+    study = study_at_pose(robot, load)
     try:
         return _written(study, pose, elements, modes, title)
     except InputError as error:
@@ -85,7 +85,7 @@ def abaqus(
     """The deck, an ASCII text, and what it does not have; arguments as of `abaqus_deck`."""
     text = abaqus_deck(study, pose, load=load, elements=elements, modes=modes, title=title)
     words = text.encode("ascii", errors="replace").decode()
-    return Content(files={"": words}, left_out=tuple(left_out(study.robot)))
+    return Content(files={"": words}, left_out=tuple(deck_omissions(study.robot)))
 
 
 def _written(study: model.Study, pose: PoseLike, elements: int, modes: int, title: str) -> str:
@@ -102,14 +102,14 @@ def _written(study: model.Study, pose: PoseLike, elements: int, modes: int, titl
         )
     path = as_pose(robot, pose)
     locked = locked_poses(robot, model.Simulation(), path, study.load)
-    the_equilibrium(locked)
-    legs = legs_at_pose(robot, path, at_drives(locked.system, robot, locked.acts.force)[0])
+    single_equilibrium(locked)
+    legs = legs_at_pose(robot, path, drive_values(locked.system, robot, locked.acts.force)[0])
     R = path.rotation[0]
     payload = PayloadAtPose(
         mass=robot.payload.mass, com=path.point(robot.payload.com)[0][0], inertia=R @ robot.payload.inertia @ R.T
     )
     deck = Deck(title)
-    deck.say(*_explanation(robot, path, elements))
+    deck.comment(*_explanation(robot, path, elements))
     carriers = write_payload(deck, payload, kinematics.rigid_limbs(robot).hub_held)
     for i, leg in enumerate(legs, start=1):
         write_leg(deck, leg, f"LEG{i}", elements, payload, carriers)
@@ -119,8 +119,8 @@ def _written(study: model.Study, pose: PoseLike, elements: int, modes: int, titl
     return deck.text
 
 
-def left_out(robot: model.Robot) -> list[str]:
-    """What of the robot the deck does not have, in words."""
+def deck_omissions(robot: model.Robot) -> list[str]:
+    """Parts and effects of the robot that the deck omits, as text."""
     found = ["damping"]
     rubs = any(x.friction for leg in robot.legs for x in (leg.base_joint, leg.platform_joint, leg.drive))
     found += ["friction"] * rubs + ["play"] * any(leg.half_play for leg in robot.legs)
@@ -166,7 +166,7 @@ def _explanation(robot: model.Robot, path: kinematics.Poses, elements: int) -> l
         f"Joints at base and platform let turn what their letters allow ({robot.type}), by *EQUATION; springs of "
         "joints act on nodes that move as their angles and displacements do (sets TURN, END, GIVES, TIPGIVES). A bar "
         "twists as a square one: GJ is 0.84 EI.",
-        f"Left out: {', '.join(left_out(robot))}.",
+        f"Left out: {', '.join(deck_omissions(robot))}.",
         "Solids have shear and rotary inertia, beams have not: bending frequencies of slender pistons lie below those "
         "of `flexapod modes`, by parts in ten thousand in the first and some thousandths in the second.",
         "The equations are linear: good for small elastic motions about this pose, not for driving the robot. They "
@@ -187,14 +187,16 @@ def _write_steps(
 ) -> None:
     g = float(np.linalg.norm(robot.gravity))
     moved = [line for i, leg in enumerate(legs, start=1) for line in drive_shift(leg, f"LEG{i}")]
-    deck.say("")
+    deck.comment("")
     if g or wrench.any() or moved:
-        deck.say("Sag under gravity, load and drive forces; displacements of the payload's point masses are printed.")
+        deck.comment(
+            "Sag under gravity, load and drive forces; displacements of the payload's point masses are printed."
+        )
         deck.write("*STEP, NLGEOM", "*STATIC", "1., 1., 1E-5, 1.")
         if moved:
             deck.write("*BOUNDARY", *moved)
         if g:
-            deck.elset("HEAVY", deck.heavy)
+            deck.elset("HEAVY", deck.mass_sets)
             x, y, z = robot.gravity / g
             deck.write("*DLOAD", ", ".join(["HEAVY, GRAV", *map(number, (g, x, y, z))]))
         if wrench.any():
@@ -203,5 +205,5 @@ def _write_steps(
                 "*CLOAD", *(f"{node}, {axis}, {number(force)}" for (node, axis), force in forces.items() if force)
             )
         deck.write("*NODE PRINT, NSET=PAYLOAD", "U", "*NODE FILE", "U", "*END STEP")
-    deck.say("Frequencies about that state.")
+    deck.comment("Frequencies about that state.")
     deck.write("*STEP, PERTURBATION", "*FREQUENCY", str(modes), "*NODE FILE", "U", "*END STEP")

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod import model
 from flexapod.common.arrays import Array
-from flexapod.output.exchange.drawn import motion_of
+from flexapod.output.exchange.animation import motion_result
 from flexapod.output.exchange.formats import Content
 from flexapod.output.scene.geometry import RobotMotion, plate
 from flexapod.output.scene.skeleton import Scene, Skeleton
@@ -33,7 +33,7 @@ def vtk(study: model.Study, *, name: str, data: Dataset | None = None) -> Conten
     them to the flexible one. Results of legs are data of cells, those of the whole robot of the field, under their
     names.
     """
-    data = motion_of(study, data)
+    data = motion_result(study, data)
     motion = RobotMotion(study, data)
     cells, field, legs = _Cells(motion.skeleton), _series(data, _WHOLE), _series(data, _LEGS)
     stem = Path(name).stem
@@ -42,7 +42,7 @@ def vtk(study: model.Study, *, name: str, data: Dataset | None = None) -> Conten
     listed = HEAD.format("Collection") + "<Collection>\n" + "\n".join(rows) + "\n</Collection>\n</VTKFile>\n"
     files = {"": listed}
     for k, (t, place) in enumerate(zip(motion.time, places, strict=True)):
-        found = motion.at(float(t), 1.0)
+        found = motion.instant_at(float(t), 1.0)
         own = {"TimeValue": np.array([float(t)])} | {name: np.reshape(x[k], (1, -1)) for name, x in field.items()}
         files[place] = _grid(cells, found.rigid, found.flexible, own, {name: x[k] for name, x in legs.items()})
     others = [str(name) for name in data.data_vars if name not in field and name not in legs]
@@ -54,7 +54,7 @@ def vtk(study: model.Study, *, name: str, data: Dataset | None = None) -> Conten
 
 
 class _Cells:
-    """What does not change: the order of points, the cells on them, their legs, their radii.
+    """Parts of all files that do not change: order of the points, cells on them, their legs, their radii.
 
     Points are cylinders from base joint to mouth, then pistons, then rails and cranks, then the platform's plate.
     """
@@ -77,7 +77,7 @@ class _Cells:
         self.radius = np.concatenate([1.5 * np.repeat(radii[:, 0], 2), radii.ravel(), thin])
 
     def points(self, scene: Scene) -> Array:
-        """Where the points are in a scene, (n, 3)."""
+        """Positions of the points in a scene, (n, 3) [m]."""
         cylinders = np.stack([scene.base, scene.mouth], axis=1)
         corners = scene.centre + self.plate @ scene.rotation.T
         return np.concatenate([x.reshape(-1, 3) for x in (cylinders, scene.piston, scene.guides, corners)])

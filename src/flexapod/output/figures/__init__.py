@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flexapod.common.lazy_imports import later
+from flexapod.common.lazy_imports import lazy_attributes
 from flexapod.output.figures.actuator import actuator_modes, actuator_path, actuator_response
 from flexapod.output.figures.budget import budget
 from flexapod.output.figures.convergence import convergence, ladder
@@ -70,4 +70,4 @@ _LATER = {
     ),
 }
 
-__getattr__: Callable[[str], object] = later("flexapod.output.figures", _LATER)
+__getattr__: Callable[[str], object] = lazy_attributes("flexapod.output.figures", _LATER)

@@ -9,18 +9,18 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.common.quantities import cleared_lines, number, scale
+from flexapod.common.quantities import number, scale, zero_rounding_lines
 from flexapod.common.units import quantity
-from flexapod.output.figures.payload import is_quick, swings, vibration_line
+from flexapod.output.figures.payload import swings_too_often, turning_points, vibration_line
 from flexapod.output.figures.style import (
     LINE_STYLES,
     NOTE,
     PAGE,
     figure,
-    flat_on_the_scale_of_others,
-    ink,
-    needs,
-    styled,
+    house_style,
+    readable_color,
+    require_variables,
+    share_flat_scale,
 )
 from flexapod.output.scene.style import FLEXIBLE, LEG_COLORS, RIGID
 
@@ -28,8 +28,8 @@ _SHOWN = 12  # half swings of a band that are shown beside it
 _LARGER = ("angles", "elevations")  # towards which the tip of an actuator in space is deflected
 
 
-@styled
-@needs("tip_deflection", "length", "angle")
+@house_style
+@require_variables("tip_deflection", "length", "angle")
 def actuator_response(data: xr.Dataset | Mapping[int, xr.Dataset]) -> Figure:
     """Tip deflection over time; with several numbers of shapes also how far each is from the finest.
 
@@ -91,7 +91,7 @@ def _differences(axes: Axes, series: Mapping[int, xr.Dataset]) -> None:
             f"{count}: {number(level, 2)} µm",
             (1.0, level),
             xytext=(4, 0),
-            color=ink(LEG_COLORS[i]),
+            color=readable_color(LEG_COLORS[i]),
             fontsize=NOTE,
             **place,
         )
@@ -99,8 +99,8 @@ def _differences(axes: Axes, series: Mapping[int, xr.Dataset]) -> None:
     axes.set_ylabel("difference [µm]")
 
 
-@styled
-@needs("tip_deflection", "length", "angle")
+@house_style
+@require_variables("tip_deflection", "length", "angle")
 def actuator_path(data: xr.Dataset, hub_radius: float = 0.0, magnify: float = 1.0) -> Figure:
     """Path of the tip in the plane of motion, rigid and flexible, with the straight beam at start and end.
 
@@ -134,8 +134,8 @@ def actuator_path(data: xr.Dataset, hub_radius: float = 0.0, magnify: float = 1.
     return fig
 
 
-@styled
-@needs("mode_amplitude")
+@house_style
+@require_variables("mode_amplitude")
 def actuator_modes(data: xr.Dataset) -> Figure:
     """Amplitude of each lateral shape over time, each on its own scale; 0 where all is rounding beside the largest.
 
@@ -150,23 +150,26 @@ def actuator_modes(data: xr.Dataset) -> Figure:
     if "direction" in amplitudes.dims:
         labels = [f"{words}, towards larger {larger}" for larger in _LARGER for words in labels]
         amplitudes = amplitudes.stack(mode_of=("direction", "mode")).rename(mode_of="shape")
-    time, lines = data.time.values, cleared_lines(amplitudes.transpose(..., "time").values.reshape(len(labels), -1))
+    time, lines = (
+        data.time.values,
+        zero_rounding_lines(amplitudes.transpose(..., "time").values.reshape(len(labels), -1)),
+    )
     fig = figure(PAGE, 1.0 + 1.4 * len(labels))
-    zoomed = any(is_quick(values) for values in lines)
+    zoomed = any(swings_too_often(values) for values in lines)
     grid = fig.add_gridspec(len(labels), 1 + zoomed, width_ratios=(2.6, 1)[: 1 + zoomed])
     first = fig.add_subplot(grid[0, 0])
     panels = [first, *(fig.add_subplot(grid[i, 0], sharex=first) for i in range(1, len(labels)))]
     for i, (axes, label, values) in enumerate(zip(panels, labels, lines, strict=True)):
         unit = scale(values if values.any() else lines, "m")
         if vibration_line(axes, time, unit(values), color=FLEXIBLE, linewidth=1.0):
-            shown = slice(0, swings(values)[_SHOWN] + 1)
+            shown = slice(0, turning_points(values)[_SHOWN] + 1)
             beside = fig.add_subplot(grid[i, 1], title=f"its first {time[shown][-1]:.2g} s")
             beside.plot(time[shown], unit(values)[shown], color=FLEXIBLE, linewidth=1.0)
             beside.axhline(0, color="#555555", linewidth=0.7)
         axes.axhline(0, color="#555555", linewidth=0.7)
         axes.set(title=label, ylabel=f"amplitude [{unit.name}]")
         axes.tick_params(labelbottom=i == len(labels) - 1)
-    flat_on_the_scale_of_others(panels, [float(np.abs(values).max()) for values in lines])
+    share_flat_scale(panels, [float(np.abs(values).max()) for values in lines])
     panels[-1].set_xlabel("time [s]")
     fig.align_ylabels(panels)
     return fig

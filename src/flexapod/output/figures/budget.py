@@ -13,12 +13,12 @@ from matplotlib.patches import Patch
 from flexapod.analysis.error_budget.text import Bar, bars
 from flexapod.common.arrays import Array
 from flexapod.common.quantities import scale
-from flexapod.output.figures.style import NOTE, PAGE, SMALL, TEXT, figure, needs, styled
+from flexapod.output.figures.style import NOTE, PAGE, SMALL, TEXT, figure, house_style, require_variables
 from flexapod.output.scene.style import ERRORS
 
 
-@styled
-@needs("budget", "share")
+@house_style
+@require_variables("budget", "share")
 def budget(data: xr.Dataset) -> Figure:
     """Shares of the parts in the error of the tool's place, largest first, and of the legs in each part.
 

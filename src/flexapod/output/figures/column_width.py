@@ -27,7 +27,7 @@ _EDGES = {"left": 0.02, "right": 0.91, "bottom": 0.04, "top": 0.91, "hspace": 0.
 Stack = list[Axes]
 
 
-def narrowed(fig: Figure, width: float) -> Figure:
+def resize_figure(fig: Figure, width: float) -> Figure:
     """A copy of a figure at another width [in]; below three quarters of its own the panels are stacked.
 
     Up to six panels go into one column, the columns below each other; more, and small pictures, go into two columns,
@@ -60,7 +60,7 @@ def _place(axes: Axes) -> tuple[int, int]:
 
 
 def _stacks(fig: Figure) -> tuple[list[Stack], int]:
-    """What stays together, in reading order, and in how many columns it goes; 0 where there is one column already."""
+    """Stacks of panels that stay together, in reading order, and their columns; 0 if the figure has one already."""
     panels = sorted(_panels(fig), key=_place)
     columns = sorted({_place(axes)[1] for axes in panels})
     if len(columns) < 2:
@@ -79,7 +79,7 @@ def _stacks(fig: Figure) -> tuple[list[Stack], int]:
 
 
 def _keeps_shape(axes: Axes) -> bool:
-    """Whether height goes with width."""
+    """Test whether the height of a panel follows its width."""
     return axes.name != "rectilinear" or axes.get_aspect() != "auto"
 
 
@@ -204,7 +204,7 @@ def _titles(axes: Axes) -> list[Any]:
 
 
 def _runs_right(text: Text) -> bool:
-    """Whether this is a note that begins inside a panel and runs to the right."""
+    """Test whether a text is a note that begins inside a panel and runs to the right."""
     if not isinstance(text, Annotation) or text.get_rotation() or text.get_horizontalalignment() != "left":
         return False
     coords: Any = text.xycoords

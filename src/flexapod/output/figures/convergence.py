@@ -1,4 +1,4 @@
-"""How results converge with step and shapes, and what every fidelity gives for its cost."""
+"""Convergence of results with step and shapes, and accuracy of every fidelity against its cost."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from flexapod.output.figures.style import PAGE, SMALL, figure, ink, needs, styled
+from flexapod.output.figures.style import PAGE, SMALL, figure, house_style, readable_color, require_variables
 from flexapod.output.scene.style import FLEXIBLE, LEG_COLORS
 
 _WORDS = {"deviation": "centre of mass", "tip": "tip deflection"}
@@ -38,8 +38,8 @@ _OTHER = (LEG_COLORS[1], "P")
 _FILE, _CHOSEN = LEG_COLORS[5], LEG_COLORS[1]
 
 
-@styled
-@needs("family", "steps", "error_tip")
+@house_style
+@require_variables("family", "steps", "error_tip")
 def convergence(data: xr.Dataset) -> Figure:
     """Error against step, and against the number of shapes per plane, a quantity a row.
 
@@ -151,8 +151,8 @@ def _step_of(data: xr.Dataset) -> str:
     return f"all with step {1e3 * rows[0]:.5g} ms" if rows else "none computed"
 
 
-@styled
-@needs("fidelity", "seconds", "error_tip")
+@house_style
+@require_variables("fidelity", "seconds", "error_tip")
 def ladder(data: xr.Dataset) -> Figure:
     """Error of every fidelity against the time of the run, a quantity a panel; numbers: shapes, segments, elements.
 
@@ -201,7 +201,7 @@ def _rung(axes: Axes, data: xr.Dataset, name: str, of: tuple[str, str], color: s
     for seconds, error, k in zip(x, y, part.shapes.values, strict=True):
         if k:
             axes.annotate(str(int(k) // per), (seconds, error), xytext=side, textcoords="offset points", fontsize=SMALL,
-                          color=ink(color), ha=align)  # fmt: skip
+                          color=readable_color(color), ha=align)  # fmt: skip
 
 
 def _plain_times(axes: Axes, data: xr.Dataset) -> None:

@@ -1,9 +1,8 @@
-"""One drawing that becomes a picture and an SVG file: the artists of a figure are asked once what they draw.
+"""One drawing that becomes a picture and an SVG file: artists draw once, and words are laid out once in a process.
 
-Words on Agg and in SVG files: how they are set is found once for all figures of a process.
-
-Matplotlib sets each word anew for each figure, and the size of a font anew for each letter, which makes its hints
-anew. What is drawn is the same. Formulas, words askew and versions of matplotlib that draw otherwise are left to it.
+Matplotlib sets each word anew for each figure, and the size of a font anew for each letter, which makes its
+hints anew. What is drawn is the same. Formulas, rotated words and versions of matplotlib that draw otherwise
+are left to it.
 """
 
 from __future__ import annotations
@@ -42,7 +41,7 @@ def _letters(font: Any, words: str, points: float, dpi: float, flags: Any) -> li
     return [(item.glyph_index, item.x, item.y) for item in found] if all(x.ft_object is font for x in found) else None
 
 
-class WordsOnAgg(RendererAgg):
+class AggTextRenderer(RendererAgg):
     """Agg that remembers how words are set."""
 
     def get_text_width_height_descent(self, s: str, prop: FontProperties, ismath: Any) -> tuple[float, float, float]:
@@ -75,19 +74,19 @@ if _BY_LETTER:
 
 
 def _is_plain(text: Any) -> bool:
-    """Whether a text asks for no features of its font, where matplotlib knows of them."""
+    """Test whether a text asks for no features of its font, where matplotlib knows of them."""
     return not any(vars(text).get(name) for name in ("_features", "_language")) if text is not None else True
 
 
 class Canvas(FigureCanvasAgg):
     """A canvas of such an Agg."""
 
-    renderer: WordsOnAgg
+    renderer: AggTextRenderer
 
-    def get_renderer(self) -> WordsOnAgg:
+    def get_renderer(self) -> AggTextRenderer:
         size = (*self.get_width_height(physical=True), self.figure.dpi)
         if self._lastKey != size:
-            self.renderer, self._lastKey = WordsOnAgg(*size), size
+            self.renderer, self._lastKey = AggTextRenderer(*size), size
         return self.renderer
 
 
@@ -100,7 +99,7 @@ def _outlines(font: Any, words: str, text2path: Any) -> tuple[str, dict[str, Any
     return "".join(uses), outlines
 
 
-class WordsInSvg(RendererSVG):
+class SvgTextRenderer(RendererSVG):
     """An SVG file in whose words the letters of a word are one line."""
 
     def __init__(self, width: float, height: float, file: TextIO, **more: Any) -> None:
@@ -129,18 +128,18 @@ class WordsInSvg(RendererSVG):
 POINTS = 72  # of an inch: the unit of SVG files
 
 
-class Unsuited(Exception):
+class UnsupportedArtist(Exception):
     """A figure with images or coloured cells, which the two kinds of files treat differently."""
 
 
-class Twice(RendererBase):
-    """Passes what is drawn on Agg on to an SVG file, in points."""
+class DualRenderer(RendererBase):
+    """Renderer that draws on Agg and, in points, into an SVG file at once."""
 
-    pixels: WordsOnAgg
-    points: WordsInSvg
+    pixels: AggTextRenderer
+    points: SvgTextRenderer
     smaller: Affine2D
 
-    def __init__(self, pixels: WordsOnAgg, points: WordsInSvg, dpi: float) -> None:
+    def __init__(self, pixels: AggTextRenderer, points: SvgTextRenderer, dpi: float) -> None:
         super().__init__()
         self.pixels, self.points = pixels, points
         self.dpi = dpi
@@ -148,7 +147,7 @@ class Twice(RendererBase):
         self._clip: tuple[Any, Any] = (None, None)
 
     def _in_points(self, gc: GraphicsContextBase) -> GraphicsContextBase:
-        """What a line looks like, with its clipping in points; widths are in points already."""
+        """Style of a line with its clipping in points; widths are in points already."""
         place, clip = gc.get_clip_rectangle(), gc.get_clip_path()
         path: Any = clip[0]
         placed: Any = clip[1]
@@ -213,19 +212,19 @@ class Twice(RendererBase):
         return self.pixels.points_to_pixels(points)
 
     def draw_image(self, *_: Any, **__: Any) -> None:
-        raise Unsuited
+        raise UnsupportedArtist
 
     def draw_tex(self, *_: Any, **__: Any) -> None:
-        raise Unsuited
+        raise UnsupportedArtist
 
     def draw_quad_mesh(self, *_: Any, **__: Any) -> None:
-        raise Unsuited
+        raise UnsupportedArtist
 
     def draw_gouraud_triangles(self, *_: Any, **__: Any) -> None:
-        raise Unsuited
+        raise UnsupportedArtist
 
     def start_rasterizing(self) -> None:
-        raise Unsuited
+        raise UnsupportedArtist
 
 
 def draw_both(fig: Figure, file: Path, metadata: dict[str, str | None]) -> None:
@@ -237,9 +236,9 @@ def draw_both(fig: Figure, file: Path, metadata: dict[str, str | None]) -> None:
         It has images or coloured cells; nothing is of use then.
     """
     width, height = (POINTS * float(size) for size in fig.get_size_inches())
-    pixels: WordsOnAgg = fig.canvas.get_renderer()  # type: ignore[attr-defined]
+    pixels: AggTextRenderer = fig.canvas.get_renderer()  # type: ignore[attr-defined]
     pixels.clear()
     with file.open("w", encoding="utf-8") as text:
-        points = WordsInSvg(width, height, text, image_dpi=fig.dpi, metadata=metadata)
-        fig.draw(Twice(pixels, points, fig.dpi))
+        points = SvgTextRenderer(width, height, text, image_dpi=fig.dpi, metadata=metadata)
+        fig.draw(DualRenderer(pixels, points, fig.dpi))
         points.finalize()

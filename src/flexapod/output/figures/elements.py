@@ -10,12 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from flexapod.common.quantities import number, scale
-from flexapod.output.figures.style import NOTE, PAGE, figure, needs, styled
+from flexapod.output.figures.style import NOTE, PAGE, figure, house_style, require_variables
 from flexapod.output.scene.style import FLEXIBLE, LEG_COLORS, RIGID
 
 
-@styled
-@needs("tip_deflection", "frequency")
+@house_style
+@require_variables("tip_deflection", "frequency")
 def solid_meshes(meshes: Mapping[str, xr.Dataset], reference: xr.Dataset) -> Figure:
     """Response of the tip with one mesh a panel, over that of another model (Fig. 3 of the paper).
 
@@ -47,8 +47,8 @@ def solid_meshes(meshes: Mapping[str, xr.Dataset], reference: xr.Dataset) -> Fig
     return fig
 
 
-@styled
-@needs("tip_deflection")
+@house_style
+@require_variables("tip_deflection")
 def solid_comparison(results: Mapping[str, xr.Dataset], reference: xr.Dataset) -> Figure:
     """Response of the tip by several models, and how far each is from the reference (Fig. 4 of the paper).
 
@@ -101,8 +101,8 @@ _MARKS = ("o", "s", "^")
 _REFERENCE = "#333333"
 
 
-@styled
-@needs("tip_reference", "error", "error_free_length", "clamp_shift", "error_of_stiffness")
+@house_style
+@require_variables("tip_reference", "error", "error_free_length", "clamp_shift", "error_of_stiffness")
 def sliding_mesh(data: xr.Dataset) -> Figure:
     """Tip over time, error against element length with slopes, place of the clamp in an element, guide's stiffness.
 

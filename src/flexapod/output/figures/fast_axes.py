@@ -1,10 +1,9 @@
-"""Panels whose ticks are drawn together: all grid lines as one curve, all marks as one, in the style of one tick.
+"""Panels whose ticks are drawn together, and the settings of matplotlib for all figures, whatever the user's own.
 
-Matplotlib keeps five artists for each tick, makes and draws them one by one. A panel here has one tick an axis until
-somebody asks for the others; axes that need more than that (logarithms, minor ticks, words set askew, formulas) are
-matplotlib's own from the start. What is drawn is the same.
-
-Settings of matplotlib in which figures are drawn, whatever the user's own.
+Matplotlib has five artists for each tick, makes and draws them one by one. A panel here draws all grid lines as
+one curve and all marks as one, in the style of one tick, and has one tick an axis until somebody asks for the
+others. Axes that need more than that (logarithms, minor ticks, rotated words, formulas) are matplotlib's own
+from the start. What is drawn is the same.
 """
 
 from __future__ import annotations
@@ -59,7 +58,7 @@ _RC = {
 
 
 @cache
-def settings() -> Any:
+def rc_settings() -> Any:
     """The defaults of matplotlib, and ours."""
     defaults = {name: value for name, value in matplotlib.rcParamsDefault.items() if name != "backend"}
     ours: Any = defaults | _RC
@@ -68,9 +67,9 @@ def settings() -> Any:
         return {name: now[name] for name in defaults}
 
 
-def are_set() -> bool:
-    """Whether they hold now."""
-    return settings().items() <= dict.items(matplotlib.rcParams)
+def settings_active() -> bool:
+    """Test whether the settings of `rc_settings` are in force."""
+    return rc_settings().items() <= dict.items(matplotlib.rcParams)
 
 
 _LISTS = ("majorTicks", "minorTicks")
@@ -85,7 +84,7 @@ class _Plain(_AXIS):
 
     @contextmanager
     def _unmade(self) -> Iterator[None]:
-        """Ticks that nobody has asked for are not made in order to be changed: they are made as they should be."""
+        """Leave ticks that nobody has asked for unmade while their style changes; they are made in it later."""
         missing = [name for name in _LISTS if name not in vars(self)]
         for name in missing:
             setattr(self, name, [])
@@ -105,7 +104,7 @@ class _Plain(_AXIS):
             super().set_clip_path(*args, **kwargs)
 
     def _get_tick(self, major: bool) -> Tick:
-        with nullcontext() if are_set() else matplotlib.rc_context(settings()):
+        with nullcontext() if settings_active() else matplotlib.rc_context(rc_settings()):
             made = super()._get_tick(major)
         made.set_clip_path(self.axes.patch)
         return made
@@ -223,7 +222,7 @@ class _Plain(_AXIS):
 
 
 def _is_dressed(label: Text) -> bool:
-    """Whether more than plain letters is asked for."""
+    """Test whether a label needs more than plain horizontal letters."""
     asked = label.get_rotation(), label.get_path_effects(), label.get_bbox_patch(), label.get_usetex(), label.get_wrap()
     return any(asked) or label.get_url() is not None
 
@@ -254,7 +253,7 @@ class _Y(_Plain, YAxis):
 
 
 class Panel(Axes):
-    """Axes with such ticks."""
+    """Axes whose ticks are drawn together."""
 
     xaxis: XAxis
     yaxis: YAxis
@@ -269,14 +268,14 @@ class Panels(Figure):
     """A figure whose subplots are panels, unless a projection is asked for."""
 
     def add_subplot(self, *args: Any, **kwargs: Any) -> Any:
-        """As matplotlib's."""
+        """Add a subplot as matplotlib does; it is a `Panel` unless other axes are asked for."""
         if not {"projection", "polar", "axes_class"} & kwargs.keys() and not (args and isinstance(args[0], Axes)):
             kwargs["axes_class"] = Panel
         return super().add_subplot(*args, **kwargs)
 
 
 @contextmanager
-def keeping(fig: Figure) -> Iterator[None]:
+def cached_ticks(fig: Figure) -> Iterator[None]:
     """Ticks and the room of their numbers are looked for once in a panel of one size, not anew for every neighbour."""
     axes: list[Any] = [axis for panel in fig.axes if isinstance(panel, Panel) for axis in (panel.xaxis, panel.yaxis)]
     for axis in axes:

@@ -19,12 +19,12 @@ from flexapod.output.figures.payload import MOST_SWINGS, vibration_line
 from flexapod.output.figures.style import (
     LINE_STYLES,
     PAGE,
-    columns,
     figure,
-    flat_on_the_scale_of_others,
+    house_style,
+    legend_columns,
     mark_end,
-    needs,
-    styled,
+    require_variables,
+    share_flat_scale,
 )
 from flexapod.output.scene.style import FLEXIBLE, LEG_COLORS, RIGID, colors_of_legs, drives
 
@@ -32,8 +32,8 @@ ROUNDING = 1e-11  # of where drives stand
 _WORDS = {"rigid": "rigid legs", "lumped": "legs that stretch", "assumed-modes": "flexible legs"}
 
 
-@styled
-@needs()
+@house_style
+@require_variables()
 def actuator_forces(data: xr.Dataset) -> Figure:
     """Forces of the drives: rigid robot against the multibody model, with their difference below.
 
@@ -47,7 +47,7 @@ def actuator_forces(data: xr.Dataset) -> Figure:
     big, small = scale(rigid, found.unit), scale(gap, found.unit)
     fig, panels = force_panels([rigid, multibody], [gap], (big, small), (2.2, 1), found.word)
     words = "Newton-Euler" if found.plain else "rigid robot"
-    most, quick = MOST_SWINGS / columns(len(panels), 3), False
+    most, quick = MOST_SWINGS / legend_columns(len(panels), 3), False
     time, label = data.time.values, f"multibody model, {_WORDS.get(str(data.attrs.get('fidelity')), 'flexible legs')}"
     for leg, (above, below) in panels.items():
         above.plot(time, big(rigid.sel(leg=leg)), color=RIGID, linewidth=5, label=f"{words}, rigid legs")
@@ -84,7 +84,7 @@ def force_panels(
         What is drawn.
     """
     legs, (big, small) = forces[0].leg.values, units
-    across = columns(len(legs), 3)
+    across = legend_columns(len(legs), 3)
     rows = -(-len(legs) // across)
     fig = figure(PAGE, 0.2 + 3.0 * rows)
     grid = fig.subplots(2 * rows, across, sharex=True, squeeze=False, height_ratios=ratios * rows)
@@ -117,10 +117,10 @@ def _limits(values: np.ndarray) -> tuple[float, float]:
     return float(values.min()) - margin, float(values.max()) + margin
 
 
-@styled
-@needs()
+@house_style
+@require_variables()
 def leg_lengths(data: xr.Dataset) -> Figure:
-    """What the drives command, lengths of legs or places of carriages, and how far the flexible robot is off.
+    """Commanded lengths of the legs, or places of their carriages, and the errors of the flexible robot.
 
     Parameters
     ----------
@@ -161,8 +161,8 @@ def _rounded(value: float, unit: str) -> str:
     return f"{1e3 * value:.0f} mm" if unit == "m" and value >= 1e-3 else text(value, unit, 2)
 
 
-@styled
-@needs("tip_deflection", "com_deviation")
+@house_style
+@require_variables("tip_deflection", "com_deviation")
 def tip_deflections(data: xr.Dataset) -> Figure:
     """Lateral deflection of each piston's tip from its cylinder's axis, in two directions, each to its own scale.
 
@@ -182,7 +182,7 @@ def tip_deflections(data: xr.Dataset) -> Figure:
             _leg_line(axes, data, small(off.sel(leg=leg, direction=direction)), i)
         axes.set(title="Piston tip " + words[str(direction)], ylabel=f"deflection [{small.name}]")
         mark_end(axes, end, "motion ends" if axes is rows[0] else "")
-    flat_on_the_scale_of_others(rows.tolist(), sizes)
+    share_flat_scale(rows.tolist(), sizes)
     rows[-1].set_xlabel("time [s]")
     _leg_legend(fig, rows[0])
     return fig
@@ -195,11 +195,11 @@ def _leg_line(axes: Axes, data: xr.Dataset, values: np.ndarray, i: int) -> None:
 
 def _leg_legend(fig: Figure, axes: Axes) -> None:
     lines, words = axes.get_legend_handles_labels()
-    fig.legend(lines, words, loc="outside upper center", ncols=columns(len(words)), handlelength=2.6)
+    fig.legend(lines, words, loc="outside upper center", ncols=legend_columns(len(words)), handlelength=2.6)
 
 
-@styled
-@needs()
+@house_style
+@require_variables()
 def by_leg(data: xr.Dataset, name: str) -> Figure:
     """A result of an element over time, a line for each leg that has it.
 

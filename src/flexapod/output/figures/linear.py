@@ -1,6 +1,6 @@
-"""Linear systems: responses over frequency by named channels, transmissibility, cumulative spectra.
+"""Linear systems over frequency: responses by named channels, transmissibility, cumulative rms, vibration.
 
-Random vibration of the tool: rms of what is at each frequency and above, with its steps named by mode.
+The rms of the tool's random vibration is of all above each frequency; its steps are named by mode.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError, names_of
 from flexapod.common.quantities import scale
-from flexapod.common.ranking import ranked
-from flexapod.control.datasets import beyond_rounding, complex_of, per, units_in
-from flexapod.control.state_space import Names, chosen
-from flexapod.output.figures.style import LINE_STYLES, NOTE, PAGE, figure, needs, styled
+from flexapod.common.ranking import descending_order
+from flexapod.control.datasets import channel_units, join_complex, response_unit, significant_pairs
+from flexapod.control.state_space import Names, channel_indices
+from flexapod.output.figures.style import LINE_STYLES, NOTE, PAGE, figure, house_style, require_variables
 from flexapod.output.scene.style import AXIS_COLORS, colors_of_legs
 
 Several = xr.Dataset | Mapping[str, xr.Dataset]
@@ -30,8 +30,8 @@ WIDTHS = (3.2, 1.3, 1.3)  # of lines: the second often lies upon the first
 FLOOR = 1e-12  # of the largest: what is smaller is rounding
 
 
-@styled
-@needs("frequency_response")
+@house_style
+@require_variables("frequency_response")
 def bode(data: Several, inputs: Names = None, outputs: Names = None) -> Figure:
     """Size and phase of responses over frequency, a colour for each pair of channels, a stroke for each result.
 
@@ -72,7 +72,7 @@ def bode(data: Several, inputs: Names = None, outputs: Names = None) -> Figure:
     return fig
 
 
-@styled
+@house_style
 def transmissibility(data: Several) -> Figure:
     """Norm of transmissibility or compliance over frequency, and each axis by itself.
 
@@ -94,7 +94,7 @@ def transmissibility(data: Several) -> Figure:
     units = {"transmissibility": ("1", "1"), "compliance": ("m/N", "rad/(N m)")}[name]
     words = (f"{name}, along axes", f"{name}, about axes")
     for k, (label, one) in enumerate(results.items()):
-        values = np.abs(complex_of(one[name]).transpose("frequency", "output", "input").values)
+        values = np.abs(join_complex(one[name]).transpose("frequency", "output", "input").values)
         style = LINE_STYLES[k % len(LINE_STYLES)]
         own = "" if len(results) == 1 else f", {label}"
         for panel, at in zip(panels, (slice(0, 3), slice(3, 6)), strict=True):
@@ -113,8 +113,8 @@ def transmissibility(data: Several) -> Figure:
     return fig
 
 
-@styled
-@needs("cumulative_rms", "psd")
+@house_style
+@require_variables("cumulative_rms", "psd")
 def cumulative(data: Several, outputs: Names = None) -> Figure:
     """Rms of what is at each frequency and above, a panel for each unit.
 
@@ -127,10 +127,10 @@ def cumulative(data: Several, outputs: Names = None) -> Figure:
     results = _named(data)
     first = next(iter(results.values()))
     shared = [x for x in first.output.values.tolist() if all(x in one.output.values for one in results.values())]
-    names = [shared[i] for i in chosen(outputs, shared, "outputs")]
+    names = [shared[i] for i in channel_indices(outputs, shared, "outputs")]
     if not names:
         raise InputError("are in none of the results, or not in all", key="outputs", value=outputs)
-    unit_of = units_in(first, "output")
+    unit_of = channel_units(first, "output")
     units = list(dict.fromkeys(unit_of[name] for name in names))
     fig = figure(PAGE, 1.2 + 2.1 * len(units))
     panels = np.atleast_1d(fig.subplots(len(units), 1, sharex=True))
@@ -182,8 +182,8 @@ def _pairs(results: Mapping[str, xr.Dataset], inputs: Names, outputs: Names) -> 
 def _moved(results: Mapping[str, xr.Dataset], pairs: list[tuple[str, str]]) -> tuple[list[tuple[str, str]], int]:
     """Pairs that are more than rounding beside outputs alike by the same input, and how many are not."""
     sizes = {pair: max(_largest(data, *pair) for data in results.values()) for pair in pairs}
-    units = {name: unit for data in results.values() for name, unit in units_in(data, "output").items()}
-    kept = beyond_rounding(sizes, units)
+    units = {name: unit for data in results.values() for name, unit in channel_units(data, "output").items()}
+    kept = significant_pairs(sizes, units)
     if not any(sizes[pair] > 0 for pair in kept):
         raise InputError(
             "are 0 at all frequencies, which an axis of logarithms does not have, or not known",
@@ -206,7 +206,7 @@ def _largest(data: xr.Dataset, output: str, input: str) -> float:
 def _some(given: Names, among: Sequence[str], key: str, must: bool) -> Iterator[str]:
     for name in [None] if given is None else names_of(given, key):
         try:
-            yield from (among[i] for i in chosen(name, among, key))
+            yield from (among[i] for i in channel_indices(name, among, key))
         except InputError:
             if must:
                 raise
@@ -217,7 +217,7 @@ def _there(data: xr.Dataset, output: str, input: str) -> bool:
 
 
 def _curve(data: xr.Dataset, output: str, input: str) -> tuple[Array, NDArray[np.complex128]]:
-    values = complex_of(data.frequency_response.sel(output=output, input=input)).values
+    values = join_complex(data.frequency_response.sel(output=output, input=input)).values
     return data.frequency.values, values
 
 
@@ -235,7 +235,9 @@ def _unit_words(results: Mapping[str, xr.Dataset], pairs: list[tuple[str, str]])
     units = set()
     for one, (output, input) in product(results.values(), pairs):
         if _there(one, output, input):
-            units.add(per(one.output_units.sel(output=output).item(), one.input_units.sel(input=input).item()))
+            units.add(
+                response_unit(one.output_units.sel(output=output).item(), one.input_units.sel(input=input).item())
+            )
     return f"size [{units.pop()}]" if len(units) == 1 else "size [SI units of the channels]"
 
 
@@ -255,8 +257,8 @@ ROUNDING = 1e-9  # of the largest, a radian as a metre: what symmetry makes zero
 DECADES = 1e4  # from the lowest to the highest frequency, from which on each has one number
 
 
-@styled
-@needs("vibration_cumulative", "vibration_by_mode")
+@house_style
+@require_variables("vibration_cumulative", "vibration_by_mode")
 def vibration(data: xr.Dataset) -> Figure:
     """Cumulative rms of the tool along and about the axes over frequency.
 
@@ -306,7 +308,7 @@ def _name_modes(axes: Axes, data: xr.Dataset, names: list[str]) -> None:
     f = data.frequency.values
     groups = np.cumsum(np.append(0, np.diff(f) > 1e-3 * f[1:]))
     sizes = np.bincount(groups, weights=part)
-    named = [group for group in ranked(np.asarray(sizes, float))[:NAMED] if sizes[group] > LEAST * whole]
+    named = [group for group in descending_order(np.asarray(sizes, float))[:NAMED] if sizes[group] > LEAST * whole]
     for row, group in enumerate(sorted(named, reverse=True)):
         at = np.flatnonzero(groups == group)
         axes.axvline(f[at[0]], color="#777777", linewidth=0.8, linestyle=":")

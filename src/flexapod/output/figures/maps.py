@@ -23,16 +23,26 @@ from flexapod.common.quantities import Scale, number, scale
 from flexapod.common.ranking import EQUALS, first_largest, first_least
 from flexapod.design.maps.findings import (
     SIDES,
-    drawn,
     motion_path,
-    name_of,
+    quantity_name,
+    quantity_unit,
     scalar,
     scalars,
-    unit_of,
+    scalars_with_values,
 )
 from flexapod.design.maps.grid import UNITS
 from flexapod.model import AXES
-from flexapod.output.figures.style import COLORS, NOTE, PAGE, SMALL, TEXT, edges_of, figure, needs, styled
+from flexapod.output.figures.style import (
+    COLORS,
+    NOTE,
+    PAGE,
+    SMALL,
+    TEXT,
+    cell_edges,
+    figure,
+    house_style,
+    require_variables,
+)
 
 # Ground and hatching of what is not reached, by code; codes that rarely meet share one.
 GROUNDS = {
@@ -48,8 +58,8 @@ LOG_FROM = 20.0  # ratio of largest to least from which colours go with the loga
 HIGHEST = 1e4  # of the least value: colours end there, towards a singularity
 
 
-@styled
-@needs("reason", "frequency", "condition")
+@house_style
+@require_variables("reason", "frequency", "condition")
 def workspace_map(data: xr.Dataset, quantity: str = "frequency", *, mode: int = 1) -> Figure:
     """One quantity of a map, with home and the path of the study's motion.
 
@@ -71,11 +81,11 @@ def workspace_map(data: xr.Dataset, quantity: str = "frequency", *, mode: int = 
         raise InputError("is not in this map", key="quantity", value=quantity, allowed=", ".join(scalars(data)))
     values = scalar(data, quantity, mode)
     if not np.isfinite(values.values).any() and (data.reason.values == REACHED).any():
-        allowed = ", ".join(drawn(data))
+        allowed = ", ".join(scalars_with_values(data))
         raise InputError(
             "has no value in this map: no leg has such a limit", key="quantity", value=quantity, allowed=allowed
         )
-    unit = scale(values.values, unit_of(values))
+    unit = scale(values.values, quantity_unit(values))
     title = _title(data, quantity, mode)
     if values.ndim == 1:
         return _line(data, values, unit, title, quantity)
@@ -83,7 +93,7 @@ def workspace_map(data: xr.Dataset, quantity: str = "frequency", *, mode: int = 
 
 
 def _title(data: xr.Dataset, quantity: str, mode: int) -> str:
-    words = name_of(data, quantity, mode)
+    words = quantity_name(data, quantity, mode)
     fixed = {name: data.attrs[f"at_{name}"] for name in AXES if data.attrs.get(f"at_{name}", 0.0)}
     place = f" ({coordinate_words(fixed)})" if fixed else ""
     return f"{words[0].upper()}{words[1:]}{place}"
@@ -144,7 +154,7 @@ def _headline(fig: Figure, title: str) -> None:
 
 def _size(values: xr.DataArray, width: float) -> tuple[float, float]:
     """Width and height of a panel [in]: as the plane is, where both axes have the same unit."""
-    spans = [np.ptp(edges_of(_shown(str(dim), values[dim].values))) for dim in values.dims[:2]]
+    spans = [np.ptp(cell_edges(_shown(str(dim), values[dim].values))) for dim in values.dims[:2]]
     if UNITS[str(values.dims[0])] != UNITS[str(values.dims[1])]:
         return width, 0.75 * width
     ratio = spans[1] / spans[0]
@@ -165,7 +175,7 @@ def _norm(values: Array, *, linear: bool) -> tuple[Normalize, str]:
 
 
 def _vary(values: Array) -> bool:
-    """Whether values differ by more than rounding."""
+    """Test whether values differ by more than rounding."""
     return values.size > 0 and bool(np.ptp(values) > EQUALS * np.abs(values).max())
 
 
@@ -180,18 +190,18 @@ def _levels(norm: Normalize) -> Sequence[float]:
 
 def _slice(axes: Axes, part: xr.DataArray, codes: xr.DataArray, unit: Scale, norm: Normalize):
     x, y = (_shown(str(dim), part[dim].values) for dim in part.dims)
-    _unreached(axes, edges_of(x), edges_of(y), codes.values)
+    _unreached(axes, cell_edges(x), cell_edges(y), codes.values)
     shown = np.ma.masked_invalid(unit(part.values).T)
     colors: Colormap | str = COLORS
-    image = axes.pcolormesh(edges_of(x), edges_of(y), shown, cmap=colors, norm=norm, rasterized=True, zorder=1)
+    image = axes.pcolormesh(cell_edges(x), cell_edges(y), shown, cmap=colors, norm=norm, rasterized=True, zorder=1)
     axes.grid(visible=False)
     if min(len(x), len(y)) > 4 and shown.count() > 12 and _vary(shown.compressed()):
         levels = _levels(norm)
         inks = np.where(norm(np.asarray(levels)) > BRIGHT, "#222222", "white").tolist()
         lines = axes.contour(x, y, shown, levels=levels, colors=inks, linewidths=0.7, zorder=2)
         axes.clabel(lines, fontsize=SMALL, fmt=lambda value: number(value))
-    axes.set_xlim(*edges_of(x)[[0, -1]])
-    axes.set_ylim(*edges_of(y)[[0, -1]])
+    axes.set_xlim(*cell_edges(x)[[0, -1]])
+    axes.set_ylim(*cell_edges(y)[[0, -1]])
     if len({UNITS[str(dim)] for dim in part.dims}) == 1:
         axes.set_aspect("equal", adjustable="box")
     return image
@@ -231,11 +241,11 @@ _Near = tuple[str, Array, int]  # third coordinate, its values, which of them th
 
 
 def _in_slice(values: Array, near: _Near | None) -> np.ndarray:
-    """Which values of the third coordinate lie nearer to this slice than to its neighbours."""
+    """True for values of the third coordinate that lie nearer to this slice than to its neighbours."""
     if near is None:
         return np.ones(len(values), dtype=bool)
     _, places, k = near
-    edges = edges_of(places)
+    edges = cell_edges(places)
     return (values >= edges[k]) & (values <= edges[k + 1])
 
 
@@ -305,7 +315,7 @@ def _line(data: xr.Dataset, values: xr.DataArray, unit: Scale, title: str, quant
     axes, name = fig.subplots(), str(values.dims[0])
     x, y = _shown(name, values[name].values), unit(values.values)
     axes.plot(x, y, color="#00336F", marker="." if len(x) < 60 else None)
-    edges = edges_of(x)
+    edges = cell_edges(x)
     for code in np.unique(data.reason.values[data.reason.values != REACHED]):
         ground, hatch = GROUNDS[int(code)]
         for a, b in _runs(data.reason.values == code):

@@ -1,6 +1,6 @@
-"""The payload over time: commanded motion, path, deviation and which part is to blame for it, energies.
+"""The payload over time: commanded motion, path, deviation by cause, energies.
 
-Curves that swing more often than a picture can show, as the band that they fill.
+A curve that oscillates more often than a picture can show is drawn as the band that it fills.
 """
 
 from __future__ import annotations
@@ -15,21 +15,21 @@ from matplotlib.figure import Figure
 from scipy.ndimage import maximum_filter1d
 
 from flexapod.analysis.results.attributes import motion_coordinates, motion_end
-from flexapod.analysis.results.cause_labels import cause_words
+from flexapod.analysis.results.cause_labels import cause_labels
 from flexapod.analysis.results.summary import POINT_WORDS
 from flexapod.common.errors import check_known, names_of
-from flexapod.common.quantities import NOTHING, Scale, cleared, scale, text
-from flexapod.common.ranking import first_largest, ranked
+from flexapod.common.quantities import NOTHING, Scale, scale, text, zero_rounding
+from flexapod.common.ranking import descending_order, first_largest
 from flexapod.output.figures.style import (
     COLUMN,
     LINE_STYLES,
     NOTE,
     PAGE,
     figure,
-    flat_on_the_scale_of_others,
+    house_style,
     mark_end,
-    needs,
-    styled,
+    require_variables,
+    share_flat_scale,
 )
 from flexapod.output.scene.style import AXIS_COLORS, ENERGIES, FLEXIBLE, LEG_COLORS, RIGID
 
@@ -37,8 +37,8 @@ _TURNS = ("roll", "pitch", "yaw")
 _UNITS = {"position": ("m", "rad"), "rate": ("m/s", "rad/s"), "acceleration": ("m/s²", "rad/s²")}
 
 
-@styled
-@needs("translation_command")
+@house_style
+@require_variables("translation_command")
 def motion_law(data: xr.Dataset) -> Figure:
     """Commanded motion of the platform, of those axes that move: position, rate and acceleration.
 
@@ -73,8 +73,8 @@ def motion_law(data: xr.Dataset) -> Figure:
     return fig
 
 
-@styled
-@needs("com_deviation")
+@house_style
+@require_variables("com_deviation")
 def com_path(data: xr.Dataset, axes: Sequence[str] = ("y", "z"), point: str = "com") -> Figure:
     """Path of a payload point, rigid against flexible, with the deviation below on its own scale.
 
@@ -105,7 +105,7 @@ def _com_path(data: xr.Dataset, axes: Sequence[str], point: str) -> Figure:
     for column, axis in enumerate(axes):
         _paths(grid[0, column], data, point, axis)
         below = grid[1, column]
-        values = cleared(small(deviation.sel(axis=axis)), largest)
+        values = zero_rounding(small(deviation.sel(axis=axis)), largest)
         sizes.append(float(np.abs(values).max()))
         below.plot(time, values, color=AXIS_COLORS[axis], linewidth=1.1)
         below.axhline(0, color="#555555", linewidth=0.7)
@@ -114,7 +114,7 @@ def _com_path(data: xr.Dataset, axes: Sequence[str], point: str) -> Figure:
         below.set(xlabel="time [s]", title=f"Flexible minus rigid, {axis.upper()}")
         mark_end(grid[0, column], end, "motion ends")
         mark_end(below, end)
-    flat_on_the_scale_of_others(grid[1], sizes)
+    share_flat_scale(grid[1], sizes)
     fig.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
     grid[0, 0].set_ylabel(f"position of the\n{name} [mm]")
     grid[1, 0].set_ylabel(f"deviation [{small.name}]")
@@ -158,8 +158,8 @@ _COLORS = {"axial-strain": "#0072B2", "bending": "#D55E00", "drive": "#009E73"}
 _MORE = ("#E69F00", "#56B4E9", "#A23B72", "#7A5195", "#8C6D1F", "#444444", "#BDB76B", "#FF9DA7", "#9C755F", "#76B7B2")
 
 
-@styled
-@needs("deviation_by_cause")
+@house_style
+@require_variables("deviation_by_cause")
 def deviation_by_cause(data: xr.Dataset) -> Figure:
     """Deviation of the centre of mass by cause over time, and by leg at the largest deviation of each axis.
 
@@ -174,15 +174,17 @@ def deviation_by_cause(data: xr.Dataset) -> Figure:
     grid = fig.subplots(3, 2, width_ratios=(2.1, 1), sharex="col")
     total = data.com_deviation
     sizes = np.abs(data.deviation_by_cause).max(("time", "leg", "axis"))
-    shown = data.deviation_by_cause.sel(cause=np.array([cleared(size, sizes.max()) > 0 for size in sizes], dtype=bool))
+    shown = data.deviation_by_cause.sel(
+        cause=np.array([zero_rounding(size, sizes.max()) > 0 for size in sizes], dtype=bool)
+    )
     parts = _largest(shown)
     small = scale(total, "m")
-    end, time, words, colors = motion_end(data), data.time.values, cause_words(data), _colors(parts.cause.values)
+    end, time, words, colors = motion_end(data), data.time.values, cause_labels(data), _colors(parts.cause.values)
     largest, seen = float(np.abs(small(total)).max()), []
     for row, axis in enumerate(data.axis.values):
         left, right = grid[row]
         lines = small(np.vstack([total.sel(axis=axis).values[None], parts.sel(axis=axis).sum("leg").T.values]))
-        lines = cleared(lines, largest)
+        lines = zero_rounding(lines, largest)
         seen.append(float(np.abs(lines).max()))
         left.plot(time, lines[0], color="#C8C8C8", linewidth=5, label="whole deviation")
         for cause, values in zip(map(str, parts.cause.values), lines[1:], strict=True):
@@ -192,7 +194,7 @@ def deviation_by_cause(data: xr.Dataset) -> Figure:
         mark_end(left, end, "motion ends" if row == 0 else "")
         size = np.abs(total.sel(axis=axis).values) if seen[-1] else np.linalg.norm(total.values, axis=1)
         _by_leg(right, parts.sel(axis=axis).isel(time=first_largest(size)), small, str(axis), colors)
-    flat_on_the_scale_of_others(grid[:, 0], seen)
+    share_flat_scale(grid[:, 0], seen)
     grid[-1, 0].set_xlabel("time [s]")
     grid[-1, 1].set_xlabel("leg")
     columns = 4 if len(parts.cause) < 4 else 3
@@ -206,7 +208,7 @@ def _largest(parts: xr.DataArray) -> xr.DataArray:
     """The largest causes, and all smaller ones as one, where they are more than colours tell apart."""
     if parts.sizes["cause"] <= MOST:
         return parts
-    order = ranked(np.abs(parts.transpose("cause", ...).values).max(axis=(1, 2, 3)))
+    order = descending_order(np.abs(parts.transpose("cause", ...).values).max(axis=(1, 2, 3)))
     kept, rest = np.sort(order[: MOST - 1]), order[MOST - 1 :]
     others = parts.isel(cause=rest).sum("cause").expand_dims(cause=[f"{len(rest)}{_SMALLER}"])
     return xr.concat([parts.isel(cause=kept), others], "cause")
@@ -238,8 +240,8 @@ def _by_leg(axes: Axes, parts: xr.DataArray, small: Scale, axis: str, colors: di
 _SIGN = {"work_drive": -1.0, "work_base": -1.0, "work_control": -1.0, "work_external": -1.0}
 
 
-@styled
-@needs("energy_kinetic", "work_drive")
+@house_style
+@require_variables("energy_kinetic", "work_drive")
 def energies(data: xr.Dataset) -> Figure:
     """Energies and works since the start, the strain energy on its own scale, and the closure of the balance.
 
@@ -273,7 +275,7 @@ def energies(data: xr.Dataset) -> Figure:
 
 
 def _closed(open_by: xr.DataArray, largest: float) -> str:
-    """How far a balance is open at most, beside the largest change of what it is made of, in words."""
+    """Largest residual of a balance beside the largest change of its terms, as text; "" where it says nothing."""
     most = float(np.abs(open_by).max())
     if not 0 < most < largest:
         return ""
@@ -292,14 +294,14 @@ NEIGHBOURS = 5  # maxima of which the largest is the edge: where several vibrati
 EDGE = 600  # instants of a band at most; each stands for those up to the next
 
 
-def swings(values: np.ndarray) -> np.ndarray:
-    """Where a curve turns back: places of its maxima and minima."""
+def turning_points(values: np.ndarray) -> np.ndarray:
+    """Indices of the maxima and minima of a curve."""
     return np.flatnonzero(np.diff(np.sign(np.diff(values))) != 0) + 1
 
 
-def is_quick(values: np.ndarray, most: float = MOST_SWINGS) -> bool:
-    """Whether a curve swings more often than a panel can show; swings that nobody sees do not count."""
-    return bool(np.count_nonzero(np.abs(np.diff(values[swings(values)])) > SEEN * np.ptp(values)) > most)
+def swings_too_often(values: np.ndarray, most: float = MOST_SWINGS) -> bool:
+    """Test whether a curve oscillates more often than a panel can show; invisible oscillations do not count."""
+    return bool(np.count_nonzero(np.abs(np.diff(values[turning_points(values)])) > SEEN * np.ptp(values)) > most)
 
 
 def vibration_line(axes: Axes, time: np.ndarray, values: np.ndarray, most: float = MOST_SWINGS, **style: Any) -> bool:
@@ -310,7 +312,7 @@ def vibration_line(axes: Axes, time: np.ndarray, values: np.ndarray, most: float
     axes : Axes
     time, values : array, shape (n,)
     most : float
-        Half swings that the panel can show, as of `is_quick`.
+        Half swings that the panel can show, as of `swings_too_often`.
     style
         Color, linewidth and label of the curve, as of `Axes.plot`.
 
@@ -319,10 +321,10 @@ def vibration_line(axes: Axes, time: np.ndarray, values: np.ndarray, most: float
     bool
         Whether it is a band.
     """
-    if not is_quick(values, most):
+    if not swings_too_often(values, most):
         axes.plot(time, values, **style)
         return False
-    at = swings(values)
+    at = turning_points(values)
     middle = 0.5 * (values[at[:-1]] + values[at[1:]])
     middle = np.interp(time, 0.5 * (time[at[:-1]] + time[at[1:]]), middle)
     low, high = (sign * _edge(time, sign * values, at[sign * (values[at] - middle[at]) >= 0]) for sign in (-1.0, 1.0))

@@ -13,10 +13,10 @@ from matplotlib.figure import Figure
 from flexapod.common.arguments import number
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
-from flexapod.control.datasets import complex_of
+from flexapod.control.datasets import join_complex
 from flexapod.control.frequency_response import SWINGS
 from flexapod.control.state_space import StateSpace
-from flexapod.output.figures.style import PAGE, SMALL, figure, needs, styled
+from flexapod.output.figures.style import PAGE, SMALL, figure, house_style, require_variables
 from flexapod.output.scene.style import colors_of_legs
 
 RATIOS = (0.01, 0.05, 0.1, 0.2, 0.4, 0.7)  # damping ratios with a line
@@ -43,15 +43,15 @@ def pole_map(data: Poles | Sequence[Poles] | Mapping[str, Poles], below: float |
     return _pole_map({name: one.damp() if isinstance(one, StateSpace) else one for name, one in given.items()}, below)
 
 
-@styled
-@needs("pole", "damping_ratio")
+@house_style
+@require_variables("pole", "damping_ratio")
 def _pole_map(results: Mapping[str, xr.Dataset], below: float | None) -> Figure:
     fig = figure(PAGE, 4.2)
     axes = fig.subplots()
-    edge = _edge([complex_of(one.pole).values for one in results.values()], below)
+    edge = _edge([join_complex(one.pole).values for one in results.values()], below)
     left = 0.0
     for k, (name, one) in enumerate(results.items()):
-        s = complex_of(one.pole).values
+        s = join_complex(one.pole).values
         s = s[np.abs(s) <= 2 * np.pi * edge * (1 + 1e-9)] / (2 * np.pi)
         left = min(left, s.real.min(initial=0.0))
         axes.plot(
@@ -65,8 +65,8 @@ def _pole_map(results: Mapping[str, xr.Dataset], below: float | None) -> Figure:
     return fig
 
 
-@styled
-@needs("pole", "open_zero")
+@house_style
+@require_variables("pole", "open_zero")
 def root_locus(data: xr.Dataset, below: float | None = None) -> Figure:
     """Poles of a loop as a factor on its controller grows, and their damping ratios over it.
 
@@ -83,7 +83,7 @@ def root_locus(data: xr.Dataset, below: float | None = None) -> Figure:
         raise InputError(
             "is of samples: its poles are in the plane of z", key="root_locus", allowed="a continuous loop"
         )
-    poles, zeros = complex_of(data.pole).values / (2 * np.pi), complex_of(data.open_zero).values / (2 * np.pi)
+    poles, zeros = join_complex(data.pole).values / (2 * np.pi), join_complex(data.open_zero).values / (2 * np.pi)
     gain = data.gain.values
     fig = figure(PAGE, 4.2)
     plane, over = fig.subplots(1, 2, width_ratios=(1.25, 1))

@@ -15,9 +15,9 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
 from flexapod.analysis.results.attributes import motion_end
 from flexapod.common.arguments import number
-from flexapod.output.figures.style import NOTE, PAGE, SMALL, figure, ink, needs, styled
+from flexapod.output.figures.style import NOTE, PAGE, SMALL, figure, house_style, readable_color, require_variables
 from flexapod.output.scene.robot_scene import mode_scene, scene
-from flexapod.output.scene.skeleton import Scene, around
+from flexapod.output.scene.skeleton import Scene, convex_hull
 from flexapod.output.scene.style import colors_of_legs
 
 CYLINDER = "#8A8F98"
@@ -39,7 +39,7 @@ _FREE: Any = {"axes.titley": None}  # titles go above what is drawn
 _NUMBER: dict[str, Any] = {"fontsize": NOTE, "path_effects": [withStroke(linewidth=2.0, foreground="white")]}
 
 
-def space(fig: Figure, place: SubplotSpec, *, turn: float = -62, tilt: float = 16) -> Any:
+def axes_3d(fig: Figure, place: SubplotSpec, *, turn: float = -62, tilt: float = 16) -> Any:
     """3D axes with equal scales on all three directions, seen from `turn` and `tilt` [deg]."""
     with matplotlib.rc_context(_FREE):
         made: Any = fig.add_subplot(place, projection="3d", computed_zorder=False)
@@ -52,13 +52,13 @@ def space(fig: Figure, place: SubplotSpec, *, turn: float = -62, tilt: float = 1
     return made
 
 
-def head(axes: Any, words: str, **style: Any) -> None:
+def set_title(axes: Any, words: str, **style: Any) -> None:
     """A title clear of what is drawn, which may reach above the axes."""
     with matplotlib.rc_context(_FREE):
         axes.set_title(words, **style)
 
 
-def view(axes: Any, scenes: Sequence[Scene], zoom: float = 1.0) -> None:
+def fit_view(axes: Any, scenes: Sequence[Scene], zoom: float = 1.0) -> None:
     """Limits that hold all scenes, in equal scale, with world axes in mm."""
     points = np.concatenate([s.points for s in scenes])
     low, high = points.min(axis=0), points.max(axis=0)
@@ -86,13 +86,21 @@ def draw_robot(axes: Any, s: Scene, *, numbers: bool = True) -> None:
     """Draw a robot: grey cylinders, coloured pistons, translucent platform, cross-hair at the centre of mass."""
     _plate(axes, s.skeleton.robot.base_joints, BASE, 0.12)
     _segments(axes, s.guides, BASE, 2.0, 3)
-    legs, radii, places = colors_of_legs(len(s.base)), s.radii, beside(s.base, s.points, axes.azim, axes.elev)
+    legs, radii, places = colors_of_legs(len(s.base)), s.radii, label_positions(s.base, s.points, axes.azim, axes.elev)
     for i in range(len(s.base)):
         if not np.array_equal(s.base[i], s.mouth[i]):
             _bar(axes, s.base[i], s.mouth[i], color=CYLINDER, linewidth=6, zorder=3)
         axes.add_collection3d(_piston(s.piston[i], radii[i], legs[i]))
         if numbers:
-            axes.text(*(1e3 * places[i]), str(i + 1), color=ink(legs[i]), ha="center", va="center", zorder=9, **_NUMBER)
+            axes.text(
+                *(1e3 * places[i]),
+                str(i + 1),
+                color=readable_color(legs[i]),
+                ha="center",
+                va="center",
+                zorder=9,
+                **_NUMBER,
+            )
     _segments(axes, s.heads, INSIDE, 1.2, 4)  # pistons in bushings, inside of their cylinders
     if len(s.heads):
         axes.scatter(*(1e3 * s.heads[:, 1].T), s=16, marker="D", color=INSIDE, depthshade=False, zorder=5)
@@ -115,7 +123,7 @@ def draw_robot(axes: Any, s: Scene, *, numbers: bool = True) -> None:
     axes.plot([x], [y], [z], marker="+", markersize=9, clip_on=False, color="#333333", zorder=8)
 
 
-def beside(joints: np.ndarray, points: np.ndarray, turn: float, tilt: float) -> np.ndarray:
+def label_positions(joints: np.ndarray, points: np.ndarray, turn: float, tilt: float) -> np.ndarray:
     """Places (n, 3) [m] of the numbers of joints (n, 3) as they are seen from `turn` and `tilt` [deg].
 
     Each lies outside of the joints, away from a neighbour that is near, and beside the leg; how far, in shares of the
@@ -146,7 +154,7 @@ def _unit(vectors: np.ndarray) -> np.ndarray:
 def draw_ghost(axes: Any, s: Scene) -> None:
     """Draw a robot in pale lines, for comparison."""
     _segments(axes, np.concatenate([s.base[:, None], s.piston], axis=1), "#BDBDBD", 1.0, 1)
-    loop = s.platform[around(s.platform)]
+    loop = s.platform[convex_hull(s.platform)]
     closed = 1e3 * np.vstack([loop, loop[:1]])
     axes.plot(*closed.T, color="#BDBDBD", linewidth=1.0, zorder=1)
     axes.plot(*(1e3 * s.com[:, None]), marker="o", markersize=6, color="#BDBDBD", zorder=1)
@@ -154,7 +162,7 @@ def draw_ghost(axes: Any, s: Scene) -> None:
 
 
 def _plate(axes: Any, points: np.ndarray, color: str, alpha: float) -> None:
-    polygon = 1e3 * points[around(points)]
+    polygon = 1e3 * points[convex_hull(points)]
     axes.add_collection3d(Poly3DCollection([polygon], facecolors=color, alpha=alpha, edgecolors="none", zorder=2))
     closed = np.vstack([polygon, polygon[:1]])
     axes.plot(*closed.T, color=color, linewidth=1.6, zorder=5 if alpha > 0.2 else 2)
@@ -187,8 +195,8 @@ _VIEWS: dict[str | None, tuple[dict[str, float], dict[str, float], str]] = {
 }
 
 
-@styled
-@needs("com_position", "platform_quaternion")
+@house_style
+@require_variables("com_position", "platform_quaternion")
 def robot_3d(data: xr.Dataset, time: float | None = None) -> Figure:
     """The robot at an instant, with its pose at the start in pale lines: in space and seen along X, true to scale.
 
@@ -206,21 +214,21 @@ def robot_3d(data: xr.Dataset, time: float | None = None) -> Figure:
     fig.set_layout_engine("none")  # 3D axes have no extents that a layout could use
     places = fig.add_gridspec(1, 2, width_ratios=(1.15, 1), left=0.0, right=0.96, bottom=0.07, top=0.93, wspace=0.1)
     oblique, straight, along = _VIEWS[_plane(now)]
-    left, right = space(fig, places[0], **oblique), space(fig, places[1], **straight)
+    left, right = axes_3d(fig, places[0], **oblique), axes_3d(fig, places[1], **straight)
     moved = time > float(data.time[0])
     for axes in (left, right):
         if moved:
             draw_ghost(axes, start)
         draw_robot(axes, now, numbers=axes is left)
-        view(axes, [now, start], zoom=1.0)
+        fit_view(axes, [now, start], zoom=1.0)
     right.set(**{f"{along}ticks": [], f"{along}label": ""})
-    head(left, f"At t = {time:.2f} s; pale: at the start" if moved else "At the start")
-    head(right, f"Seen along {along.upper()}; deflections to scale")
+    set_title(left, f"At t = {time:.2f} s; pale: at the start" if moved else "At the start")
+    set_title(right, f"Seen along {along.upper()}; deflections to scale")
     return fig
 
 
-@styled
-@needs("platform_shape", "leg_shape")
+@house_style
+@require_variables("platform_shape", "leg_shape")
 def modes_3d(modes: xr.Dataset, show: Sequence[int] | None = None, size: float = 0.1) -> Figure:
     """Modes of the locked robot, drawn on it, with the robot at rest in pale lines.
 
@@ -243,14 +251,14 @@ def modes_3d(modes: xr.Dataset, show: Sequence[int] | None = None, size: float =
     )
     rest = mode_scene(modes, labels[0], 1.0, phase=0.0)
     for i, label in enumerate(labels):
-        axes = space(fig, places[divmod(i, columns)], **_VIEWS[_plane(rest)][0])
+        axes = axes_3d(fig, places[divmod(i, columns)], **_VIEWS[_plane(rest)][0])
         moved = mode_scene(modes, label, size * rest.height)
         draw_ghost(axes, rest)
         draw_robot(axes, moved, numbers=True)
-        view(axes, [rest, moved], zoom=1.15)
+        fit_view(axes, [rest, moved], zoom=1.15)
         axes.set(xlabel="", ylabel="", zlabel="")
         axes.tick_params(labelbottom=False, labelleft=False, labelright=False)
-        head(axes, _title(modes.sel(mode=label), label), fontsize=NOTE)
+        set_title(axes, _title(modes.sel(mode=label), label), fontsize=NOTE)
     return fig
 
 

@@ -1,9 +1,8 @@
-"""House style of all figures: colours that colour-blind readers tell apart, units in labels, the width of a page.
+"""House style of all figures: colours that colour-blind readers tell apart, units in labels, width, files.
 
-Figures are as wide as a page of a journal (170 mm); `save` writes them as wide as a column (85 mm), too. Letters have
-the size at which they are read, 7 points at least.
-
-Pictures as PNG files: rows as they are, which deflate as well as filtered ones where most of a figure is white.
+Figures are as wide as a page of a journal (170 mm); `save` writes them as wide as a column (85 mm), too.
+Letters have the size at which they are read, 7 points at least. Rows of PNG files are not filtered: where most
+of a figure is white they deflate as well.
 """
 
 from __future__ import annotations
@@ -28,13 +27,13 @@ from numpy.typing import NDArray
 
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError, check_kind
-from flexapod.common.files import path_of, replacing
-from flexapod.output.figures.column_width import narrowed
-from flexapod.output.figures.dual_renderer import Canvas, Unsuited, draw_both
+from flexapod.common.files import path_of, replace_file
+from flexapod.output.figures.column_width import resize_figure
+from flexapod.output.figures.dual_renderer import Canvas, UnsupportedArtist, draw_both
 from flexapod.output.figures.fast_axes import NOTE as NOTE
 from flexapod.output.figures.fast_axes import SMALL as SMALL
 from flexapod.output.figures.fast_axes import TEXT as TEXT
-from flexapod.output.figures.fast_axes import Panels, keeping, settings
+from flexapod.output.figures.fast_axes import Panels, cached_ticks, rc_settings
 
 INCH = 0.0254  # [m]
 LEVEL = 1  # of deflating: higher ones take longer for a few per cent
@@ -89,7 +88,7 @@ def figure(width: float = PAGE, height: float = 4.0, gap: float = 0.02) -> Figur
     return made
 
 
-def needs(*names: str) -> Callable[[Callable[P, Figure]], Callable[P, Figure]]:
+def require_variables(*names: str) -> Callable[[Callable[P, Figure]], Callable[P, Figure]]:
     """Refuse a first argument that is no Dataset, or mapping of Datasets, with these variables, or has no instant.
 
     Without names any Dataset will do.
@@ -97,7 +96,7 @@ def needs(*names: str) -> Callable[[Callable[P, Figure]], Callable[P, Figure]]:
 
     def decorate(draw: Callable[P, Figure]) -> Callable[P, Figure]:
         @wraps(draw)
-        def checked(*args: P.args, **kwargs: P.kwargs) -> Figure:
+        def draw_checked(*args: P.args, **kwargs: P.kwargs) -> Figure:
             given: Any = args[0] if args else next(iter(kwargs.values()), None)
             several = isinstance(given, Mapping) and not hasattr(given, "data_vars")
             for data in (given.values() or (None,)) if several else (given,):
@@ -115,31 +114,31 @@ def needs(*names: str) -> Callable[[Callable[P, Figure]], Callable[P, Figure]]:
                     raise InputError("has no instant", key="time", allowed="one at least")
             return draw(*args, **kwargs)
 
-        return checked
+        return draw_checked
 
     return decorate
 
 
-def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
+def house_style(draw: Callable[P, Figure]) -> Callable[P, Figure]:
     """Draw a figure in the house style, whatever the user's matplotlib settings."""
 
     @wraps(draw)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> Figure:
-        with matplotlib.rc_context(settings()):
+        with matplotlib.rc_context(rc_settings()):
             return draw(*args, **kwargs)
 
     return wrapper
 
 
-def flat_on_the_scale_of_others(panels: Sequence[Axes], sizes: Sequence[float]) -> None:
-    """Give panels of `sizes` 0 the vertical limits of the panel of the largest: what is nothing looks like it."""
+def share_flat_scale(panels: Sequence[Axes], sizes: Sequence[float]) -> None:
+    """Give panels of `sizes` 0 the vertical limits of the panel of the largest: zero is drawn as a flat line."""
     limits = panels[max(range(len(panels)), key=lambda i: sizes[i])].get_ylim()
     for panel, size in zip(panels, sizes, strict=True):
         if size == 0 and max(sizes) > 0:
             panel.set_ylim(limits)
 
 
-def edges_of(centres: Array) -> Array:
+def cell_edges(centres: Array) -> Array:
     """Edges of cells around values (n,): half-way between neighbours, as wide beyond the first and the last."""
     if len(centres) == 1:
         return centres[0] + np.array([-0.5, 0.5])
@@ -147,13 +146,13 @@ def edges_of(centres: Array) -> Array:
     return np.concatenate([[2 * centres[0] - middle[0]], middle, [2 * centres[-1] - middle[-1]]])
 
 
-def columns(entries: int, most: int = 6) -> int:
+def legend_columns(entries: int, most: int = 6) -> int:
     """Columns of a legend with a number of entries: in one row, or in rows of about the same length."""
     rows = -(-entries // most)
     return -(-entries // rows)
 
 
-def ink(color: str) -> str:
+def readable_color(color: str) -> str:
     """A colour for words on white: as it is, or darker, so that its contrast is 4.5 at least (WCAG 2.2, 1.4.3)."""
     red, green, blue = to_rgb(color)
     while 1.05 / (_luminance(red, green, blue) + 0.05) < CONTRAST:
@@ -224,8 +223,8 @@ def save(
         )
     logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)
     written = [stem.with_name(f"{stem.name}.{name}") for name in formats]
-    with matplotlib.rc_context(settings()):
-        shown = fig if width is None else narrowed(fig, width / INCH)
+    with matplotlib.rc_context(rc_settings()):
+        shown = fig if width is None else resize_figure(fig, width / INCH)
         with _laid_out(shown, dpi):
             _write(shown, dict(zip(formats, written, strict=True)), dpi)
     return tuple(written)
@@ -234,7 +233,7 @@ def save(
 def _write(fig: Figure, files: Mapping[str, Path], dpi: int) -> None:
     """All files of a figure that has its places; picture and SVG file from one drawing, where they can be."""
     with ExitStack() as stack:
-        places = {name: stack.enter_context(replacing(path)) for name, path in files.items()}
+        places = {name: stack.enter_context(replace_file(path)) for name, path in files.items()}
         if "png" in places:
             svg = _draw(fig, places.get("svg"))
             picture = np.asarray(fig.canvas.buffer_rgba())  # type: ignore[attr-defined]  # of Agg
@@ -250,7 +249,7 @@ def _draw(fig: Figure, svg: Path | None) -> bool:
     canvas, face = fig.canvas, fig.get_facecolor()
     fig.set_facecolor(matplotlib.rcParams["savefig.facecolor"])
     try:
-        with suppress(Unsuited):
+        with suppress(UnsupportedArtist):
             if svg is not None:
                 draw_both(fig, svg, _METADATA["svg"])
                 return True
@@ -281,7 +280,7 @@ def _laid_out(fig: Figure, dpi: float) -> Iterator[None]:
     if type(fig.canvas) is not Canvas:
         Canvas(fig)
     fig.dpi = dpi  # widths of letters depend on it a little
-    with keeping(fig):
+    with cached_ticks(fig):
         try:
             if engine is not None:
                 engine.execute(fig)

@@ -16,7 +16,17 @@ from numpy.typing import NDArray
 
 from flexapod.common.errors import InputError
 from flexapod.common.quantities import scale
-from flexapod.output.figures.style import COLORS, COLUMN, NOTE, PAGE, TEXT, edges_of, figure, needs, styled
+from flexapod.output.figures.style import (
+    COLORS,
+    COLUMN,
+    NOTE,
+    PAGE,
+    TEXT,
+    cell_edges,
+    figure,
+    house_style,
+    require_variables,
+)
 from flexapod.output.scene.style import FLEXIBLE, RIGID
 
 FAILED = "#C44E52"
@@ -36,8 +46,8 @@ class _Shown(NamedTuple):
     names: tuple[str, ...] = ()
 
 
-@styled
-@needs()
+@house_style
+@require_variables()
 def sweep(data: xr.Dataset, quantity: str | None = None) -> Figure:
     """A quantity of a sweep against what varies; points that failed are marked in red.
 
@@ -162,7 +172,7 @@ def _map(x: _Shown, y: _Shown, z: _Shown, data: xr.Dataset) -> Figure:
     rows, row = np.unique(y.values, return_inverse=True)
     grid, failed = np.full((len(rows), len(columns)), np.nan), np.zeros((len(rows), len(columns)), dtype=bool)
     grid[row, column], failed[row, column] = z.values, _failed(data)
-    edges = edges_of(columns), edges_of(rows)
+    edges = cell_edges(columns), cell_edges(rows)
     shown = axes.pcolormesh(*edges, np.ma.masked_invalid(grid), cmap=COLORS, linewidth=0, rasterized=True)
     if failed.any():
         axes.pcolormesh(*edges, np.ma.masked_equal(failed, False), cmap=ListedColormap([FAILED]), alpha=0.35)

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from flexapod import model
 from flexapod.analysis.results.attributes import carried_study, robot_of
-from flexapod.analysis.results.element_outputs import of_elements
-from flexapod.analysis.results.summary import tool_apart
-from flexapod.common.files import scratch
-from flexapod.common.processes import started
+from flexapod.analysis.results.element_outputs import element_names
+from flexapod.analysis.results.summary import has_separate_tool
+from flexapod.common.files import temporary_folder
+from flexapod.common.processes import forked_map
 from flexapod.common.quantities import capital
-from flexapod.output.scene.geometry import DrawnMotion
+from flexapod.output.scene.geometry import BeamMotion
 from flexapod.output.scene.style import drives
 from flexapod.output.text.budget import peak_budget
 
@@ -27,7 +27,7 @@ FAST = 3  # level of deflating: half the time of the usual one, a quarter more b
 _Plan = tuple[str, str, Callable[[], "Figure"]]
 
 
-class Drawn(NamedTuple):
+class StoredFigure(NamedTuple):
     """A figure: its name and title, for a page its picture (PNG) and its curves, if it has any; its files."""
 
     name: str
@@ -38,43 +38,43 @@ class Drawn(NamedTuple):
 
     @property
     def png(self) -> Path:
-        """Its PNG file, where one was asked for."""
+        """PNG file of the figure, where one was asked for."""
         return next(path for path in self.files if path.suffix == ".png")
 
 
-def draw(data: Dataset, folder: str | Path, formats: Sequence[str] = ("png", "svg")) -> list[Drawn]:
+def draw_figures(data: Dataset, folder: str | Path, formats: Sequence[str] = ("png", "svg")) -> list[StoredFigure]:
     """Draw the standard figures of a run, whole or partial, in the order of the report.
 
     `folder` is made if needed, figures of the same name are replaced; `formats` are of png, svg, pdf. InputError: the
     folder cannot be written to, or a format is unknown.
     """
-    with drawing(data, folder, formats, 1) as drawn:
+    with concurrent_drawing(data, folder, formats, 1) as drawn:
         return drawn()
 
 
-def drawing(
+def concurrent_drawing(
     data: Dataset, folder: str | Path, formats: Sequence[str], processes: int
-) -> AbstractContextManager[Callable[[], list[Drawn]]]:
-    """The same begun in copies of this process; what the block is given takes part, and waits for them."""
+) -> AbstractContextManager[Callable[[], list[StoredFigure]]]:
+    """Draw the standard figures in copies of this process; the function given to the block takes part and waits."""
     plans = list(_robot(data) if "com_deviation" in data else _actuator(data))
 
-    def drawn(plan: _Plan) -> Drawn:
+    def draw_and_store(plan: _Plan) -> StoredFigure:
         name, title, make = plan
-        return store(make(), title, Path(folder) / name, formats)
+        return store_figure(make(), title, Path(folder) / name, formats)
 
-    return started(drawn, plans, processes)
+    return forked_map(draw_and_store, plans, processes)
 
 
-def store(figure: Figure, title: str, stem: Path, formats: Sequence[str] = ("png", "svg")) -> Drawn:
+def store_figure(figure: Figure, title: str, stem: Path, formats: Sequence[str] = ("png", "svg")) -> StoredFigure:
     """Write a figure as ``stem.png``, ``stem.svg``, ``stem.pdf``, as asked for."""
     from flexapod.output import figures as plot
-    from flexapod.output.report.plotly_export import interactive
+    from flexapod.output.report.plotly_export import plotly_figure
 
     files = plot.save(figure, stem, formats=formats)
     if "png" not in formats:
-        with scratch() as folder:
+        with temporary_folder() as folder:
             plot.save(figure, folder / stem.name, formats=("png",))
-    return Drawn(stem.name, title, _picture(figure), interactive(figure), files)
+    return StoredFigure(stem.name, title, _picture(figure), plotly_figure(figure), files)
 
 
 def _picture(figure: Figure) -> bytes:
@@ -112,7 +112,7 @@ def _robot(data: Dataset) -> Iterator[_Plan]:
     elastic = bool(np.abs(data.com_deviation).max() > 0)
     axes, held = ("x", "y", "z"), robot_of(data).platform_fixed
     words = "rigid legs against flexible ones, and the deviation on its own scale"
-    if tool_apart(data):
+    if has_separate_tool(data):
         yield "tool-path", f"Path of the tool: {words}", lambda: plot.com_path(data, axes, "tool")
     if not held:
         yield "com-path", f"Path of the centre of mass: {words}", lambda: plot.com_path(data, axes)
@@ -130,7 +130,7 @@ def _robot(data: Dataset) -> Iterator[_Plan]:
     yield "leg-lengths", words, lambda: plot.leg_lengths(data)
     if np.abs(data.tip_deflection).max() > 0:
         yield "tip-deflections", "Deflection of the tips across the legs", lambda: plot.tip_deflections(data)
-    for own in of_elements(data):
+    for own in element_names(data):
         yield own.replace("_", "-"), capital(data[own].attrs["long_name"]), lambda own=own: plot.by_leg(data, own)
     if not held:
         yield "motion", "Commanded motion", lambda: plot.motion_law(data)
@@ -154,4 +154,4 @@ def _seen(data: Dataset) -> tuple[float, float] | None:
     study = carried_study(data)
     if not isinstance(study, model.ActuatorStudy):
         return None
-    return study.actuator.hub_radius, DrawnMotion(study, data).automatic_scale()
+    return study.actuator.hub_radius, BeamMotion(study, data).automatic_scale()

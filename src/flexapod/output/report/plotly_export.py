@@ -1,9 +1,7 @@
-"""Figures of matplotlib as figures of plotly, so that a page can zoom into them: same curves, same colours, same words.
+"""Figures of matplotlib as figures of plotly, so that a page can zoom into them: same curves, colours and words.
 
-A figure is translated axes by axes, each at its place in the figure. What has no counterpart (3D axes, coloured maps)
-makes the whole figure stay a picture.
-
-Curves as a page reads them: no more points than can be seen, packed; without matplotlib.
+A figure is translated axes by axes, each at its place in the figure. What has no counterpart (3D axes, coloured
+maps) makes the whole figure stay a picture. Curves have no more points than can be seen, packed as base64.
 """
 
 from __future__ import annotations
@@ -19,7 +17,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.text import Annotation
 from matplotlib.ticker import FixedLocator
 
-from flexapod.output.report.replay import packed, thinned
+from flexapod.output.report.replay import decimate_curve, plotly_array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,7 +34,7 @@ _MARKS = {
 _UNIT = re.compile(r"\[([^\]]+)\]\s*$")
 
 
-def interactive(figure: Figure) -> dict[str, Any] | None:
+def plotly_figure(figure: Figure) -> dict[str, Any] | None:
     """Data and layout of a drawn figure in the form of plotly; None where it has something without a counterpart.
 
     The figure is drawn or saved, so that its axes have their places. Curves of more than `MOST_POINTS` points are
@@ -67,12 +65,12 @@ def _above(figure: Figure, panels: list[Axes]) -> int:
 
 
 def _maps(axes: Axes) -> bool:
-    """Whether there are collections with colours by value, or with hatching."""
+    """Test whether axes have collections with colours by value, or with hatching."""
     return any(part.get_array() is not None or part.get_hatch() for part in axes.collections)
 
 
 def _drawn(axes: Axes) -> bool:
-    """Whether there are circles, arcs or polygons: a drawing, not curves."""
+    """Test whether axes have circles, arcs or polygons: a drawing, not curves."""
     return any(not isinstance(patch, Rectangle) for patch in axes.patches)
 
 
@@ -109,7 +107,7 @@ def _axes(axes: Axes, k: int, panels: list[Axes]) -> dict[str, Any]:
 
 
 def _ticks(axis: Any, limits: tuple[float, float], log: bool) -> dict[str, Any]:
-    """Ticks that were set by hand."""
+    """Ticks that were set manually."""
     if not isinstance(axis.get_major_locator(), FixedLocator):
         return {"exponentformat": "power", "dtick": 1} if log else {}
     places = [float(place) for place in axis.get_majorticklocs()]
@@ -131,7 +129,7 @@ def _title(axes: Axes, k: int) -> Iterator[dict[str, Any]]:
 
 
 def _has_note_above(axes: Axes) -> bool:
-    """Whether a note stands between panel and title, as that of `mark_end`."""
+    """Test whether a note stands between panel and title, such as that of `mark_end`."""
     return any(isinstance(note, Annotation) and note.xy[1] == 1.0 and note.xycoords == ("data", "axes fraction")
                for note in axes.texts)  # fmt: skip
 
@@ -170,7 +168,7 @@ def _notes(axes: Axes, k: int) -> Iterator[dict[str, Any]]:
 
 
 def _ties(axes: Axes, artist: Any) -> tuple[bool, bool]:
-    """Whether the two coordinates of an artist are data."""
+    """True for each of the two coordinates of an artist that is in units of the data."""
     return tuple(artist.get_transform().contains_branch_seperately(axes.transData))  # type: ignore[return-value]
 
 
@@ -181,10 +179,10 @@ def _lines(axes: Axes, k: int) -> Iterator[dict[str, Any]]:
         if _ties(axes, line) != (True, True) or not line.get_visible():
             continue
         x, y = (np.ma.filled(np.ma.asarray(v, dtype=float), np.nan) for v in line.get_data())
-        x, y = thinned(np.atleast_1d(x), np.atleast_1d(y))
+        x, y = decimate_curve(np.atleast_1d(x), np.atleast_1d(y))
         name = str(line.get_label())
         yield {
-            "type": "scatter", "xaxis": _key("x", k), "yaxis": _key("y", k), "x": packed(x), "y": packed(y),
+            "type": "scatter", "xaxis": _key("x", k), "yaxis": _key("y", k), "x": plotly_array(x), "y": plotly_array(y),
             "name": "" if name.startswith("_") else name, **_look(line),
             "hovertemplate": f"%{{y:.5g}} {unit.group(1) if unit else ''}",
         }  # fmt: skip
@@ -287,8 +285,9 @@ def _areas(axes: Axes, k: int) -> Iterator[dict[str, Any]]:
         for path in area.get_paths() if _ties(axes, area) == (True, True) else ():
             x, y = np.asarray(path.vertices).T
             yield {
-                "type": "scatter", "xaxis": _key("x", k), "yaxis": _key("y", k), "x": packed(x), "y": packed(y),
-                "mode": "lines", "line": {"width": 0}, "fill": "toself", "hoverinfo": "skip",
+                "type": "scatter", "xaxis": _key("x", k), "yaxis": _key("y", k),
+                "x": plotly_array(x), "y": plotly_array(y), "mode": "lines", "line": {"width": 0},
+                "fill": "toself", "hoverinfo": "skip",
                 "fillcolor": _color(area.get_facecolor()[0]), "name": str(area.get_label()).lstrip("_"),
             }  # fmt: skip
 

@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod import model
-from flexapod.analysis.results.summary import POINT_WORDS, tool_apart
+from flexapod.analysis.results.summary import POINT_WORDS, has_separate_tool
 from flexapod.common.arrays import Array
 from flexapod.common.errors import FlexapodError
-from flexapod.common.quantities import cleared_lines, number, scale
+from flexapod.common.quantities import number, scale, zero_rounding_lines
 from flexapod.common.resources import one_thread
-from flexapod.output.scene.geometry import DrawnMotion, RobotMotion
+from flexapod.output.scene.geometry import BeamMotion, RobotMotion
 from flexapod.output.scene.robot_scene import mode_scene
-from flexapod.output.scene.skeleton import STATIONS, Scene, Skeleton, around
+from flexapod.output.scene.skeleton import STATIONS, Scene, Skeleton, convex_hull
 from flexapod.output.scene.style import FLEXIBLE, RIGID, colors_of_legs
 
 if TYPE_CHECKING:
@@ -75,19 +75,19 @@ def _robot(study: Study, data: Dataset, modes: Dataset | None) -> dict[str, Any]
     motion = RobotMotion(study, data)
     chosen, factor = _chosen(len(motion.time)), motion.automatic_scale()
     times = motion.time[chosen]
-    point = "tool" if tool_apart(data) else "com"
-    frames = np.array([_points(at.flexible, at.rigid) for at in (motion.at(time, factor) for time in times)])
+    point = "tool" if has_separate_tool(data) else "com"
+    frames = np.array([_points(at.flexible, at.rigid) for at in (motion.instant_at(time, factor) for time in times)])
     played = [] if modes is None else _modes(modes)
     everything = [frames, *(part for mode in played for part in mode["ends"])]
     deviation = data[f"{point}_deviation"].values[chosen]
-    numbers = cleared_lines(np.vstack([deviation.T, np.linalg.norm(deviation, axis=1)])).T
+    numbers = zero_rounding_lines(np.vstack([deviation.T, np.linalg.norm(deviation, axis=1)])).T
     return {
         **_frames(times, frames, f"deflections and deviation drawn {number(factor)} times larger"),
         **_values(f"deviation of the {POINT_WORDS[point]}", numbers, (*"xyz", "distance")),
         "mouse": "Drag to turn, scroll to come nearer",
         "traces": [*_paths(frames, POINT_WORDS[point]), *_robot_traces(motion.skeleton, point)],
         "layout": _space(np.concatenate([part.reshape(-1, 3) for part in everything]), study.robot.plane),
-        "modes": [{"title": mode["title"], "ends": [packed(part) for part in mode["ends"]]} for mode in played],
+        "modes": [{"title": mode["title"], "ends": [plotly_array(part) for part in mode["ends"]]} for mode in played],
     }
 
 
@@ -123,7 +123,7 @@ def _modes(modes: Dataset) -> list[dict[str, Any]]:
 
 def _ring(joints: Array, first: int) -> list[int]:
     """Numbers of the points of a ring of joints (legs, 3), the one after the other; its points begin at `first`."""
-    return [first + int(i) for i in around(joints)]
+    return [first + int(i) for i in convex_hull(joints)]
 
 
 def _robot_traces(skeleton: Skeleton, point: str) -> Traces:
@@ -199,10 +199,10 @@ def _paths(frames: Array, name: str) -> Traces:
 
 
 def _actuator(study: ActuatorStudy, data: Dataset) -> dict[str, Any]:
-    motion = DrawnMotion(study, data)
+    motion = BeamMotion(study, data)
     chosen, factor = _chosen(len(motion.time)), motion.automatic_scale()
     times = motion.time[chosen]
-    shown = [motion.at(time, factor)[1:] for time in times]
+    shown = [motion.frame_at(time, factor)[1:] for time in times]
     frames = 1e3 * np.array([np.vstack([bent, line[[0, -1]], np.zeros((1, 3))]) for bent, line in shown])
     space = study.actuator.space
     frames = frames if space else frames[:, :, [0, 2]]
@@ -224,7 +224,7 @@ def _actuator(study: ActuatorStudy, data: Dataset) -> dict[str, Any]:
 
 
 def _frames(times: Array, frames: Array, words: str) -> dict[str, Any]:
-    return {"time": [round(float(t), 6) for t in times], "points": packed(frames), "words": words}
+    return {"time": [round(float(t), 6) for t in times], "points": plotly_array(frames), "words": words}
 
 
 def _values(what: str, values: Array, names: Sequence[str]) -> dict[str, Any]:
@@ -299,14 +299,14 @@ def _limits(points: Array) -> tuple[Array, Array]:
     return low - margin, high + margin
 
 
-def packed(values: Array) -> dict[str, str]:
+def plotly_array(values: Array) -> dict[str, str]:
     """Numbers as plotly reads them: base64 of 32 bit floats, seven digits."""
     flat = np.ascontiguousarray(values, dtype="<f4")
     made = {"dtype": "f4", "bdata": base64.b64encode(flat.tobytes()).decode("ascii")}
     return made | ({"shape": ", ".join(map(str, flat.shape))} if flat.ndim > 1 else {})
 
 
-def thinned(x: Array, y: Array, most: int = MOST_POINTS) -> tuple[Array, Array]:
+def decimate_curve(x: Array, y: Array, most: int = MOST_POINTS) -> tuple[Array, Array]:
     """A curve (n,), (n,) of at most about `most` points: both ends, least and largest of each interval between."""
     if len(x) <= most:
         return x, y

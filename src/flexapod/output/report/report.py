@@ -1,6 +1,6 @@
 """The report of a run: one self-contained page whose first sentence is the answer.
 
-A report's section of the linear model: what disturbances do about rest, what a controller does to damping.
+The section of the linear model states vibration by disturbances about rest and damping by a controller.
 """
 
 from __future__ import annotations
@@ -13,18 +13,18 @@ from typing import TYPE_CHECKING
 
 from flexapod.analysis.description.robot_description import describe
 from flexapod.analysis.results.attributes import carried_study
-from flexapod.analysis.results.bodies import bodies_words
 from flexapod.analysis.results.summary import POINT_WORDS, RobotSummary, summaries
 from flexapod.common.errors import FlexapodError
-from flexapod.common.files import scratch, write_text
+from flexapod.common.files import temporary_folder, write_text
 from flexapod.common.quantities import column, sentence, text
 from flexapod.model import ActuatorStudy
 from flexapod.output.report.replay import MOST_POINTS
 from flexapod.output.text import html
-from flexapod.output.text.answers import distances_table, told_of
+from flexapod.output.text.answers import bodies_words, distances_table, idealization_remarks
 from flexapod.output.text.budget import peak_budget, peak_items
+from flexapod.output.text.description import control_words, vibration_words
 from flexapod.output.text.html import Html
-from flexapod.output.text.parts import Chapter, Item, Lines, Remarks, Text, TextTable, warnings_of
+from flexapod.output.text.parts import Chapter, Item, Lines, Remarks, Text, TextTable, warning_lines
 from flexapod.output.text.study import modes_section, study_items
 
 if TYPE_CHECKING:
@@ -34,44 +34,44 @@ if TYPE_CHECKING:
     from flexapod.analysis.description.robot_description import RobotDescription
     from flexapod.analysis.results.summary import ActuatorSummary
     from flexapod.model import ActuatorStudy, Study
-    from flexapod.output.report.figures import Drawn
+    from flexapod.output.report.figures import StoredFigure
 
 
 def linear_section(study: Study | ActuatorStudy | None) -> list[Html]:
     """Vibration by the study's disturbances and damping by its controller; nothing where it has neither."""
     if study is None or isinstance(study, ActuatorStudy):
         return []
-    told: list[Item] = [*_shaken(study), *_damped(study)]
+    told: list[Item] = [*_vibration_section(study), *_damping_table(study)]
     return [html.section("linear", "Linear model about home", told)] if told else []
 
 
-def _shaken(study: Study) -> Iterator[Item]:
+def _vibration_section(study: Study) -> Iterator[Item]:
     """Words and figure of the vibration by disturbances."""
     if study.disturbance is None:
         return
     from flexapod.analysis import vibration
-    from flexapod.analysis.pose_errors.disturbances import words_of
+    from flexapod.analysis.pose_errors.disturbances import shaking
     from flexapod.output import figures
-    from flexapod.output.report.figures import store
+    from flexapod.output.report.figures import store_figure
 
     try:
         data = vibration(study)
     except FlexapodError as error:
         yield Text(f"The vibration by disturbances cannot be said: {error}", "bad")
         return
-    yield from map(sentence, words_of(data, "at home"))
-    with scratch() as folder:
-        drawn = store(
+    yield from map(sentence, vibration_words(shaking(data), "at home"))
+    with temporary_folder() as folder:
+        drawn = store_figure(
             figures.vibration(data), "Rms of the tool by frequencies from here up", folder / "vibration", ("png",)
         )
     yield html.figure(drawn.title, drawn.picture, drawn.plot)
 
 
-def _damped(study: Study) -> Iterator[Item]:
+def _damping_table(study: Study) -> Iterator[Item]:
     """A table of damping without the controller and with it."""
     if study.control is None:
         return
-    from flexapod.analysis.predicted_damping import control_words, predicted_damping
+    from flexapod.analysis.predicted_damping import control_effect, predicted_damping
 
     try:
         found = predicted_damping(study)
@@ -85,7 +85,7 @@ def _damped(study: Study) -> Iterator[Item]:
     head = ["frequency [Hz]", "damping [%]", "with the controller [Hz]", "its damping [%]"]
     yield TextTable(head, list(zip(*columns, strict=True)), left=())
     yield Text("Predicted by the linear model, from sample to sample, without noise and limits.", "soft")
-    yield from map(sentence, control_words(study))
+    yield from map(sentence, control_words(control_effect(study)))
 
 
 SOLVER = {
@@ -120,13 +120,13 @@ _PACKAGES = ("flexapod", "numpy", "scipy", "casadi", "xarray", "matplotlib", "pl
 
 def robot_report(study: Study | ActuatorStudy, data: Dataset) -> str:
     """The report of a robot's or an actuator's run, whole or partial, as text, with figures drawn for it."""
-    from flexapod.output.report.figures import draw
+    from flexapod.output.report.figures import draw_figures
 
-    with scratch() as folder:
-        return _page(study, data, lambda: draw(data, folder, ("png",)))
+    with temporary_folder() as folder:
+        return _page(study, data, lambda: draw_figures(data, folder, ("png",)))
 
 
-def write_report(data: Dataset, folder: str | Path, figures: Callable[[], Sequence[Drawn]] = tuple) -> Path:
+def write_report(data: Dataset, folder: str | Path, figures: Callable[[], Sequence[StoredFigure]] = tuple) -> Path:
     """Write ``report.html`` of a robot's or an actuator's run, whole or partial, with drawn `figures`; its path.
 
     The figures are asked for last. The folder is made if needed; an existing report is replaced when the new one is
@@ -135,7 +135,7 @@ def write_report(data: Dataset, folder: str | Path, figures: Callable[[], Sequen
     return write_text(Path(folder) / "report.html", _page(carried_study(data), data, figures))
 
 
-def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[[], Sequence[Drawn]]) -> str:
+def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[[], Sequence[StoredFigure]]) -> str:
     first, *further = summaries(data)
     described = _described(study)
     name = Path(str(data.attrs.get("study_file") or "study")).name
@@ -155,11 +155,11 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[
     links |= {"solver": "Solver", "toml": "Study file", "repeat": "Repeat"}
     body = [
         *(*(found.sentence for found in further), *bodies_words(data)),
-        *filter(None, told_of(study)),
+        *filter(None, idealization_remarks(study)),
         Text(f"Report of {name}, flexapod {data.attrs['flexapod_version']}.", "soft"),
         html.contents(links),
         *_partial(data),
-        by_axis(data) if isinstance(first, RobotSummary) else _actuator_numbers(first),
+        deviation_section(data) if isinstance(first, RobotSummary) else _actuator_numbers(first),
         *([] if budget is None else [html.section("budget", "Error budget", peak_items(budget))]),
         warnings_section(data),
         html.section("study", "What was computed", () if study is None else study_items(study, described)),
@@ -183,8 +183,8 @@ def _described(study: Study | ActuatorStudy | None) -> RobotDescription | Actuat
 
 
 def _replay(
-    study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[[], Sequence[Drawn]]
-) -> tuple[list[Html], list[Drawn]]:
+    study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[[], Sequence[StoredFigure]]
+) -> tuple[list[Html], list[StoredFigure]]:
     """The replay, with the figure that stands for it on paper, and the other figures."""
     if study is None:
         return [], list(figures())
@@ -196,8 +196,8 @@ def _replay(
     return [replay_section(data, told, still)], [figure for figure in drawn if figure is not still]
 
 
-def replay_section(data: Dataset, told: Mapping[str, object], still: Drawn | None) -> Html:
-    """What `flexapod.output.report.replay` tells, and the figure that stands for it on paper."""
+def replay_section(data: Dataset, told: Mapping[str, object], still: StoredFigure | None) -> Html:
+    """Section with the data of `flexapod.output.report.replay` and the figure that replaces it on paper."""
     title = "The robot in motion" if "com_deviation" in data else "The beam in motion"
     words = str(told["words"])
     shown = len(told["time"])  # type: ignore[arg-type]
@@ -205,7 +205,7 @@ def replay_section(data: Dataset, told: Mapping[str, object], still: Drawn | Non
     return html.section("replay", "Replay", [html.replay(title, told, still and (still.title, still.picture))])
 
 
-def by_axis(data: Dataset) -> Html:
+def deviation_section(data: Dataset) -> Html:
     """Largest and rms deviation along each axis, of the centre of mass and of a tool elsewhere."""
     tables = {x.point: distances_table(x) for x in summaries(data) if isinstance(x, RobotSummary)}
     several = [Chapter(POINT_WORDS[point].capitalize(), [table]) for point, table in tables.items()]
@@ -233,12 +233,12 @@ def _partial(data: Dataset) -> list[Item]:
 
 
 def warnings_section(data: Dataset) -> Html:
-    """What is doubtful about a result, in words."""
-    found = warnings_of(data)
+    """Section with the warnings of a result, or "None."."""
+    found = warning_lines(data)
     return html.section("warnings", "Warnings", [Remarks(found) if found else "None."])
 
 
-def figures_section(name: str, title: str, figures: Sequence[Drawn], *, first: bool = True) -> list[Html]:
+def figures_section(name: str, title: str, figures: Sequence[StoredFigure], *, first: bool = True) -> list[Html]:
     """Figures, one below the other, nothing where there are none; the first of a page say how they are read."""
     parts = [html.figure(figure.title, figure.picture, figure.plot) for figure in figures]
     read = [Text(THINNED, "soft screen")] if first else []
@@ -258,7 +258,7 @@ def _shown(value: object, key: str) -> str:
 
 
 def repeat_section(words: str, command: str) -> Html:
-    """How to get the same again, with the versions it was got with."""
+    """Section on repeating the run: the command, and the versions of all packages that were used."""
     versions = ", ".join(f"{name} {version(name)}" for name in _PACKAGES)
     note = Text(f"Python {python_version()}, {versions}.", "soft")
     return html.section("repeat", "How to repeat this", [words, Lines(command), note])

@@ -1,1 +1,1 @@
-"""Where things are: the geometry of a mechanism and of a result, for page, report and figures."""
+"""Geometry of a mechanism and of a result, for the page, reports, figures and exports."""

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod import kinematics, model
-from flexapod.analysis.results.summary import tip_size, tool_apart
+from flexapod.analysis.results.summary import has_separate_tool, tip_size
 from flexapod.common.arrays import Array
 from flexapod.kinematics.rotations import exponential, matrix
 from flexapod.output.scene.robot_scene import beam_values, leg_lines
-from flexapod.output.scene.skeleton import STATIONS, Scene, Skeleton, around
+from flexapod.output.scene.skeleton import STATIONS, Scene, Skeleton, convex_hull
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -28,7 +28,7 @@ SHARE = 0.12  # of the robot's size: the largest drawn deflection where the fact
 
 @dataclass(frozen=True, kw_only=True)
 class Instant:
-    """What is drawn at one instant [m]: the flexible robot with its deflections magnified, the rigid one, the truth.
+    """Drawing of one instant [m]: the flexible robot, deflections magnified, the rigid one, the true deviation.
 
     `index` of the stored instant; `start`, `end` (3,): the point whose deviation is shown, rigid and as drawn;
     `deviation` (3,): of that point, flexible minus rigid, not magnified.
@@ -54,7 +54,7 @@ class RobotMotion:
         self._com, self._deviation = data.com_position_rigid.values, data.com_deviation.values
         self._tool_deviation = data.tool_deviation.values
         self._arm = study.robot.tool - study.robot.com
-        self.tool_apart: bool = tool_apart(data)
+        self.tool_apart: bool = has_separate_tool(data)
         self._turn = data.rotation_deviation.values
         self._rotation = matrix(data.platform_quaternion_rigid.values)
         if "base_motion_displacement" in data:
@@ -62,7 +62,7 @@ class RobotMotion:
         self._plates = np.stack([_plate(data, "base", study.robot), _plate(data, "platform", study.robot)], axis=1)
         self._tip = data.tip_deflection.values
         self._amplitude = data.lateral_amplitude.values if "lateral_amplitude" in data else None
-        self._study = as_computed(study, data)
+        self._study = computed_study(study, data)
 
     def _seen_from_base(self, data: Dataset) -> None:
         """Draw all as it is seen from a base that is moved."""
@@ -85,7 +85,7 @@ class RobotMotion:
 
     def index(self, time: float) -> int:
         """The stored instant nearest to `time` [s]."""
-        return nearest(self.time, time)
+        return nearest_index(self.time, time)
 
     def automatic_scale(self) -> float:
         """Factor at which the largest deflection of the motion is seen: 1, 2 or 5 times a power of ten, at least 1."""
@@ -94,16 +94,16 @@ class RobotMotion:
         moved = self._deviation[:, None] + np.cross(self._turn[:, None], moved)
         sizes = (moved, self._deviation, self._tool_deviation, self._tip)
         largest = max(float(np.linalg.norm(part, axis=-1).max()) for part in sizes)
-        return factor_to_see(largest, float(robot.home_lengths.mean()))
+        return visible_factor(largest, float(robot.home_lengths.mean()))
 
-    def at(self, time: float, scale: float, point: str = "com") -> Instant:
+    def instant_at(self, time: float, scale: float, point: str = "com") -> Instant:
         """The robot at the stored instant nearest to `time` [s], deflections drawn `scale` times larger.
 
         `point`: whose deviation is shown, "com" or "tool".
         """
         i, skeleton = self.index(time), self.skeleton
         R, com = self._rotation[i], self._com[i]
-        rigid = skeleton.at(com - R @ skeleton.com, R, com)
+        rigid = skeleton.scene_at(com - R @ skeleton.com, R, com)
         carriages = skeleton.carriages(rigid.platform)
         turned, moved = exponential(scale * self._turn[i]) @ R, com + scale * self._deviation[i]
         centre, offset = moved - turned @ skeleton.com, None
@@ -112,11 +112,11 @@ class RobotMotion:
             line = leg_lines(self._study, self._amplitude[i], length, zeta)
             leaning = self._tip[i] - line[..., -1]  # in bushings, or in a cylinder that bends
             line = line + leaning[..., None] * zeta
-            offset = skeleton.off_chord(scale * line, scale * self._tip[i], length)
+            offset = skeleton.lateral_offsets(scale * line, scale * self._tip[i], length)
         arm = self._arm if point == "tool" else np.zeros(3)
         return Instant(
             index=i,
-            flexible=skeleton.at(centre, turned, moved, offset, carriages, scale * self._plates[i]),
+            flexible=skeleton.scene_at(centre, turned, moved, offset, carriages, scale * self._plates[i]),
             rigid=rigid,
             start=com + R @ arm,
             end=moved + turned @ arm,
@@ -134,7 +134,7 @@ def _plate(data: Dataset, end: str, robot: model.Robot) -> Array:
     return np.concatenate([moved, turn], axis=1)
 
 
-class DrawnMotion:
+class BeamMotion:
     """The beam of a single actuator's result over time, as `beam_frame` places it."""
 
     def __init__(self, study: model.ActuatorStudy, data: Dataset) -> None:
@@ -150,19 +150,19 @@ class DrawnMotion:
         amplitude = data.mode_amplitude.values if "mode_amplitude" in data else np.zeros((len(self.time), 0))
         self._amplitude = amplitude.reshape(*self._offset.shape, -1)
         self._shapes = (
-            beam_values(as_computed(study, data), self._zeta) if amplitude.size else np.zeros((0, BEAM_POINTS))
+            beam_values(computed_study(study, data), self._zeta) if amplitude.size else np.zeros((0, BEAM_POINTS))
         )
 
     def index(self, time: float) -> int:
-        """As `RobotMotion.index`."""
-        return nearest(self.time, time)
+        """Index of the stored instant nearest to `time` [s]."""
+        return nearest_index(self.time, time)
 
     def automatic_scale(self) -> float:
-        """As `RobotMotion.automatic_scale`, against the mean free length."""
+        """Factor at which the largest deflection is visible beside the mean free length: 1, 2 or 5 times 10^n."""
         largest = float(np.abs(self.deflection).max())
-        return factor_to_see(largest, float(self.length.mean()))
+        return visible_factor(largest, float(self.length.mean()))
 
-    def at(self, time: float, scale: float) -> tuple[int, Array, Array]:
+    def frame_at(self, time: float, scale: float) -> tuple[int, Array, Array]:
         """Stored instant; the beam outside the hub, bent `scale` times, and as if rigid: points (n, 3) [m]."""
         i = self.index(time)
         line = straight_beam(self.actuator, self.axes[i], self.length[i], self._zeta)
@@ -179,7 +179,7 @@ class DrawnMotion:
         return along + scale * np.einsum("td,tdi->ti", self._offset, self._sideways(slice(None)))
 
 
-def as_computed(study: S, data: Dataset) -> S:
+def computed_study(study: S, data: Dataset) -> S:
     """The study with the fidelity and the shapes with which a result was computed."""
     now, then = study.simulation, data.attrs
     if (now.fidelity, now.lateral_basis, now.lateral_shapes) == (then["fidelity"], then["basis"], then["modes"]):
@@ -188,7 +188,7 @@ def as_computed(study: S, data: Dataset) -> S:
     return model.override(study, fidelity=str(then["fidelity"]), modes=int(then["modes"]) or None, basis=basis)
 
 
-def nearest(instants: Array, time: float) -> int:
+def nearest_index(instants: Array, time: float) -> int:
     """Place of the instant nearest to `time` in ascending ones (T,)."""
     if len(instants) == 1:
         return 0
@@ -212,7 +212,7 @@ def straight_beam(actuator: model.Actuator, axes: Array, length: float, zeta: Ar
     return np.multiply.outer(actuator.hub_radius + length * zeta, axes[0])
 
 
-def factor_to_see(largest: float, size: float) -> float:
+def visible_factor(largest: float, size: float) -> float:
     """Factor that brings the largest deflection to a share of a size [m]; 1 where it is nothing but rounding."""
     return round_down(SHARE * size / largest) if largest > ROUNDING * size else 1.0
 
@@ -266,7 +266,7 @@ def plate(points: Array, thickness: float) -> tuple[Array, Faces]:
         points = points.mean(axis=0) + np.array(corners)
         first, second, _ = np.linalg.svd(points - points.mean(axis=0))[2]
     normal = np.cross(first, second)
-    rim = points[around(points)]  # it runs around the normal
+    rim = points[convex_hull(points)]  # it runs around the normal
     n, half = len(rim), 0.5 * thickness * normal
     vertices = np.vstack([rim + half, rim - half])
     fan = np.array([[0, i, i + 1] for i in range(1, n - 1)])
@@ -282,7 +282,7 @@ def disc(radius: float, width: float, sides: int = 40) -> tuple[Array, Faces]:
     return plate(radius * np.stack([np.cos(angle), 0 * angle, np.sin(angle)], axis=1), width)
 
 
-def strip(points: Array, most: int = 400) -> Array:
+def path_segments(points: Array, most: int = 400) -> Array:
     """A path (T, 3) as line segments (n, 2, 3), thinned to at most `most`; of one point, a segment of no length."""
     if len(points) == 1:
         return np.stack([points, points], axis=1)

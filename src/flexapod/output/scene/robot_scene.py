@@ -1,4 +1,4 @@
-"""Where things are in space: the robot of a result at an instant, its modes, its motion; the modes of a beam."""
+"""Scenes in space: the robot of a result at an instant, its modes, its motion; the modes of a beam."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ def scene(data: Dataset, time: float = 0.0, magnify: float = 1.0) -> Scene:
     centre = com - R @ robot.com
     tip, zeta = magnify * at.tip_deflection.values, np.linspace(0.0, 1.0, STATIONS)
     shape = 0.5 * (3 * zeta**2 - zeta**3)  # of a cantilever under a force at its tip
-    offset = robot.off_chord(tip[:, :, None] * shape, tip, robot.lengths(centre, R))
-    return robot.at(centre, R, com, offset)
+    offset = robot.lateral_offsets(tip[:, :, None] * shape, tip, robot.lengths(centre, R))
+    return robot.scene_at(centre, R, com, offset)
 
 
 def beam_values(study: model.ActuatorStudy, zeta: Array) -> Array:
@@ -43,14 +43,14 @@ def leg_lines(study: model.Study, amplitude: Array, lengths: Array, zeta: Array)
 
     basis, legs = leg_shapes(study.robot, study.simulation), study.robot.legs
     free, lines = lengths - np.array([leg.cylinder.mouth for leg in legs]), np.empty((len(legs), 2, len(zeta)))
-    for leg, alike in _alike(legs):
+    for leg, alike in _distinct_legs(legs):
         lines[alike] = np.einsum("ndk,dkpn->ndp", amplitude[alike], leg_values(leg, basis, free[alike], zeta))
     return lines
 
 
 @lru_cache(maxsize=4)
-def _alike(legs: tuple[model.Leg, ...]) -> list[tuple[model.Leg, list[int]]]:
-    """The different legs, and which ones are like each."""
+def _distinct_legs(legs: tuple[model.Leg, ...]) -> list[tuple[model.Leg, list[int]]]:
+    """Legs that differ, and the indices of the legs that equal each."""
     places: dict[model.Leg, list[int]] = {}
     for i, leg in enumerate(legs):
         places.setdefault(leg, []).append(i)
@@ -75,10 +75,10 @@ def mode_scene(modes: Dataset, mode: int, size: float, phase: float = 1.0) -> Sc
     com = centre + R @ robot.com + factor * step
     centre = com - turned @ robot.com
     length = robot.lengths(centre, turned)
-    place = robot.along(length) / length[:, None]
+    place = robot.axial_distances(length) / length[:, None]
     station = modes.station.values
     offset = np.array([[np.interp(place[i], station, row) for row in rows] for i, rows in enumerate(lateral)])
-    return robot.at(centre, turned, com, factor * offset)
+    return robot.scene_at(centre, turned, com, factor * offset)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -64,7 +64,7 @@ class Scene:
 
     @property
     def height(self) -> float:
-        """From the lowest to the highest joint; of a robot that lies flat its largest extent [m]."""
+        """Height from the lowest to the highest joint; of a robot that lies flat its largest extent [m]."""
         reach = np.ptp(np.vstack([self.base, self.platform]), axis=0)
         return float(reach[2] if reach[2] > FLAT * reach.max() else reach.max())
 
@@ -103,7 +103,7 @@ class Skeleton:
     @cached_property
     def home(self) -> Scene:
         """The undeformed robot at home."""
-        return self.at(self.robot.home_position, self.robot.home_rotation)
+        return self.scene_at(self.robot.home_position, self.robot.home_rotation)
 
     @cached_property
     def _limbs(self) -> kinematics.Limbs:
@@ -130,19 +130,19 @@ class Skeleton:
             found[i] = found[i] if place is None else place
         return found
 
-    def along(self, length: Array) -> Array:
+    def axial_distances(self, length: Array) -> Array:
         """Distances of the drawn points of pistons from their base joints, (legs, n) [m], at lengths (legs,)."""
         mouth = self._mouth[:, None]
         return mouth + (length[:, None] - mouth) * np.linspace(0.0, 1.0, STATIONS)
 
-    def off_chord(self, line: Array, tip: Array, length: Array) -> Array:
+    def lateral_offsets(self, line: Array, tip: Array, length: Array) -> Array:
         """Offsets of the pistons from the lines of their joints, (legs, 2, n) [m].
 
         `line` (legs, 2, n): offsets from the axes of the cylinders at n points spread evenly from mouth to tip [m];
         `tip` (legs, 2): those of the tips, every cylinder leans so that its tip meets the platform; `length` (legs,):
         joint to joint [m].
         """
-        return line - tip[:, :, None] * (self.along(length) / length[:, None])[:, None]
+        return line - tip[:, :, None] * (self.axial_distances(length) / length[:, None])[:, None]
 
     def bases(self, carriages: Array) -> Array:
         """Base joints (legs, 3) where the carriages are at positions (legs,)."""
@@ -155,7 +155,7 @@ class Skeleton:
         tips = centre + self.robot.platform_joints @ R.T
         return np.linalg.norm(tips - self.bases(self.carriages(tips) if carriages is None else carriages), axis=1)
 
-    def at(
+    def scene_at(
         self,
         centre: Array,
         R: Array,
@@ -167,8 +167,8 @@ class Skeleton:
         """The robot with its platform frame's origin at `centre`, turned by `R`.
 
         `com` (3,) of the payload, None: where a rigid platform carries it; `offset` (legs, 2, STATIONS): pistons off
-        the lines of their joints [m], see `off_chord`, None: straight legs; `carriages` (legs,), None: where rigid legs
-        put them; `plates` (2, 6), see `Scene`, None: on mounts that do not move.
+        the lines of their joints [m], see `lateral_offsets`, None: straight legs; `carriages` (legs,), None: where
+        rigid legs put them; `plates` (2, 6), see `Scene`, None: on mounts that do not move.
         """
         plates = np.zeros((2, 6)) if plates is None else plates
         tips = centre + _on_plate(self.robot.platform_joints, plates[1]) @ R.T
@@ -177,7 +177,7 @@ class Skeleton:
         chord = tips - base
         length = np.linalg.norm(chord, axis=1)
         axis = chord / length[:, None]
-        lines = base[:, None] + self.along(length)[:, :, None] * axis[:, None]
+        lines = base[:, None] + self.axial_distances(length)[:, :, None] * axis[:, None]
         frames = self._frames(carriages)
         if offset is not None:
             turned = kinematics.leg_rotations(frames, *kinematics.joint_angles(frames, axis[None]))[0]
@@ -258,7 +258,7 @@ def _radius(piston: model.Piston, xi: Array) -> Array:
     return found if min(depths) > 0 else np.full_like(found, np.nan)
 
 
-def around(points: Array) -> NDArray[np.intp]:
+def convex_hull(points: Array) -> NDArray[np.intp]:
     """The corners of the hull of about coplanar points (n, 3) in their order; of points on a line all of them."""
     arms = points - points.mean(axis=0)
     first, second, _ = np.linalg.svd(arms)[2]

@@ -1,6 +1,7 @@
-"""What drives do in a result, leg by leg: they push pistons, move carriages or turn cranks.
+"""Forces and positions of the drives of a result; colours of legs, axes, energies and errors.
 
-Colours of legs, axes and energies, the same in figures, on the page and in reports; they load without matplotlib.
+Drives push pistons, move carriages or turn cranks. Colours are the same in figures, on the page and in reports,
+and load without matplotlib.
 """
 
 from __future__ import annotations

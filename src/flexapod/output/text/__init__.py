@@ -1,1 +1,1 @@
-"""What is told of a result, once: sections, sentences and tables, for the terminal, for a page, as data."""
+"""Text on results, written once for terminal, page and data: sections, sentences and tables."""

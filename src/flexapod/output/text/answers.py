@@ -1,33 +1,32 @@
-"""What a run found: for `flexapod run`, for `actuator`, and for the report.
+"""Answers as text: results of runs, a first robot, maps, modes, errors.
 
-A first robot in words: what was found, and what to think about.
-
-What `flexapod map` says: how much is reached, and where each quantity is least and largest.
-
-What `flexapod modes` says: frequencies, damping and kinds at a pose, and how much disturbances shake it there.
-
-An error in words: what is wrong and with what, what is allowed, the next step.
+Those of runs are for `flexapod run`, `actuator` and the report. A map states how much is reached and where each
+quantity is least and largest; modes state frequencies, damping, kinds and the vibration by disturbances; an
+error states what is wrong and with what, what is allowed, and the next step.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from flexapod import model
 from flexapod.analysis.description.robot_description import RobotDescription, describe
-from flexapod.analysis.error_budget.text import run_counts
-from flexapod.analysis.results.bodies import bodies_words
-from flexapod.analysis.results.idealizations import held, ideal_words
+from flexapod.analysis.pose_errors.backlash import half_play
+from flexapod.analysis.results.idealizations import idealization, soft_drives
 from flexapod.analysis.results.poses import coordinate_words
+from flexapod.analysis.results.remarks import remark
 from flexapod.analysis.results.summary import POINT_WORDS, RobotSummary, summaries, summary
-from flexapod.common.errors import ComputationError, FlexapodError, InputError
-from flexapod.common.quantities import column, columns, number, sentence, signed, text
+from flexapod.common.quantities import column, columns, number, sentence, signed_components, text
+from flexapod.common.ranking import EQUALS, first_least
 from flexapod.design.maps.findings import Finding, MapFindings, axis_words
-from flexapod.model import ActuatorStudy, Study
-from flexapod.output.text.parts import Chapter, Item, Remarks, TextTable, warnings_of
+from flexapod.model import ActuatorStudy, Robot, Study
+from flexapod.output.text.description import bushing_words, ideal_words, locked_drive_words, rest_words
+from flexapod.output.text.parts import Chapter, Item, Remarks, TextTable, warning_lines
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -35,9 +34,27 @@ if TYPE_CHECKING:
     from flexapod.common.arrays import Array
 
 
-def told_of(study: Study | ActuatorStudy | None) -> list[str | None]:
-    """What of a robot is ideal, and what a run leaves to the budget; None where there is nothing to say."""
-    return [ideal_words(study.robot), run_counts(study.robot)] if isinstance(study, Study) else [None, None]
+def idealization_remarks(study: Study | ActuatorStudy | None) -> list[str | None]:
+    """Remarks on ideal parts of a robot, and on what a run leaves to the budget; None where there is none."""
+    if not isinstance(study, Study):
+        return [None, None]
+    return [ideal_words(idealization(study.robot)), run_counts(study.robot)]
+
+
+def run_counts(robot: Robot) -> str | None:
+    """Sentence on the parts that a run counts, and those that it leaves to the budget; None where it leaves nothing."""
+    rubs = any(x.friction for leg in robot.legs for x in (leg.base_joint, leg.platform_joint, leg.drive))
+    others = {
+        "tolerances": robot.tolerances is not None,
+        "play": bool(half_play(robot).any()),
+        "what friction leaves behind": rubs,
+    }
+    named = [name for name, there in others.items() if there]
+    if not named or robot.platform_fixed:
+        return None
+    listed = " and ".join(filter(None, (", ".join(named[:-1]), named[-1])))
+    warm = "" if robot.heat is None else "warm, "
+    return f"Counted: one machine as drawn, {warm}under load and in motion; {listed}: flexapod budget."
 
 
 def run_items(study: Study | ActuatorStudy, data: Dataset) -> Iterator[Item]:
@@ -48,8 +65,41 @@ def run_items(study: Study | ActuatorStudy, data: Dataset) -> Iterator[Item]:
         if isinstance(found, RobotSummary):
             yield ""
             yield axes_table(found)
-    yield from filter(None, told_of(study))
-    yield Remarks(warnings_of(data), "Warning: ")
+    yield from filter(None, idealization_remarks(study))
+    yield Remarks(warning_lines(data), "Warning: ")
+
+
+def bodies_words(data: Dataset) -> list[str]:
+    """Sentences on a result: the joint with the least angle left, the least distance of legs, what bushings bear."""
+    said = []
+    if "joint_margin" in data:
+        left = data.joint_margin.values
+        k, leg, end = np.unravel_index(first_least(left), left.shape)
+        said.append(left_words(float(left[k, leg, end]), int(leg) + 1, data.end.values[end], float(data.time[k])))
+    if "leg_clearance" in data:
+        k = first_least(data.leg_clearance.values, EQUALS)
+        said.append(gap_words(float(data.leg_clearance[k]), data.nearest_legs.values[k], float(data.time[k])))
+    if "guide_force" in data:
+        said.append(bushing_words(np.linalg.norm(data.guide_force.values, axis=-1), data.time.values))
+    return said
+
+
+def left_words(left: float, leg: int, end: str, time: float) -> str:
+    """The joint with the least angle left."""
+    what = "are left of" if left >= 0 else "are missing to"
+    return (
+        f"{np.rad2deg(abs(left)):.3g} deg {what} the angle of the {end} joint of leg {leg} at t = {time:.4g} s, "
+        "the least of all joints."
+    )
+
+
+def gap_words(gap: float, legs: Array, time: float) -> str:
+    """The two legs nearest to each other."""
+    one, other = legs
+    if gap < 0:
+        return sentence(remark("legs overlap", one=one, other=other, overlap=-gap, time=time))
+    at = f"at t = {time:.4g} s"
+    return f"Legs {one} and {other} come nearest to each other {at}: {text(gap, 'm', 3)} are between them."
 
 
 def axes_table(found: RobotSummary) -> TextTable:
@@ -83,7 +133,7 @@ def distances_table(found: RobotSummary) -> TextTable:
 
 def run_as_dict(study: Study | ActuatorStudy, data: Dataset) -> dict[str, object]:
     """A run as plain data."""
-    ideal, counts = told_of(study)
+    ideal, counts = idealization_remarks(study)
     state = {name: data.attrs[name] for name in ("failure", "time_reached") if name in data.attrs}
     return {
         "summary": summary(data).as_dict(),
@@ -91,7 +141,7 @@ def run_as_dict(study: Study | ActuatorStudy, data: Dataset) -> dict[str, object
         **state,
         "ideal": ideal,
         "counts": counts,
-        "warnings": warnings_of(data),
+        "warnings": warning_lines(data),
         "wall_time": data.attrs["wall_time"],
         "steps": int(data.attrs["steps"]),
     }
@@ -101,8 +151,8 @@ HEAVY = 1.0  # mass of the legs over that of the payload above which it is remar
 MACHINE = 3.0  # the same of legs with screws or oil, which are sized for stiffness
 
 
-def first_words(written: str) -> list[str]:
-    """Sentences about the study in a text."""
+def first_robot_sentences(written: str) -> list[str]:
+    """Sentences on the study of a first robot, given as the text of its file."""
     study = model.loads(written)
     found = describe(study)
     if not isinstance(study, model.Study) or not isinstance(found, RobotDescription):
@@ -123,9 +173,10 @@ def _found(study: model.Study, found: RobotDescription) -> list[str]:
     ]
     pushed = max(leg.euler_share.value for leg in found.legs)
     bears = f"Pistons bear at most {number(100 * pushed, 2)} % of their Euler load"
-    if start.sag is not None and start.modes:
+    if start.rest is not None and start.modes:
         first = start.modes[0]
-        bears += f". {start.rest.rstrip('.')}; the lowest frequency is {first.frequency:.3g} Hz ({first.kind})"
+        rest = rest_words(start.rest).rstrip(".")
+        bears += f". {rest}; the lowest frequency is {first.frequency:.3g} Hz ({first.kind})"
     return [*lines, f"{bears}."]
 
 
@@ -154,7 +205,7 @@ def map_items(data: Dataset, found: MapFindings) -> Iterator[Item]:
     if found.quantities:
         head = ["", "unit", "least", "at", "largest", "at", "home"]
         yield TextTable(head, list(map(_row, found.quantities)), left=(0, 1, 3, 5))
-    yield from map("Warning: {}".format, warnings_of(data))
+    yield from map("Warning: {}".format, warning_lines(data))
 
 
 def _sentence(found: Finding) -> str:
@@ -175,7 +226,7 @@ def _row(found: Finding) -> list[str]:
 def modes_items(
     study: model.Study | model.ActuatorStudy, data: Dataset, pose: str | None, count: int, shaken: Sequence[str]
 ) -> Iterator[Item]:
-    """Where the modes are, a table of the lowest `count`, how disturbances have `shaken` the robot, warnings."""
+    """Pose of the modes, a table of the lowest `count`, sentences `shaken` on vibration by disturbances, warnings."""
     yield f"{_held(study, data, pose)}."
     yield ""
     shown = data.isel(mode=slice(0, count))
@@ -190,7 +241,7 @@ def modes_items(
     if data.sizes["mode"] > count:
         yield f"The lowest {count} of {data.sizes['mode']} modes; more with --count."
     yield from map(sentence, shaken)
-    yield from map("Warning: {}".format, warnings_of(data))
+    yield from map("Warning: {}".format, warning_lines(data))
 
 
 def _held(study: model.Study | model.ActuatorStudy, data: Dataset, pose: str | None) -> str:
@@ -198,8 +249,8 @@ def _held(study: model.Study | model.ActuatorStudy, data: Dataset, pose: str | N
         free = study.actuator.free_length
         return f"Hub and extension held, about the straight beam, {free:.4g} m of it outside the hub"
     where = f"at {pose} from home" if pose else "at home"
-    rest = f"about the static equilibrium (the centre of mass is off by {signed(data.com_sag.values)})"
-    return f"{held(study.robot)}, {where}, {rest}"
+    rest = f"about the static equilibrium (the centre of mass is off by {signed_components(data.com_sag.values)})"
+    return f"{locked_drive_words(soft_drives(study.robot))}, {where}, {rest}"
 
 
 def _per_cent(shares: Array) -> list[str]:
@@ -214,29 +265,6 @@ def modes_as_dict(data: Dataset, shaken: Dataset | None, files: Sequence[Path]) 
         "modes": [dict(zip(names, mode, strict=True)) for mode in zip(*columns, strict=True)],
         **({"com_sag": data.com_sag.values.tolist()} if "com_sag" in data else {}),
         **({} if shaken is None else {"vibration_rms": shaken.vibration_rms.values.tolist()}),
-        "warnings": warnings_of(data),
+        "warnings": warning_lines(data),
         "files": files,
     }
-
-
-def parts_of(error: FlexapodError) -> dict[str, str | None]:
-    """The parts of an error by name: `kind`, `what`, and where given `file`, `key`, `value`, `allowed`, `next_step`."""
-    if isinstance(error, InputError):
-        return {"kind": "input", **error.as_dict()}
-    if isinstance(error, ComputationError):
-        return {"kind": "computation", "what": error.what, "next_step": error.next_step}
-    return {"kind": "computation", "what": str(error)}
-
-
-def lines_of(parts: Mapping[str, str | None]) -> list[str]:
-    """An error in words: what is wrong and with what, then a line each for file, what is allowed and the next step."""
-    named = ("allowed", "next_step") if not parts.get("key") else ("file", "allowed", "next_step")
-    return [_headline(parts), *(f"  {name.replace('_', ' '):11s}{parts[name]}" for name in named if parts.get(name))]
-
-
-def _headline(parts: Mapping[str, str | None]) -> str:
-    """Key and value, else the file, and what is wrong with it."""
-    place = parts.get("key") or parts.get("file")
-    if parts.get("key") and parts.get("value") is not None:
-        place = f"{place} = {parts['value']}"
-    return f"Error: {place}: {parts['what']}" if place else f"Error: {parts['what']}"

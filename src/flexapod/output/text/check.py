@@ -1,4 +1,4 @@
-"""What `flexapod check` says of a robot and of a single actuator."""
+"""Text of `flexapod check` on a robot or a single actuator."""
 
 from __future__ import annotations
 
@@ -8,18 +8,30 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.analysis.description.hydraulic_description import hydraulic_table
-from flexapod.analysis.description.screw_description import screw_table
-from flexapod.analysis.results.elongations import bushing_words
+from flexapod.analysis.description.hydraulic_description import BAR, LITRES
+from flexapod.analysis.description.screw_description import RPM
 from flexapod.common.quantities import column, columns, number, scale, sentence, text
-from flexapod.common.ranking import most, ranked
+from flexapod.common.ranking import descending_order, largest_item
+from flexapod.output.text.description import (
+    accuracy_words,
+    back_words,
+    bushing_words,
+    ideal_words,
+    locked_drive_words,
+    loss_words,
+    oil_words,
+    rest_words,
+    vibration_words,
+)
 from flexapod.output.text.parts import Chapter, Item, Remarks, TextTable
 
 if TYPE_CHECKING:
     from flexapod.analysis.description.actuator_description import ActuatorDescription, BeamDescription
+    from flexapod.analysis.description.hydraulic_description import HydraulicDescription
     from flexapod.analysis.description.leg_description import Extreme
-    from flexapod.analysis.description.residual_vibration import VibrationToExpect
+    from flexapod.analysis.description.residual_vibration import ExpectedVibration
     from flexapod.analysis.description.robot_description import PoseDescription, RobotDescription
+    from flexapod.analysis.description.screw_description import ScrewDescription
 
 SHOWN_ANGLE = math.radians(60)
 
@@ -44,14 +56,14 @@ def _robot(found: RobotDescription, control: Sequence[str]) -> Iterator[Item]:
     yield Chapter("Loads (+ pushes)", _loads(found))
     yield screws(found)
     yield hydraulics(found)
-    yield Chapter("Loss factors, made viscous at home", map("{}.".format, found.losses))
+    yield Chapter("Loss factors, made viscous at home", map("{}.".format, loss_words(found.losses)))
     for pose in found.poses:
-        yield Chapter(f"{found.held}, {pose.name} (t = {pose.time:.3f} s)", _pose(pose))
+        yield Chapter(f"{locked_drive_words(found.held)}, {pose.name} (t = {pose.time:.3f} s)", _pose(pose))
     yield Chapter("Vibration to expect after the motion, at the tool", [_vibration(found.vibration)])
-    yield Chapter("The machine as built", map(sentence, found.accuracy))
-    yield Chapter("Disturbances", map(sentence, found.disturbances))
+    yield Chapter("The machine as built", map(sentence, accuracy_words(found.accuracy)))
+    yield Chapter("Disturbances", map(sentence, vibration_words(found.disturbances, "at home")))
     yield Chapter("Controller", map(sentence, control))
-    ideal = [found.ideal] if found.ideal else []
+    ideal = [words] if (words := ideal_words(found.ideal)) else []
     yield Chapter("Remarks", [*ideal, Remarks(found.remarks or (() if ideal else ("None.",)))])
 
 
@@ -71,7 +83,7 @@ def _lengths(found: RobotDescription) -> Iterator[Item]:
     yield TextTable(head, rows, of="leg")
     limited = [(leg.stroke_margin.value, leg) for leg in found.legs if leg.stroke_margin is not None]
     if limited:
-        margin, leg = most(limited, key=lambda entry: -entry[0])
+        margin, leg = largest_item(limited, key=lambda entry: -entry[0])
         low, high = leg.stroke or (0.0, 0.0)
         yield (
             f"Leg {leg.leg} comes nearest to its limits of {1e3 * low:.4g} and {1e3 * high:.4g} mm: {1e3 * margin:.2f} "
@@ -147,7 +159,7 @@ def _loads(found: RobotDescription) -> Iterator[Item]:
     head += [f"{name} [{pressure}]" for name in ("axial", "bending", "together")]
     numbers = [str(leg.leg) for leg in legs]
     yield TextTable(head, list(zip(numbers, *forces, pushed, *stresses, strict=True)), of="leg")
-    near = most(legs, key=lambda leg: leg.euler_share.value)
+    near = largest_item(legs, key=lambda leg: leg.euler_share.value)
     if near.euler_share.value > 0:
         yield (
             f"Leg {near.leg} comes nearest to buckling: {1 / near.euler_share.value:.3g} times its load would "
@@ -155,7 +167,7 @@ def _loads(found: RobotDescription) -> Iterator[Item]:
         )
     known = [(leg.stress, leg.leg) for leg in legs if leg.stress is not None]
     if known:
-        stress, leg = most(known, key=lambda entry: entry[0].total.value)
+        stress, leg = largest_item(known, key=lambda entry: entry[0].total.value)
         limit = stress.yield_stress
         share = "" if limit is None else f", {100 * stress.total.value / limit:.2g} % of yield"
         yield f"Leg {leg} is stressed most: {text(stress.total.value, 'Pa')}{share}."
@@ -164,17 +176,55 @@ def _loads(found: RobotDescription) -> Iterator[Item]:
 
 
 def screws(found: RobotDescription) -> Chapter:
-    """What the path asks of screws, and what happens with their motors off."""
-    items = [TextTable(*screw_table(found.screws), of="leg"), sentence(found.back)] if found.screws else []
+    """Section on the loads of screws along the path, and on back-driving with their motors off."""
+    items = [_screw_table(found.screws), sentence(back_words(found.back))] if found.screws else []
     return Chapter("Screws, largest values on the path", items)
 
 
+def _screw_table(screws: Sequence[ScrewDescription]) -> TextTable:
+    head = ["thrust [N]", "of buckling [%]", "motor [rpm]", "of critical speed [%]", "motor [N m]", "rms [N m]",
+            "static safety", "life [h]"]  # fmt: skip
+    known = any(s.current is not None for s in screws)
+    head += ["current [A]", "rms [A]"] if known else []
+    rows = [
+        [
+            f"{s.leg}",
+            f"{s.thrust.value:.4g}",
+            f"{100 * s.buckling.value:.3g}",
+            f"{RPM * s.speed.value:.4g}",
+            f"{100 * s.critical:.3g}",
+            f"{s.torque.value:.3g}",
+            f"{s.rms_torque:.3g}",
+            "-" if s.safety is None else f"{s.safety:.3g}",
+            "-" if s.hours is None else f"{s.hours:.3g}",
+            *("-" if x is None else f"{x:.3g}" for x in (s.current, s.rms_current) if known),
+        ]
+        for s in screws
+    ]
+    return TextTable(head, rows, of="leg")
+
+
 def hydraulics(found: RobotDescription) -> Chapter:
-    """What the path asks of hydraulic cylinders."""
-    items = (
-        [TextTable(*hydraulic_table(found.hydraulics), of="leg"), *map(sentence, found.oil)] if found.hydraulics else []
-    )
+    """Section on the loads of hydraulic cylinders along the path."""
+    words = map(sentence, oil_words(found.oil, found.hydraulics))
+    items = [_hydraulic_table(found.hydraulics), *words] if found.hydraulics else []
     return Chapter("Hydraulic cylinders, on the path", items)
+
+
+def _hydraulic_table(found: Sequence[HydraulicDescription]) -> TextTable:
+    head = ["thrust [N]", "pressure [bar]", "flow [l/min]", "least stiffness of the oil [N/um]", "creep [um/s]"]
+    rows = [
+        [
+            f"{x.leg}",
+            f"{x.thrust.value:.4g}",
+            f"{BAR * x.pressure.value:.3g}",
+            f"{LITRES * x.flow.value:.3g}",
+            f"{1e-6 * x.stiffness.value:.3g}",
+            f"{1e6 * x.creep:.3g}",
+        ]
+        for x in found
+    ]
+    return TextTable(head, rows, of="leg")
 
 
 def _pose(pose: PoseDescription) -> Iterator[Item]:
@@ -188,8 +238,8 @@ def _pose(pose: PoseDescription) -> Iterator[Item]:
             f"{text(s.most, 'N/m')}; against turning {number(turning.factor * s.turning_least)} to "
             f"{turning.text(s.turning_most)}."
         )
-    if pose.rest:
-        yield pose.rest
+    if pose.rest is not None:
+        yield rest_words(pose.rest)
     if pose.parts is not None:
         yield from _parts(pose.parts)
     if any(pose.lost_motion):
@@ -208,7 +258,7 @@ def _parts(parts: Mapping[str, tuple[float, ...]]) -> Iterator[Item]:
     legs = range(len(next(iter(parts.values()))))
     softness = [sum(1 / values[i] for values in parts.values()) for i in legs]
     whole = [1 / x if x else math.inf for x in softness]
-    softest, names = ranked(-np.array([min(values) for values in parts.values()])), list(parts)
+    softest, names = descending_order(-np.array([min(values) for values in parts.values()])), list(parts)
     yield "Stiffness along the legs [N/µm], softest part first, and its share in the leg's compliance:"
     rows = [[name, *(_stiffness_and_share(k, all_) for k, all_ in zip(parts[name], whole, strict=True))]
             for name in (names[i] for i in softest)]  # fmt: skip
@@ -222,7 +272,7 @@ def _stiffness_and_share(stiffness: float, whole: float) -> str:
     return "-" if math.isinf(stiffness) else f"{number(stiffness / 1e6, 4)} ({100 * whole / stiffness:.0f} %)"
 
 
-def _vibration(found: VibrationToExpect | None) -> str:
+def _vibration(found: ExpectedVibration | None) -> str:
     if found is None:
         return "None that could be estimated."
     band = text(found.band, "m")

@@ -1,4 +1,4 @@
-"""What is told, on a self-contained HTML page: text, tables, code; figures that zoom, a replay."""
+"""Items of `parts` as a self-contained HTML page: text, tables, code; figures that zoom, a replay."""
 
 from __future__ import annotations
 
@@ -68,11 +68,11 @@ def _deflated(script: bytes) -> str:
 
 
 class Html(str):
-    """What is markup already: a figure, a replay, links, a section."""
+    """Text that is markup already: a figure, a replay, links, a section."""
 
 
 def parts(told: Iterable[Item]) -> str:
-    """What is told, a block each; a section within has a smaller title, and is left out with nothing in it."""
+    """Markup of items, a block each; an inner section has a smaller title and is left out if it is empty."""
     return "\n".join(filter(None, map(_part, told)))
 
 
@@ -103,7 +103,7 @@ def section(name: str, title: str, told: Iterable[Item]) -> Html:
 
 
 def _remark(text: str) -> str:
-    """What a remark says, and folded away behind it what explains it."""
+    """Markup of a remark: its first sentence, and its explanation folded away behind it."""
     first, rest = map(escape, brief(text))
     return f"<li><details><summary>{first}</summary>{rest}</details></li>" if rest else f"<li>{first}</li>"
 
@@ -135,7 +135,7 @@ def contents(links: Mapping[str, str]) -> Html:
 
 
 def figure(title: str, png: bytes, plot: Mapping[str, object] | None = None) -> Html:
-    """A picture with its title, held in the page itself; with `plot` (from `interactive`) scripts can zoom it."""
+    """A picture with its title, held in the page itself; with `plot` (from `plotly_figure`) scripts can zoom it."""
     image, caption = _image(title, png), f"<figcaption>{escape(title)}</figcaption>"
     tall = ["tall"] * _is_tall(png)
     if plot is None:
@@ -168,7 +168,7 @@ def _classes(names: Sequence[str]) -> str:
 
 
 def _is_tall(png: bytes) -> bool:
-    """Whether a picture would be too small on half a printed page; its size is at the head of its file."""
+    """Test whether a picture would be too small on half a printed page, from the size at the head of its file."""
     width, height = (int.from_bytes(png[at : at + 4], "big") for at in (16, 20))
     return height > 0.9 * width
 

@@ -1,4 +1,4 @@
-"""What `flexapod frf` and `flexapod damp` say: responses in a line each, poles in a table."""
+"""Text of `flexapod frf` and `flexapod damp`: responses in a line each, poles in a table."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod.common.quantities import column, number, sentence
-from flexapod.control.datasets import beyond_rounding, complex_of, per, units_in
+from flexapod.control.datasets import channel_units, join_complex, response_unit, significant_pairs
 from flexapod.output.text.parts import Item, TextTable
 
 if TYPE_CHECKING:
@@ -25,12 +25,12 @@ def frf_items(data: Dataset, pose: str | None, drives: str) -> Iterator[Item]:
     f = data.frequency.values
     yield f"{_where(pose, drives)}, {number(f[0])} to {number(f[-1])} Hz, {len(f)} frequencies."
     yield ""
-    size = np.abs(complex_of(data.frequency_response).transpose("output", "input", "frequency").values)
-    out, into = (units_in(data, dim) for dim in ("output", "input"))
+    size = np.abs(join_complex(data.frequency_response).transpose("output", "input", "frequency").values)
+    out, into = (channel_units(data, dim) for dim in ("output", "input"))
     curves = dict(zip(product(out, into), size.reshape(-1, len(f)), strict=True))
     rows = []
-    for output, input in beyond_rounding({pair: float(curve.max()) for pair, curve in curves.items()}, out):
-        curve, unit = curves[output, input], per(out[output], into[input])
+    for output, input in significant_pairs({pair: float(curve.max()) for pair, curve in curves.items()}, out):
+        curve, unit = curves[output, input], response_unit(out[output], into[input])
         at = int(curve.argmax())
         rows.append((output, input, f"{curve[0]:.4g}", f"{curve[at]:.4g}", f"{f[at]:.4g}", unit))
     head = ["output", "input", f"at {number(f[0])} Hz", "largest", "at [Hz]", "unit"]
@@ -66,7 +66,7 @@ def damp_items(data: Dataset, pose: str | None, drives: str, count: int) -> Iter
     """The slowest poles, and how many of all grow."""
     yield f"{_where(pose, drives)}."
     yield ""
-    pole, ratio = complex_of(data.pole).values, data.damping_ratio.values
+    pole, ratio = join_complex(data.pole).values, data.damping_ratio.values
     shown = slice(0, count)
     _, frequencies = column(data.frequency.values[shown], "Hz", 6)
     texts = [_ratio(z, s) for z, s in zip(ratio[shown], pole[shown], strict=True)]
@@ -89,7 +89,7 @@ def _ratio(ratio: float, pole: complex) -> str:
 
 def damp_as_dict(data: Dataset) -> dict[str, object]:
     """Poles as plain data."""
-    pole = complex_of(data.pole).values
+    pole = join_complex(data.pole).values
     columns = (
         data.frequency.values.tolist(),
         data.damping_ratio.values.tolist(),

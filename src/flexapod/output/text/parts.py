@@ -1,4 +1,4 @@
-"""Parts of what is told: sentences, tables, remarks, sections. They say what; `terminal` and `html` say how it looks.
+"""Items of a text: sentences, tables, remarks, sections, which `terminal` and `html` lay out.
 
 A plain text stands for a sentence or a paragraph, an empty one for a gap on a terminal.
 """
@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
+
+from flexapod.common.errors import ComputationError, FlexapodError, InputError
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -61,7 +63,7 @@ class Lines:
 
 @dataclass(frozen=True)
 class Chapter:
-    """What stands together below a title; one with nothing in it is left out.
+    """A section: items below a title; an empty one is left out.
 
     `close`: the title is a sentence of what stands before, and there in any case.
     """
@@ -74,6 +76,29 @@ class Chapter:
 Item = str | Text | TextTable | Bullets | Remarks | Lines | Chapter
 
 
-def warnings_of(data: Dataset) -> list[str]:
-    """What is doubtful about a result, a line each."""
+def warning_lines(data: Dataset) -> list[str]:
+    """Warnings of a result, a line each."""
     return [line for line in str(data.attrs.get("warnings", "")).splitlines() if line]
+
+
+def error_parts(error: FlexapodError) -> dict[str, str | None]:
+    """The parts of an error by name: `kind`, `what`, and where given `file`, `key`, `value`, `allowed`, `next_step`."""
+    if isinstance(error, InputError):
+        return {"kind": "input", **error.as_dict()}
+    if isinstance(error, ComputationError):
+        return {"kind": "computation", "what": error.what, "next_step": error.next_step}
+    return {"kind": "computation", "what": str(error)}
+
+
+def error_lines(parts: Mapping[str, str | None]) -> list[str]:
+    """Lines on an error: what is wrong and with what, then one each for file, what is allowed and the next step."""
+    named = ("allowed", "next_step") if not parts.get("key") else ("file", "allowed", "next_step")
+    return [_headline(parts), *(f"  {name.replace('_', ' '):11s}{parts[name]}" for name in named if parts.get(name))]
+
+
+def _headline(parts: Mapping[str, str | None]) -> str:
+    """Key and value, else the file, and what is wrong with it."""
+    place = parts.get("key") or parts.get("file")
+    if parts.get("key") and parts.get("value") is not None:
+        place = f"{place} = {parts['value']}"
+    return f"Error: {place}: {parts['what']}" if place else f"Error: {parts['what']}"

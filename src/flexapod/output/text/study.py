@@ -1,4 +1,4 @@
-"""A study in words, for the report: what moves, what the legs are, how it was computed, what the path asks for."""
+"""A study as text, for the report: motion, legs, computation, loads along the path."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod import model
-from flexapod.analysis.results.cause_labels import CAUSES, cause_in_words
+from flexapod.analysis.results.cause_labels import CAUSES, cause_label
 from flexapod.analysis.results.causes import cause_names
-from flexapod.analysis.results.idealizations import held
+from flexapod.analysis.results.idealizations import soft_drives
 from flexapod.common.quantities import number, text
 from flexapod.output.text import check, html
+from flexapod.output.text.description import locked_drive_words
 from flexapod.output.text.html import Html
 from flexapod.output.text.parts import Bullets, Chapter, Item, Text, TextTable
 from flexapod.solve.statics.lost_motion import places_with_friction
@@ -73,9 +74,9 @@ def _robot(study: Study) -> list[str]:
 
 
 def _parts(study: Study) -> list[str]:
-    """Parts that are not ideal, what may differ from the drawing, and what shakes the robot."""
+    """Sentences on parts that are not ideal, deviations from the nominal machine, and sources of vibration."""
     tables = {"Tolerances": study.robot.tolerances, "Disturbances": study.disturbance}
-    parts = [cause_in_words(name) for name in cause_names(study.robot)[len(CAUSES) :]]
+    parts = [cause_label(name) for name in cause_names(study.robot)[len(CAUSES) :]]
     rubs = [f"friction of the joints at the {x[:-6]}" for x in places_with_friction(study.robot) if x != "drive"]
     listed = {"Other parts that count": [*parts, *rubs]}
     for title, table in tables.items():
@@ -85,11 +86,11 @@ def _parts(study: Study) -> list[str]:
 
 
 def _elements(robot: Robot) -> list[str]:
-    """Elements with tables of their own; of legs alike once."""
+    """Sentences on elements with tables of their own; of identical legs once."""
     told: dict[str, list[int]] = {}
     for leg, one in enumerate(robot.legs, start=1):
         for element in one.elements:
-            said = element.written.data if element.written is not None else element._shown()
+            said = element.source_table.data if element.source_table is not None else element._shown()
             words = ", ".join(f"{name} {value}" for name, value in said.items())
             told.setdefault(f"[leg.{element.at}]: {words}", []).append(leg)
     legs = {words: "" if len(which) == robot.count else f" (legs {which})" for words, which in told.items()}
@@ -97,7 +98,7 @@ def _elements(robot: Robot) -> list[str]:
 
 
 def _carried(robot: Robot) -> list[str]:
-    """What the legs carry."""
+    """Sentences on the load of the legs: payload, gravity, and the payload's points."""
     legs, gravity = f"on {_legs_of(robot)}", _gravity(robot.gravity)
     if robot.payload is None:
         return [f"A platform that is fixed, {legs} (type {robot.type}); {gravity}."]
@@ -135,7 +136,7 @@ def _damping(damping: float | model.Damping, body: str) -> str:
 
 
 def _drives(robot: Robot) -> str:
-    """The drives in words, those of a kind together."""
+    """Sentences on the drives, those of a kind together."""
     legs: dict[str, list[str]] = {}
     for i, leg in enumerate(robot.legs, start=1):
         words = _drive(leg.drive) if leg.driven else "none, passive"
@@ -224,7 +225,7 @@ def _path(found: RobotDescription) -> Iterator[Item]:
     rows = [
         (
             f"{leg.leg}",
-            *_way(leg),
+            *_travel_and_margin(leg),
             "none: passive"
             if not leg.drive
             else f"{leg.force_min.value:.4g} to {leg.force_max.value:.4g} {'N m' if leg.drive == 'crank' else 'N'}",
@@ -250,8 +251,8 @@ def _path(found: RobotDescription) -> Iterator[Item]:
     yield Text(words, "soft")
 
 
-def _way(leg: LegDescription) -> tuple[str, str]:
-    """Where the carriage of a leg goes, else its length, and what is left of what it may."""
+def _travel_and_margin(leg: LegDescription) -> tuple[str, str]:
+    """Range of a leg's carriage, else of its length, and the margin to its limits, as text."""
     if (way := leg.carriage) is None:
         low, high, margin, unit, factor = leg.shortest, leg.longest, leg.stroke_margin, "mm", 1e3
     else:
@@ -305,7 +306,7 @@ def _driven(study: ActuatorStudy) -> str:
 
 
 def _law(law: model.LoadLaw, unit: str) -> str:
-    """How large a torque or a force is."""
+    """Size of a torque or force by its law, as text that continues a sentence."""
     if isinstance(law, model.ConstantLaw):
         return f" of {text(law.value, unit)}"
     if isinstance(law, model.CsvLaw):
@@ -324,7 +325,8 @@ def modes_section(
         return []
     if isinstance(study, model.ActuatorStudy):
         return [html.section("modes", "Modes", _beam(found))]  # type: ignore[arg-type]
-    words = f"{held(study.robot)}, about the static equilibrium. Damping is the part of critical damping."
+    held = locked_drive_words(soft_drives(study.robot))
+    words = f"{held}, about the static equilibrium. Damping is the part of critical damping."
     return [html.section("modes", "Modes", [Text(words, "soft"), *map(_pose, found.poses)])]  # type: ignore[union-attr]
 
 

@@ -1,4 +1,4 @@
-"""What many runs found, in words: a sweep's points and extremes, tables of a convergence study."""
+"""Text on parameter studies: points and extremes of a sweep, tables of a convergence study."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def sweep_as_dict(data: Dataset) -> dict[str, Any]:
 
 
 def sweep_items(data: Dataset) -> Iterator[Item]:
-    """How many points there are of each state, why they failed, extremes."""
+    """Number of points in each state, messages of those that failed, extremes."""
     found = sweep_as_dict(data)
     states = [f"{found[state]} {state}" for state in ("computed", "failed", "pending") if found[state]]
     yield f"{found['points']} points: {', '.join(states)}."
@@ -74,7 +74,7 @@ def _extremes(data: Dataset, name: str) -> dict[str, Any]:
 
 
 def _keys(data: Dataset, point: int) -> dict[str, Any]:
-    """What varies, at a point; keys that scatter by leg or joint are left to the table."""
+    """Values of the varied keys at a point; keys that scatter by leg or joint are left to the table."""
     return {str(name): array.values[point].item() for name, array in data.coords.items() if _single(array)}
 
 
@@ -120,7 +120,7 @@ _NAMES = {"deviation": "centre of mass", "tip": "tip deflection"}
 
 
 def convergence_items(data: Dataset) -> Iterator[Item]:
-    """The tables of the families, what they tell, and the recommendation."""
+    """The tables of the families, the conclusion from them, and the recommendation."""
     for i, group in enumerate(data.group.values):
         spectral = str(data.rate.values[i]).startswith("spectral")
         own = _error(float(data[f"own_error_{_quantities(data)[0]}"][i]))

@@ -1,4 +1,4 @@
-"""What is told, on a terminal: in words or as JSON; and progress."""
+"""Items of `parts` on a terminal, as text or JSON; and progress."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ if TYPE_CHECKING:
     from flexapod.analysis.results.time_history import Report
 
 
-def tell(items: Iterable[Item], data: Callable[[], object], *, json: bool, verbose: bool = False) -> None:
+def print_answer(items: Iterable[Item], data: Callable[[], object], *, json: bool, verbose: bool = False) -> None:
     """Print an answer: its `data` as JSON where that is asked for, else its items; `verbose`: with what explains."""
     if json:
         print_json(data())
     else:
-        show(items, verbose=verbose)
+        print_items(items, verbose=verbose)
 
 
-def show(told: Iterable[Item], *, verbose: bool = False, indent: int = 0) -> None:
-    """Print what is told; what is in a section stands below its title, set in."""
+def print_items(told: Iterable[Item], *, verbose: bool = False, indent: int = 0) -> None:
+    """Print items; those of a section are below its title, indented."""
     for item in told:
         match item:
             case str():
@@ -34,7 +34,7 @@ def show(told: Iterable[Item], *, verbose: bool = False, indent: int = 0) -> Non
             case TextTable():
                 print_table(item, indent=indent)
             case Bullets():
-                show(item.lines, indent=indent)
+                print_items(item.lines, indent=indent)
             case Remarks():
                 _print_remarks(item, verbose=verbose, indent=indent)
             case Lines():
@@ -51,7 +51,7 @@ def _print_chapter(chapter: Chapter, *, verbose: bool) -> None:
             return
         print_text()
     print_text(chapter.title)
-    show(items, verbose=verbose, indent=2)
+    print_items(items, verbose=verbose, indent=2)
 
 
 def print_json(data: object) -> None:

@@ -28,7 +28,7 @@ class Contact:
     rows: Array = field(repr=False)
 
     @classmethod
-    def between(cls, mesh: BeamMesh, springs: Springs, gap: float) -> Contact:
+    def from_springs(cls, mesh: BeamMesh, springs: Springs, gap: float) -> Contact:
         """Contact with the springs' rows, (P, 4), evaluated once."""
         return cls(mesh=mesh, springs=springs, gap=gap, rows=mesh.rows(springs.local, springs.order))
 
@@ -36,21 +36,21 @@ class Contact:
         """Band matrix of the springs, or of those ``touching`` (P,)."""
         stiffness = self.springs.stiffness if touching is None else np.where(touching, self.springs.stiffness, 0.0)
         products = stiffness[:, None, None] * self.rows[:, :, None] * self.rows[:, None, :]
-        return self.mesh.scattered(self.springs.element, products)
+        return self.mesh.assemble_band(self.springs.element, products)
 
-    def beyond(self, u: Array) -> Array:
-        """How far each point is beyond the gap [m], with its sign, (P,)."""
+    def penetration(self, u: Array) -> Array:
+        """Signed distance of each point beyond the gap [m], (P,); 0 within."""
         nodes = 2 * self.springs.element[:, None] + np.arange(4, dtype=int)
         offset = (self.rows * u[nodes]).sum(axis=1)
         return np.sign(offset) * np.maximum(np.abs(offset) - self.gap, 0.0)
 
     def force(self, u: Array) -> Array:
         """Force of the springs on the unknowns, (N,): towards the axis."""
-        push = -self.springs.stiffness * self.beyond(u)
-        return self.mesh.gathered(self.springs.element, push[:, None] * self.rows)
+        push = -self.springs.stiffness * self.penetration(u)
+        return self.mesh.assemble_vector(self.springs.element, push[:, None] * self.rows)
 
 
-def settle(contact: Contact, stiffness: Array, load: Array, u: Array) -> Array:
+def solve_contact(contact: Contact, stiffness: Array, load: Array, u: Array) -> Array:
     """State (N,) with ``stiffness`` u = ``load`` + force of the contact, from the guess ``u``.
 
     The minimum of a convex function of pieces that are quadratic: Newton's method with halved steps ends on the piece
@@ -62,11 +62,11 @@ def settle(contact: Contact, stiffness: Array, load: Array, u: Array) -> Array:
     centring = CENTRING * contact.matrix()
 
     def energy(x: Array) -> float:
-        springs = contact.springs.stiffness @ contact.beyond(x) ** 2
+        springs = contact.springs.stiffness @ contact.penetration(x) ** 2
         return float(0.5 * (x @ band_product(stiffness, x) + springs) - load @ x)
 
     for _ in range(MOST_STEPS):
-        touching = contact.beyond(u) != 0
+        touching = contact.penetration(u) != 0
         force = load - band_product(stiffness, u) + contact.force(u)
         change = band_solve(stiffness + contact.matrix(touching) + centring, force)
         fall, start = force @ change, energy(u)
@@ -75,7 +75,7 @@ def settle(contact: Contact, stiffness: Array, load: Array, u: Array) -> Array:
         while energy(u + share * change) > start + rounding - 1e-4 * share * fall and share > 2.0**-MOST_HALVINGS:
             share /= 2
         u = u + share * change
-        if share == 1.0 and ((contact.beyond(u) != 0) == touching).all():
+        if share == 1.0 and ((contact.penetration(u) != 0) == touching).all():
             return u
         if fall <= 1e-13 * abs(start):  # points that barely touch change sides by rounding
             return u
@@ -95,7 +95,7 @@ def band_solve(band: Array, load: Array) -> Array:
 
 def contact_at(mesh: BeamMesh, guide: GuideContact, length: float) -> Contact:
     """Contact when ``length`` [m] of the beam is outside."""
-    return Contact.between(mesh, guide.springs(mesh, mesh.beam.length - length), guide.gap)
+    return Contact.from_springs(mesh, guide.springs(mesh, mesh.beam.length - length), guide.gap)
 
 
 def static_shape(mesh: BeamMesh, guide: GuideContact, length: float, tip: float) -> Array:
@@ -104,14 +104,14 @@ def static_shape(mesh: BeamMesh, guide: GuideContact, length: float, tip: float)
     tight = replace(contact, gap=0.0)
     force = np.zeros(mesh.unknowns)
     force[-2] = mesh.beam.EI / length**3
-    shape = settle(tight, mesh.bending, force, force)
+    shape = solve_contact(tight, mesh.bending, force, force)
     shape = shape * (tip / shape[-2])
     if not guide.gap:
         return shape
     held, hold = mesh.bending.copy(), 1e6 * mesh.beam.EI / length**3
     held[HALF_BAND, -2] += hold
     force[-2] = hold * tip
-    return settle(contact, held, force, shape)
+    return solve_contact(contact, held, force, shape)
 
 
 def frozen_frequencies(mesh: BeamMesh, guide: GuideContact, length: float, count: int = 3) -> Array:

@@ -1,4 +1,4 @@
-"""Frictionless guides of a meshed sliding beam, and how far each shifts the clamp, Eqs. (T11.5), (T11.8)-(T11.10)."""
+"""Frictionless guides of a meshed sliding beam, and their shifts of its clamp, Eqs. (T11.5), (T11.8)-(T11.10)."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class ElementContact(GuideContact):
         )
 
     def clamp_shift(self, mesh: BeamMesh, outside_part: Array) -> Array:
-        """Eq. (T11.8), of a rigid guide: a cubic that vanishes on a piece vanishes, the clamp is at the outer node."""
+        """Shift to the outer node of a rigid guide: a cubic that vanishes on a piece vanishes, Eq. (T11.8)."""
         return np.asarray(outside_part) * mesh.size
 
     def give(self, mesh: BeamMesh) -> float:
@@ -99,7 +99,7 @@ class NodeContact(GuideContact):
         )
 
     def clamp_shift(self, mesh: BeamMesh, outside_part: Array) -> Array:
-        """Eq. (T11.8): back to the last node inside, and the give of a beam on supports an element apart."""
+        """Shift to the last node inside, and by compliance between supports an element apart, Eq. (T11.8)."""
         return -mesh.size * ((1 - np.asarray(outside_part)) + 1 / (2 * math.sqrt(3)))
 
 
@@ -129,7 +129,7 @@ class InterpolatedClamp(GuideContact):
         )
 
     def clamp_shift(self, mesh: BeamMesh, outside_part: Array) -> Array:
-        """Eq. (T11.8): what is lost when a jump of curvature is projected on linear functions."""
+        """Shift by projecting a jump of curvature on linear functions, Eq. (T11.8)."""
         parts = np.asarray(outside_part, dtype=float)
         return mesh.size * np.vectorize(_projection_loss, otypes=[float])(parts)
 
@@ -157,12 +157,12 @@ class Rollers(GuideContact):
         )
 
     def clamp_shift(self, mesh: BeamMesh, outside_part: Array) -> Array:
-        """Eq. (T11.8): the give of a beam on supports; of third order in the elements' length, which is left out."""
+        """Shift by compliance of a beam on supports, Eq. (T11.8); a third order in element length is left out."""
         return np.full(np.shape(outside_part), -self.spacing / (2 * math.sqrt(3)))
 
 
 def _projection_loss(p: float) -> float:
-    """Give of an element under a moment that its part p outside loses, in EI / h = 1: p - r^T A^-1 r, Eq. (T11.8).
+    """Compliance of an element under a moment lost by its part p outside, EI / h = 1: p - r^T A^-1 r, Eq. (T11.8).
 
     Curvature a + b x about the mouth; A holds the energies of this element and of the one behind, which is clamped at
     its inner node and carried along by the outer one, [deflection; slope] = B [a; b].

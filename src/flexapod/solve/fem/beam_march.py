@@ -12,7 +12,7 @@ from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.common.generalized_alpha import GeneralizedAlpha
 from flexapod.model import ActuatorStudy
-from flexapod.solve.fem.beam_contact import Contact, band_solve, contact_at, settle, static_shape
+from flexapod.solve.fem.beam_contact import Contact, band_solve, contact_at, solve_contact, static_shape
 from flexapod.solve.fem.beam_guide import GuideContact
 from flexapod.solve.fem.beam_mesh import BeamMesh, band_product, beam_mesh
 
@@ -160,7 +160,7 @@ class _Steps:
         """State u = u_free + factor w at step i and its acceleration w, M w + K u = f + contact, Eq. (T11.4)."""
         elastic, load, contact = self._forces(i)
         K = elastic + self.mesh.mass / factor
-        u = settle(contact, K, load + band_product(self.mesh.mass, u_free) / factor, guess)
+        u = solve_contact(contact, K, load + band_product(self.mesh.mass, u_free) / factor, guess)
         return u, (u - u_free) / factor
 
     def _acceleration(self, i: int, u: Array) -> Array:

@@ -49,7 +49,7 @@ class BeamGrid:
         chosen = np.choose(orders, kinds)
         return unit * chosen / self.size**orders
 
-    def scattered(self, element: Indices, matrices: Array) -> Array:
+    def assemble_band(self, element: Indices, matrices: Array) -> Array:
         """Band matrix (4, 2 n + 2) of symmetric ``matrices`` (P, 4, 4) on the unknowns of ``element`` (P,)."""
         band = np.zeros((HALF_BAND + 1, self.unknowns))
         for i in range(4):
@@ -58,7 +58,7 @@ class BeamGrid:
                 band[HALF_BAND - (j - i), j : j + 2 * self.elements : 2] += sums
         return band
 
-    def gathered(self, element: Indices, vectors: Array) -> Array:
+    def assemble_vector(self, element: Indices, vectors: Array) -> Array:
         """Vector (2 n + 2,) of ``vectors`` (P, 4) on the unknowns of ``element`` (P,)."""
         whole = np.zeros(self.unknowns)
         for i in range(4):
@@ -129,15 +129,15 @@ def _filled(grid: BeamGrid, local: Array, weight: Array) -> BeamMesh:
     value, slope, curvature = (grid.rows(local, order) for order in range(3))
 
     def integral(rows: Array, factor: Array | float) -> Array:
-        return grid.scattered(element, (factor * weight)[:, None, None] * rows[:, :, None] * rows[:, None, :])
+        return grid.assemble_band(element, (factor * weight)[:, None, None] * rows[:, :, None] * rows[:, None, :])
 
     transverse = integral(value, beam.rhoA)
     transverse[HALF_BAND, -2] += beam.tip_mass
     mass = transverse.copy()
     mass[HALF_BAND, -1] += beam.tip_inertia
-    push = grid.gathered(element, (beam.rhoA * weight)[:, None] * value)
+    push = grid.assemble_vector(element, (beam.rhoA * weight)[:, None] * value)
     push[-2] += beam.tip_mass
-    turn = grid.gathered(element, (beam.rhoA * xi * weight)[:, None] * value)
+    turn = grid.assemble_vector(element, (beam.rhoA * xi * weight)[:, None] * value)
     turn[-1] -= beam.tip_inertia
     return BeamMesh(
         beam=beam,

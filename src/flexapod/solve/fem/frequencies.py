@@ -47,7 +47,7 @@ def frequencies(mesh: SolidMesh, *, E: float, density: float, poisson: float = 0
         raise InputError("is not a number of modes", key="count", value=count, allowed=f"1 to {free.sum() - 2}")
     parts = integrals(mesh)
     K, M = (matrix[free][:, free] for matrix in (stiffness(parts, E, poisson), mass(parts, density)))
-    return lowest(K, M, count)
+    return lowest_frequencies(K, M, count)
 
 
 def check_material(E: float, density: float, poisson: float) -> None:
@@ -59,7 +59,7 @@ def check_material(E: float, density: float, poisson: float) -> None:
         raise InputError("is not that of a solid bar", key="poisson", value=poisson, allowed="from 0, below 0.5")
 
 
-def lowest(K: csr_array, M: csr_array, count: int) -> Array:
+def lowest_frequencies(K: csr_array, M: csr_array, count: int) -> Array:
     """Lowest frequencies [Hz] of a held body."""
     from scipy.sparse.linalg import LinearOperator, eigsh
 

@@ -1,6 +1,6 @@
-"""Hexahedra: shape functions, integration, matrices of a mesh, Eqs. (T10.1)-(T10.4), (T10.25)-(T10.27).
+"""Hexahedra: meshes of straight beams and pistons, integration, matrices, Eqs. (T10.1)-(T10.4), (T10.25)-(T10.27).
 
-Hexahedral meshes of straight beams and pistons: a section mesh drawn out along the axis.
+A mesh is a section mesh extruded along the axis.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class SolidMesh:
 
     @property
     def kind(self) -> str:
-        """Of the elements, one of `section_mesh.KINDS`."""
+        """Kind of the elements, one of `section_mesh.KINDS`."""
         return self.section.kind
 
     @property
@@ -63,7 +63,7 @@ def beam_mesh(
     """
     _check(length, size)
     check_count(section, length, size, MOST)
-    return extruded(section_mesh(section, size, kind, whole=whole), length, max(1, round(length / size)))
+    return extrude_section(section_mesh(section, size, kind, whole=whole), length, max(1, round(length / size)))
 
 
 def _check(length: float, size: float) -> None:
@@ -94,7 +94,7 @@ def check_count(section: Tube | Rectangle, length: float, size: float, most: int
         )
 
 
-def extruded(section: SectionMesh, length: float, layers: int) -> SolidMesh:
+def extrude_section(section: SectionMesh, length: float, layers: int) -> SolidMesh:
     """Solid mesh of ``layers`` equal layers of elements along ``length`` [m]."""
     quadratic = section.quads.shape[1] == 8
     count, middles = len(section.points), int(section.corners.sum())

@@ -1,9 +1,8 @@
-"""A long solid beam by two scalars a station: static condensation, in two levels, Eqs. (T10.7)-(T10.11).
+"""Reduction of a solid beam to two scalars a station, and its shapes, Eqs. (T10.7)-(T10.11), (T10.22)-(T10.24).
 
-Stations cut the beam into equal intervals. One interval is meshed and condensed onto all unknowns of its end planes;
-the chain of such intervals, conforming at the stations, is condensed onto section averages.
-
-A leg reduced from solid elements: lateral shapes of a clamped solid piston as a basis, Eqs. (T10.22)-(T10.24).
+Stations cut the long beam into equal intervals. One interval is meshed and condensed onto all unknowns of its
+end planes; the chain of such intervals, conforming at the stations, is condensed onto section averages. The
+basis of a leg has lateral shapes of its clamped solid piston, Eqs. (T10.22)-(T10.24).
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from flexapod.solve.fem.frequencies import check_material
 from flexapod.solve.fem.hexahedra import (
     SolidMesh,
     check_count,
-    extruded,
+    extrude_section,
     field_load,
     integrals,
     mass,
@@ -56,12 +55,12 @@ class StationModel:
 
     @property
     def stations(self) -> int:
-        """How many, the two ends included."""
+        """Number of stations, the two ends included."""
         return len(self.stiffness) // 2
 
     @property
     def length(self) -> float:
-        """Of the whole beam [m]."""
+        """Length of the whole beam [m]."""
         return self.spacing * (self.stations - 1)
 
 
@@ -89,7 +88,7 @@ def reduced_beam(
     step = length / count
     check_count(section, step, size, MOST)
     across = section_mesh(section, size, kind, whole=False)
-    interval = extruded(across, step, max(1, round(step / size)))
+    interval = extrude_section(across, step, max(1, round(step / size)))
     averages = section_averages(across)
     blocks = _interval(interval, averages.area, E, density, poisson)
     return _chain(interval, averages, blocks, count, density)

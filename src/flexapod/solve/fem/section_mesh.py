@@ -43,7 +43,7 @@ class SectionMesh:
 
     @property
     def copies(self) -> int:
-        """How many times the meshed part makes the whole section."""
+        """Number of copies of the meshed part in the whole section."""
         return (1 + self.half_y) * (1 + self.half_z)
 
 
@@ -140,7 +140,7 @@ def _numbered(points: Array, quads: Indices) -> SectionMesh:
 
 
 def _part(mesh: SectionMesh, near: float) -> SectionMesh:
-    """The half z >= 0, and of it y >= 0 where no element lies across y = 0."""
+    """Half z >= 0 of a section, and of it y >= 0 where no element lies across y = 0."""
     kept, halves = mesh.quads, []
     for axis in (0, 1):
         low, high = mesh.points[kept, axis].min(axis=1), mesh.points[kept, axis].max(axis=1)
@@ -171,7 +171,7 @@ class SectionAverages:
 
 
 def section_averages(section: SectionMesh) -> SectionAverages:
-    """Averages over the nodes of a section mesh, by the same quadrature as the elements that stand on it."""
+    """Averages over the nodes of a section mesh, by the same quadrature as the elements extruded from it."""
     from skfem import ElementQuad1, ElementQuadS2
     from skfem.quadrature import get_quadrature
     from skfem.refdom import RefQuad

@@ -1,6 +1,7 @@
-"""A reduced solid that slides through the mouth of a turning hub, in material coordinates, Eqs. (T10.15)-(T10.19).
+"""Reduced solid that slides through the mouth of a turning hub, in material coordinates, Eqs. (T10.12)-(T10.19).
 
-The mouth between two stations: the Saint-Venant flexibility of the solid itself, Eqs. (T10.12)-(T10.14).
+The mouth lies between two stations and has the Saint-Venant flexibility of the solid itself,
+Eqs. (T10.12)-(T10.14); motion follows Eqs. (T10.15)-(T10.19).
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from flexapod.solve.fem.reduction import StationModel
 
 @dataclass(frozen=True, kw_only=True)
 class Mouth:
-    """How the flexibility at a station of `model` grows with its distance from the mouth.
+    """Flexibility at a station of `model` by its distance from the mouth.
 
     `bending`: 1 / EI of the solid far from its ends [1/(N m^2)]; `end_rotation`: rotation of the mouth region per
     moment [rad/(N m)], beyond that of a beam, 0 at Poisson's ratio 0; `end_deflection`: deflection per force and per
@@ -102,7 +103,7 @@ def gauss_step(
 
 @dataclass(frozen=True, kw_only=True)
 class HubMotion:
-    """At an instant: `length` outside the hub [m], `angle` from the horizontal [rad], rates and accelerations."""
+    """State of the hub: `length` outside of it [m], `angle` from the horizontal [rad], rates and accelerations."""
 
     length: float
     length_rate: float
@@ -186,7 +187,7 @@ class SlidingBeam:
         return np.asarray(np.linalg.solve(K[n:, n:], -K[n:, :n]), dtype=float)
 
 
-def slide(
+def march_solid_beam(
     beam: SlidingBeam,
     motion: Callable[[float], HubMotion],
     displacement: float,
@@ -221,7 +222,7 @@ def slide(
 
 
 def _bounded(tip: float, length: float, t: float) -> float:
-    """The deflection, if it is one of a beam of that length."""
+    """Deflection of the tip, if a beam of that length can have it."""
     if not abs(tip) <= length:
         raise ComputationError(
             f"the tip is deflected by more than the free length at t = {t:.6g} s: an unstable beam, or too long a step",

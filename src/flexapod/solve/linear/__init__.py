@@ -1,1 +1,1 @@
-"""The linear model about rest, and what shakes it."""
+"""Linear model about rest, and its vibration under disturbances."""

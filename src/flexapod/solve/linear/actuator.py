@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from flexapod.common.arrays import Array
-from flexapod.common.errors import ComputationError, InputError, closest, names_of
+from flexapod.common.errors import ComputationError, InputError, names_of, suggest_word
 from flexapod.mechanics.leg.layout import Shapes
 from flexapod.model import Actuator, Simulation
 from flexapod.solve.kernel import Function
 from flexapod.solve.linear.first_order import FirstOrder, first_order, with_mass
 from flexapod.solve.linear.states import States
-from flexapod.solve.modal.actuator_modes import functions, straight
+from flexapod.solve.modal.actuator_modes import interpreted_functions, straight_state
 from flexapod.solve.shapes import actuator_shapes, places
 
 ITERATIONS = 20  # of Newton to the equilibrium of the beam
@@ -22,24 +22,44 @@ SETTLED = 1e-12  # step of an amplitude over the beam's length
 PLANAR, SPACE = ("along", "rotation"), ("along", "rotation", "elevation")
 
 
+class ActuatorPlant:
+    """A single actuator about its equilibrium, or in steady rotation.
+
+    Parameters
+    ----------
+    actuator : Actuator
+    simulation : Simulation
+    rate : float
+        Of the hub [rad/s]; then without gravity, as in modes.
+    """
+
+    def __init__(self, actuator: Actuator, simulation: Simulation, rate: float) -> None:
+        self.actuator = actuator.replace(gravity=0.0) if rate else actuator
+        self.shapes = actuator_shapes(self.actuator, simulation, rate)
+        self.rate = rate
+
+    @cached_property
+    def matrices(self) -> tuple[Array, Array, Array, Array]:
+        """M, D, K of all coordinates about the equilibrium, and the tip's motion by them in the hub's axes (3, n).
+
+        Raises
+        ------
+        ComputationError
+            The beam has no equilibrium, or has buckled.
+        """
+        return _matrices(self.actuator, self.shapes, self.rate)
+
+
 def actuator_states(
-    actuator: Actuator,
-    simulation: Simulation,
-    inputs: Sequence[str],
-    outputs: Sequence[str],
-    *,
-    rate: float,
-    free: Sequence[str],
+    plant: ActuatorPlant, inputs: Sequence[str], outputs: Sequence[str], *, free: Sequence[str]
 ) -> States:
     """States of hub and beam about their equilibrium, or their steady rotation.
 
     Parameters
     ----------
-    actuator, simulation
+    plant : ActuatorPlant
     inputs, outputs : sequences of str
         Of `channels`.
-    rate : float
-        Of the hub [rad/s]; then without gravity, as in modes.
     free : sequence of str
         Of rotation, extension and elevation those that a force drives; the others are held.
 
@@ -50,11 +70,8 @@ def actuator_states(
     ComputationError
         The beam has no equilibrium, or has buckled.
     """
-    actuator = actuator.replace(gravity=0.0) if rate else actuator
-    shapes = actuator_shapes(actuator, simulation, rate)
-    M, D, K, tip = _matrices(actuator, shapes, rate)
-    at = places(shapes)
-    known = _known(tuple(at), free, SPACE if actuator.space else PLANAR)
+    (M, D, K, tip), at = plant.matrices, places(plant.shapes)
+    known = _known(tuple(at), free, SPACE if plant.actuator.space else PLANAR)
     into, out = (_chosen(names, known[key], key) for key, names in (("inputs", inputs), ("outputs", outputs)))
     told = [x.partition(":")[2] for x in into if x.startswith("command:")]
     F = np.zeros((len(M), len(into)))
@@ -67,7 +84,7 @@ def actuator_states(
     z = [*moving, *(at[name] for name in told)]
     first = _first_order(M, D, K, F, moving, z, [into.index(f"command:{name}") for name in told])
     rows = _rows(first, (M, D, K, F, tip), z, (into, out), at, free)
-    named = _names(shapes, at)
+    named = _names(plant.shapes, at)
     named = [named[k] if i < len(moving) else f"command:{named[k]}" for i, k in enumerate(z)]
     order, n = [named[k] for k in first.second], first.A.shape[0]
     return States(
@@ -104,7 +121,7 @@ def _rows(
     at: dict[str, int],
     free: Sequence[str],
 ) -> Array:
-    """Outputs by states and inputs."""
+    """Rows of the outputs by states and inputs."""
     M, D, K, F, tip = matrices
     into, out = channels
     flat, n = np.zeros((len(M), len(z))), first.A.shape[0]
@@ -125,9 +142,9 @@ def _rows(
 
 
 def _matrices(actuator: Actuator, shapes: Shapes, rate: float) -> tuple[Array, Array, Array, Array]:
-    """M, D, K of all coordinates about the equilibrium, and the tip's motion by them in the hub's axes (3, n)."""
-    (residual, matrices, tangents), at = functions(shapes), places(shapes)
-    q, arguments, at_rest = straight(actuator, shapes, rate)
+    """Compute mass, damping and stiffness for `ActuatorPlant.matrices`."""
+    (residual, matrices, tangents), at = interpreted_functions(shapes), places(shapes)
+    q, arguments, at_rest = straight_state(actuator, shapes, rate)
     beam = [k for k in range(shapes.size) if k not in at.values()]
     for _ in range(ITERATIONS if beam else 0):
         step = np.linalg.solve(tangents(q, *arguments)[0][np.ix_(beam, beam)], residual(q, *arguments)[0][beam])
@@ -160,7 +177,7 @@ def _tip(shapes: Shapes) -> Function:
 
 
 def _known(driven: Sequence[str], free: Sequence[str], axes: Sequence[str]) -> dict[str, list[str]]:
-    """Channels there are."""
+    """Names of the channels there are."""
     tip = [f"force:tip:{axis}" for axis in axes]
     inputs = [f"drive:{x}" for x in driven if x in free] + [f"command:{x}" for x in driven if x not in free] + tip
     seen = [f"tip:{axis}" for axis in axes]
@@ -174,7 +191,7 @@ def _chosen(names: Sequence[str], known: list[str], key: str) -> list[str]:
         if not some:
             raise InputError(
                 "is not a channel of a single actuator", key=key, value=name, allowed=", ".join(known),
-                next_step=closest(name, [*known, *{x.partition(":")[0] for x in known}]),
+                next_step=suggest_word(name, [*known, *{x.partition(":")[0] for x in known}]),
             )  # fmt: skip
         found |= dict.fromkeys(some)
     if not found:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexapod.common.arrays import Array
-from flexapod.common.errors import InputError, closest, names_of
+from flexapod.common.errors import InputError, names_of, suggest_word
 from flexapod.common.units import quantity
 from flexapod.model import Robot
 from flexapod.solve.linear.motions import COMPONENTS
@@ -56,7 +56,7 @@ class PlantChannel:
     geophone: Geophone | None = None
 
 
-def asked(names: str | Sequence[str], robot: Robot, key: str) -> list[PlantChannel]:
+def plant_channels(names: str | Sequence[str], robot: Robot, key: str) -> list[PlantChannel]:
     """Channels by names of groups or single ones, in the order given.
 
     Parameters
@@ -111,7 +111,7 @@ def _of(name: str, known: Groups, robot: Robot, key: str) -> list[PlantChannel]:
     if group is None:
         raise InputError(
             "is not a channel", key=key, value=name, allowed=_words(known),
-            next_step=closest(name, [*known, *(f"{g}:POINT" for g in AT_POINTS if g in known)]),
+            next_step=suggest_word(name, [*known, *(f"{g}:POINT" for g in AT_POINTS if g in known)]),
         )  # fmt: skip
     if robot.platform_fixed and group in ON_PLATFORM:
         raise InputError(
@@ -127,7 +127,7 @@ def _of(name: str, known: Groups, robot: Robot, key: str) -> list[PlantChannel]:
     if not chosen:
         raise InputError(
             "is not a channel", key=key, value=name, allowed=f"{every[0].name} to {every[-1].name}",
-            next_step=closest(name, [x.name for x in every]),
+            next_step=suggest_word(name, [x.name for x in every]),
         )  # fmt: skip
     return chosen
 
@@ -182,7 +182,7 @@ def _point(text: str, robot: Robot, name: str, key: str) -> Array:
         "has no such point", key=key, value=name,
         allowed=f"{', '.join([*list(points)[:4], 'joint-1'])} to joint-{len(robot.legs)}, or a place in platform axes "
         "as (0.1 m, 0, 50 mm)",
-        next_step=closest(text, points),
+        next_step=suggest_word(text, points),
     )  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""From M, D, K to x' = A x + B u: what has no mass is condensed with its dampers, Eqs. (T20.11)-(T20.16)."""
+"""Reduction of M, D, K to x' = A x + B u; massless motions are condensed with dampers, Eqs. (T20.11)-(T20.16)."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ def first_order(
 
 
 def _with_damper(D: Array, K: Array, at: Index) -> tuple[Index, Index, Array]:
-    """Of motions without mass those with a damper of their own, the others, and what these take along, (T20.12)."""
+    """Split motions without mass: those with dampers, the others, and what these carry along, Eq. (T20.12)."""
     unit = 1 / np.sqrt(np.where(np.diag(K) > 0, np.diag(K), 1.0))
     least = np.finfo(float).eps * len(D) * np.linalg.norm(unit[:, None] * D * unit)
     left = (unit[:, None] * D * unit)[np.ix_(at, at)]

@@ -11,7 +11,7 @@ from flexapod.common.errors import InputError
 from flexapod.solve.batch import RestMatrices
 from flexapod.solve.saddle_point import solve_each
 from flexapod.solve.statics.elimination import leg_bases
-from flexapod.solve.statics.reduction import border_rows, expanded, flat_columns, hub_motion
+from flexapod.solve.statics.reduction import border_rows, expand_motions, flat_columns, hub_motion
 from flexapod.solve.system import System
 
 COMPONENTS = ("x", "y", "z", "rx", "ry", "rz")
@@ -66,7 +66,7 @@ def held_motions(system: System, m: RestMatrices, which: Sequence[tuple[int, int
     z = np.zeros((P, G.shape[2], count))
     place = (flat_columns(system, bases) == by[kept][:, None]).argmax(axis=1)
     z[:, place] = solve_each(G[:, kept][..., place], target[:, kept])
-    return own + expanded(system, bases, z)
+    return own + expand_motions(system, bases, z)
 
 
 def flat_forces(system: System, of_legs: Array, of_payload: Array, flat: Array, X: Array | None = None) -> Array:
@@ -85,13 +85,13 @@ def flat_forces(system: System, of_legs: Array, of_payload: Array, flat: Array, 
     if of_payload.shape[-1]:
         on_hub = of_payload @ hub_motion(system, flat)
         found[:, k:] += on_hub[:, :6]
-        found[:, system.shared] += on_hub[:, 6:]
+        found[:, system.shared_coordinates] += on_hub[:, 6:]
     return found
 
 
-def on_motions(system: System, m: RestMatrices, flat: Array) -> tuple[Array, Array, Array]:
+def project_on_motions(system: System, m: RestMatrices, flat: Array) -> tuple[Array, Array, Array]:
     """M, D, K times flat motions (P, size, any), Eq. (T20.6)."""
-    no_damping = np.zeros((len(flat), 6 + system.shared.size, 6 + system.shared.size))
+    no_damping = np.zeros((len(flat), 6 + system.shared_coordinates.size, 6 + system.shared_coordinates.size))
     return (
         flat_forces(system, m.M, m.payload_M, flat),
         flat_forces(system, m.D, no_damping, flat),

@@ -1,4 +1,4 @@
-"""What is seen of a linear model, by states and inputs: places, forces, sensors, Eqs. (T20.17)-(T20.23)."""
+"""Outputs of a linear model by states and inputs: places, forces, sensors, Eqs. (T20.17)-(T20.23)."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from flexapod.solve.batch import matrices_at_rest
 from flexapod.solve.kernel import evaluate
 from flexapod.solve.linear.channels import PlantChannel
 from flexapod.solve.linear.first_order import FirstOrder
-from flexapod.solve.linear.plant import Plant, carried_masses, lines
+from flexapod.solve.linear.plant import Plant, carried_masses, leg_lines
 from flexapod.solve.linear.second_order import SecondOrder, point_motion
 from flexapod.solve.statics.stiffness import tool_motion
 
 
 @dataclass(frozen=True, kw_only=True)
-class Seen:
+class PlantOutputs:
     """A plant at one pose with its motions by states and inputs, columns (n + m)."""
 
     plant: Plant
@@ -92,7 +92,9 @@ class Seen:
             self.first, A=np.zeros((size, size)), place=np.eye(size), rate=np.zeros((size, size)),
             acceleration=np.zeros((size, size)),
         )  # fmt: skip
-        flat = Seen(plant=self.plant, second=replace(self.second, flat=np.eye(size)[None]), first=free, inputs=())
+        flat = PlantOutputs(
+            plant=self.plant, second=replace(self.second, flat=np.eye(size)[None]), first=free, inputs=()
+        )
         return np.array([flat.row(channel) for channel in places]).reshape(len(places), size)
 
     @cached_property
@@ -102,12 +104,12 @@ class Seen:
 
     @cached_property
     def rate(self) -> Array:
-        """Their rates."""
+        """Rates of all flat coordinates, by states and inputs."""
         return self.second.flat[0] @ self.first.rate
 
     @cached_property
     def balance(self) -> Array:
-        """What closures and what holds coordinates have to balance, (size, n + m), Eq. (T20.17)."""
+        """Forces that closures and held coordinates have to balance, (size, n + m), Eq. (T20.17)."""
         s, f = self.second, self.first
         found = s.on_acceleration[0] @ f.acceleration + s.on_rate[0] @ f.rate + s.on_place[0] @ f.place
         found[:, f.A.shape[1] :] -= s.forces[0]
@@ -117,9 +119,9 @@ class Seen:
     def closure(self) -> Array:
         """Forces of the closures, (legs, rows, n + m), Eq. (T20.18); of least norm where nothing elastic decides."""
         system, G = self.plant.system, self.jacobian
-        counts = ~system.fixed
+        counts = ~system.fixed_mask
         legs = counts[: system.legs * system.n].reshape(system.legs, system.n)
-        legs[:, system.shared] = False
+        legs[:, system.shared_coordinates] = False
         for name in ("w", "j"):
             if system.kernel.shapes.has(name):
                 legs[:, system.kernel.shapes.index(name)] = False
@@ -128,7 +130,7 @@ class Seen:
 
     @cached_property
     def jacobian(self) -> Array:
-        """Of the closures, (legs rows, size)."""
+        """Jacobian of the closures, (legs rows, size)."""
         system, m = self.plant.system, self.plant.m
         G = np.zeros((system.legs * system.rows, system.size))
         for i in range(system.legs):
@@ -168,7 +170,7 @@ class Seen:
 
     @cached_property
     def _elastic(self) -> tuple[Array, Array]:
-        """K and D (legs, n, n) of what gives way, without loops on rotors."""
+        """K and D (legs, n, n) of compliant parts, without loops on rotors."""
         system = self.plant.system
         layout, p = leg_parameters(system.kernel.shapes), system.leg_p.copy()
         for name in ("rotor_stiffness", "rotor_damping"):
@@ -177,7 +179,7 @@ class Seen:
         return m.K[0], m.D[0]
 
     def _measured(self, i: int) -> Array:
-        """What the encoder of a drive measures, Eq. (T23.52)."""
+        """Measurement of the encoder of a drive, Eq. (T23.52)."""
         system, leg = self.plant.system, self.plant.robot.legs[i]
         own = self._leg(self.place, i)
         if leg.closed_about == "joint-to-joint":
@@ -197,7 +199,7 @@ class Seen:
 
     @cached_property
     def _lines(self) -> tuple[Array, Array]:
-        return lines(self.plant.system, self.plant.x.q)
+        return leg_lines(self.plant.system, self.plant.x.q)
 
     def _at_base(self, i: int) -> Array:
         """Force of the base on a leg along it, all masses of the leg behind it, Eq. (T20.20)."""
@@ -237,7 +239,7 @@ class Seen:
         return float(of_leg.sum())
 
     def _acceleration(self, channel: PlantChannel) -> Array:
-        """What an accelerometer on the platform shows: absolute acceleration less gravity, Eq. (T20.21)."""
+        """Reading of an accelerometer on the platform: absolute acceleration less gravity, Eq. (T20.21)."""
         at, axis, n = channel.at if channel.at is not None else np.zeros(3), channel.axis, self.first.A.shape[1]
         motion = point_motion(self.plant, at)[0]
         found = motion @ self._hub(self.first.acceleration)

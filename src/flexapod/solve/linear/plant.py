@@ -1,10 +1,8 @@
-"""A robot about its equilibria with its loops as they are, drives held or released, Eqs. (T20.1)-(T20.3).
+"""Robot about its equilibria with its loops as they are, drives held or released, on a base that may move.
 
-Functions of a leg that the linear model alone asks for, made when it does, Eqs. (T20.3), (T20.9), (T20.26).
-
-What a base that turns does to a robot that is seen from it, Eqs. (T20.8)-(T20.10), (T20.27).
-
-What a base that is accelerated does to a robot: gravity changed by as much, Eq. (T18.4).
+Plants are of Eqs. (T20.1)-(T20.3); functions of a leg that the linear model alone needs are made on demand,
+Eqs. (T20.3), (T20.9), (T20.26). A base that turns adds Eqs. (T20.8)-(T20.10), (T20.27) to a robot seen from it;
+one that is accelerated changes gravity by as much, Eq. (T18.4).
 """
 
 from __future__ import annotations
@@ -24,19 +22,19 @@ from flexapod.mechanics.elements.element import Physics
 from flexapod.mechanics.elements.motor_loop import MotorLoop
 from flexapod.mechanics.leg.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, Shapes, columns, leg_parameters
 from flexapod.mechanics.symbolic.compiler import CompiledFunction, compiled_library, compiler
-from flexapod.model import Drive, Encoder, ForceDrive, Load, PrescribedDrive, Robot, ScrewDrive, Simulation
+from flexapod.model import Drive, Encoder, ForceDrive, PrescribedDrive, Robot, ScrewDrive, Simulation
 from flexapod.model.study.mount import BaseMotion
 from flexapod.solve.batch import RestMatrices, RestStates, matrices_at_rest, residual
 from flexapod.solve.friction import with_friction
 from flexapod.solve.kernel import Function, fingerprint
 from flexapod.solve.linear.motions import flat_forces
-from flexapod.solve.modal.at_poses import locked_poses
+from flexapod.solve.modal.elastic_robot import ElasticRobot
 from flexapod.solve.rigid_motion import rigid_rest
-from flexapod.solve.robot_system import robot_system, smooth
+from flexapod.solve.robot_system import robot_system, without_ripple
 from flexapod.solve.statics.equilibrium import FARTHEST
 from flexapod.solve.statics.ideal_robot import with_substitutes
 from flexapod.solve.statics.locked_robot import LockedPoses
-from flexapod.solve.statics.reduction import Motions, independent
+from flexapod.solve.statics.reduction import Motions, independent_motions
 from flexapod.solve.statics.static_loads import push_ports
 from flexapod.solve.statics.stiffness import tool_motion
 from flexapod.solve.system import Index, System
@@ -63,8 +61,8 @@ def _in_gravity(system: System, gravity: Array) -> System:
     return replace(system, leg_p=leg_p, payload_p=payload_p)
 
 
-def pushes(system: System, q: Array) -> tuple[Array, Array] | None:
-    """D and K (P, legs, n, n) of what pushes without an energy at coordinates (P, legs, n); None of robots without."""
+def nonpotential_matrices(system: System, q: Array) -> tuple[Array, Array] | None:
+    """D and K (P, legs, n, n) of nonpotential forces at coordinates (P, legs, n); None of robots without."""
     shapes, legs = system.kernel.shapes, q.reshape(-1, system.n)
     if shapes.holds(MotorLoop):
         D, K, *_ = _each(system.kernel.leg_loop, legs, system, [(system.n, system.n)] * 2 + [(1,), (system.n,)])
@@ -75,13 +73,13 @@ def pushes(system: System, q: Array) -> tuple[Array, Array] | None:
     return D.reshape(*q.shape, system.n), K.reshape(*q.shape, system.n)
 
 
-def carried(system: System, q: Array) -> Array:
+def base_leg_masses(system: System, q: Array) -> Array:
     """Masses (P, legs, 6, n) between coordinates (P, legs, n) and a base that is moved; a system that has one."""
     found = _each(_function(system.kernel.shapes, "leg_carried"), q.reshape(-1, system.n), system, [(6, system.n)])[0]
     return found.reshape(*q.shape[:-1], 6, system.n)
 
 
-def lines(system: System, q: Array) -> tuple[Array, Array]:
+def leg_lines(system: System, q: Array) -> tuple[Array, Array]:
     """Lines (P, legs, 3) from base joints to tips at coordinates (P, legs, n), and derivatives by these (..., 3, n)."""
     function, n = _function(system.kernel.shapes, "leg_line"), system.n
     line, J = _each(function, q.reshape(-1, n), system, [(3,), (3, n)])
@@ -89,8 +87,8 @@ def lines(system: System, q: Array) -> tuple[Array, Array]:
 
 
 def _pushes(kind: type[Physics]) -> bool:
-    own = (kind.pushes.__func__, kind.asked.__func__)  # type: ignore[attr-defined]
-    return own != (Physics.pushes.__func__, Physics.asked.__func__)  # type: ignore[attr-defined]
+    own = (kind.nonpotential_force.__func__, kind.loop_force.__func__)  # type: ignore[attr-defined]
+    return own != (Physics.nonpotential_force.__func__, Physics.loop_force.__func__)  # type: ignore[attr-defined]
 
 
 def _each(function: Function | None, q: Array, system: System, shapes: Sequence[tuple[int, ...]]) -> list[Array]:
@@ -144,8 +142,8 @@ class Plant:
         """The robot, pure force drives holding their places, on a base at rest."""
         return self.locked.robot
 
-    def pushed(self, leg: int) -> int:
-        """Coordinate on which a force of a drive acts; of a motor that lags, and is released, what it is asked for."""
+    def force_coordinate(self, leg: int) -> int:
+        """Coordinate on which a force of a drive acts; of a lagging, released motor the one of its requested force."""
         shapes, at = self.system.kernel.shapes, int(self.port[leg])
         lags = self.drives == "force" and shapes.has("j") and not self.system.held[leg, shapes.index("j")]
         return shapes.index("j") if lags else at
@@ -164,7 +162,7 @@ class Plant:
         return gravity_forces(self.system, self.x, self.command, self.locked.acts.wrench)
 
 
-def plant_at(robot: Robot, simulation: Simulation, path: kinematics.Poses, load: Load, drives: Drives) -> Plant:
+def plant_at(elastic: ElasticRobot, at: kinematics.RigidPoses, drives: Drives) -> Plant:
     """A robot about its equilibria at P poses.
 
     Raises
@@ -175,15 +173,16 @@ def plant_at(robot: Robot, simulation: Simulation, path: kinematics.Poses, load:
         A pose so far from home that the motions chosen there say nothing of it.
     """
     if drives == "force":
-        robot = robot.replace(legs=tuple(leg.replace(drive=_holding(leg.drive)) for leg in robot.legs))
-    locked = locked_poses(robot, simulation, path, load)
+        legs = tuple(leg.replace(drive=_holding(leg.drive)) for leg in elastic.robot.legs)
+        elastic = ElasticRobot(elastic.robot.replace(legs=legs), elastic.simulation, elastic.load)
+    locked = _locked(elastic, at)
     shapes = locked.system.kernel.shapes
     plant = plant_at_rest(locked)
     if drives == "force" or shapes.has("w") or shapes.has("j"):
         plant = _in_motion(locked, drives)
-    if (more := pushes(plant.system, plant.x.q)) is not None:
+    if (more := nonpotential_matrices(plant.system, plant.x.q)) is not None:
         m = replace(plant.m, D=plant.m.D + more[0], K=plant.m.K + more[1])
-        plant = replace(plant, m=m, motions=independent(plant.system, m))
+        plant = replace(plant, m=m, motions=independent_motions(plant.system, m))
     if len(plant.x) and plant.motions.most.max() > FARTHEST:
         raise ComputationError(
             "too far from home: the shape or step that stands there for what a joint or drive holds moves by "
@@ -191,6 +190,18 @@ def plant_at(robot: Robot, simulation: Simulation, path: kinematics.Poses, load:
             next_step="Give the robot a home nearer to the pose.",
         )
     return plant
+
+
+def _locked(elastic: ElasticRobot, at: kinematics.RigidPoses) -> LockedPoses:
+    try:
+        return elastic.lock(at)
+    except InputError as error:
+        if error.key != "leg.drive" or "pure force" not in error.what:
+            raise
+        raise InputError(
+            error.what, key=error.key, value=error.value, allowed=error.allowed,
+            next_step='linearize(..., drives="force") releases the drives where they are',
+        ) from None  # fmt: skip
 
 
 def plant_at_rest(locked: LockedPoses) -> Plant:
@@ -208,7 +219,7 @@ def _in_motion(locked: LockedPoses, drives: Drives) -> Plant:
     x = replace(x, drive=np.zeros((len(x), system.legs, system.ports.size)))  # forces of statics: none is asked for
     m = with_friction(system, x, matrices_at_rest(system, x, locked.acts.wrench), stuck=simulation.friction == "stuck")
     return Plant(
-        locked=locked, drives=drives, system=system, x=x, m=m, motions=independent(system, m),
+        locked=locked, drives=drives, system=system, x=x, m=m, motions=independent_motions(system, m),
         port=push_ports(system, robot), as_at_rest=False,
     )  # fmt: skip
 
@@ -224,12 +235,12 @@ def _holding(drive: Drive) -> Drive:
 
 
 def _model(robot: Robot, simulation: Simulation, per_loss: float, drives: Drives) -> System:
-    """The equations in motion, with what stands for held pivots."""
-    simulation, known = simulation.replace(play="static"), smooth(robot)
+    """Equations in motion, with substitutes of held pivots."""
+    simulation, known = simulation.replace(play="static"), without_ripple(robot)
     system = robot_system(known, simulation, per_loss)
     if drives == "force":
         system = _released(system, robot_system(_at_rotors(known), simulation, per_loss).held, robot)
-    return with_substitutes(system, rigid_rest(system, robot, kinematics.home_pose(robot)))
+    return with_substitutes(system, rigid_rest(system, kinematics.RigidPoses(robot, kinematics.home_pose(robot))))
 
 
 _moving = cast("Callable[[Robot, Simulation, float, Drives], System]", lru_cache(maxsize=64)(_model))
@@ -288,7 +299,7 @@ def carried_masses(plant: Plant, about: Array) -> tuple[Array, Array]:
     at, base = [place[pair] for pair in own], [place["g", k] for k in range(6)]
     q = np.zeros((len(x), system.legs, moved.n))
     q[..., at] = x.q
-    M = carried(moved, q)
+    M = base_leg_masses(moved, q)
     return M[..., at], M[..., base]
 
 
@@ -309,5 +320,5 @@ def _turning(vector: Array) -> Array:
 
 def _on_moved_base(robot: Robot, simulation: Simulation, per_loss: float, about: Array, at_rest: bool) -> System:
     still = BaseMotion(time=np.array([0.0, 1.0]), values=np.zeros((2, 6)), at=about)
-    robot = smooth(robot.replace(base_motion=still))
+    robot = without_ripple(robot.replace(base_motion=still))
     return robot_system(robot, simulation.replace(play="static"), per_loss, at_rest=at_rest)

@@ -1,6 +1,7 @@
-"""Random vibration of a robot about its static equilibrium: spectra integrated over frequency, (T18.6)-(T18.11).
+"""Random vibration of a robot about its static equilibrium, by its linear model, Eqs. (T18.1)-(T18.11).
 
-The linear model of a robot about its static equilibrium: what moves the tool, and how much, (T18.1)-(T18.5).
+Spectra are integrated over frequency, (T18.6)-(T18.11). The model states what moves the tool, and how much,
+(T18.1)-(T18.5).
 """
 
 from __future__ import annotations
@@ -14,14 +15,15 @@ from numpy.typing import NDArray
 
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
+from flexapod.common.quantities import fill_template
 from flexapod.model import Disturbance, Floor, Spectrum
-from flexapod.solve.linear.channels import asked
+from flexapod.solve.linear.channels import plant_channels
 from flexapod.solve.linear.plant import plant_at_rest
 from flexapod.solve.linear.second_order import input_forces
 from flexapod.solve.modal.eigenproblem import poles
-from flexapod.solve.modal.modal_loops import ModalLoops, growth, unstable_words
+from flexapod.solve.modal.modal_loops import UNSTABLE, ModalLoops, growth_rate
 from flexapod.solve.modal.modes import loops_of, modal_damping, no_mass, unit_modes
-from flexapod.solve.statics.locked_robot import LockedPoses, the_equilibrium
+from flexapod.solve.statics.locked_robot import LockedPoses, single_equilibrium
 
 if TYPE_CHECKING:
     pass  # FOLD
@@ -39,8 +41,8 @@ UNDAMPED = 1e-9  # damping ratio below which nothing limits a resonance
 FLOOR_RATES = {"acceleration": 0, "velocity": 1, "displacement": 2}
 
 
-class Shaken(Protocol):
-    """What the integral asks of a linear model: `LinearRobot` says it of a robot."""
+class VibrationModel(Protocol):
+    """Interface of a linear model that the integral needs, as `LinearRobot` has it."""
 
     @property
     def omega(self) -> Array:
@@ -159,7 +161,7 @@ def density_at(frequency: Array, density: Array, f: Array) -> Array:
     return np.where(power, curved, straight) * inside[:, None]
 
 
-def random_vibration(model: Shaken, sources: list[Source], *, refine: int = 1) -> RandomVibration:
+def random_vibration(model: VibrationModel, sources: list[Source], *, refine: int = 1) -> RandomVibration:
     """Response of p outputs (the tool) to independent sources; ``refine``: into how many each panel is cut further.
 
     Raises
@@ -200,15 +202,15 @@ def random_vibration(model: Shaken, sources: list[Source], *, refine: int = 1) -
     )
 
 
-def with_error(model: Shaken, sources: list[Source]) -> tuple[RandomVibration, float]:
-    """The response on panels cut in two, and by how much its rms differ from those on whole ones, relative, at most."""
+def vibration_with_error(model: VibrationModel, sources: list[Source]) -> tuple[RandomVibration, float]:
+    """Response on panels cut in two, and the largest relative difference of its rms from that on whole ones."""
     found, coarse = random_vibration(model, sources, refine=2), random_vibration(model, sources)
     moves = found.rms > ROUNDING * found.rms.max(initial=0.0)
     error = np.divide(coarse.rms, found.rms, out=np.ones_like(found.rms), where=moves) - 1.0
     return found, float(np.abs(error).max(initial=0.0))
 
 
-def _response(model: Shaken, forces: Array, f: Array, refine: int) -> Callable[[Array], Complex]:
+def _response(model: VibrationModel, forces: Array, f: Array, refine: int) -> Callable[[Array], Complex]:
     """Amplitudes (f, r, k) at frequencies: solved for, or where tables have many rows polynomials on wider panels."""
     span = Source(name="", forces=forces, frequency=f[[0, -1]], density=np.zeros((2, 1)))
     edges = panels(model, [span], 2 * refine)
@@ -221,7 +223,7 @@ def _response(model: Shaken, forces: Array, f: Array, refine: int) -> Callable[[
     values = np.concatenate(known).reshape(len(edges) - 1, POINTS, -1)
     weights = np.sin(angle) * (-1.0) ** np.arange(POINTS)  # barycentric, of the zeros of Chebyshev's polynomial
 
-    def between(some: Array) -> Complex:
+    def interpolate(some: Array) -> Complex:
         panel = np.clip(np.searchsorted(edges, some, side="right") - 1, 0, len(edges) - 2)
         away = (some - edges[panel])[:, None] / np.diff(edges)[panel, None] - nodes
         share = weights / np.where(away == 0, 1e-300, away)
@@ -231,10 +233,10 @@ def _response(model: Shaken, forces: Array, f: Array, refine: int) -> Callable[[
             found[panel == p] = share[panel == p] @ values[p]
         return found.reshape(len(some), *forces.shape)
 
-    return between
+    return interpolate
 
 
-def panels(model: Shaken, sources: list[Source], refine: int) -> Array:
+def panels(model: VibrationModel, sources: list[Source], refine: int) -> Array:
     """Edges [Hz] of panels each as long as rows of the tables and poles let it be, Eq. (T18.11)."""
     breaks = np.unique(np.concatenate([source.frequency for source in sources]))
     z = _poles(model, breaks[0], breaks[-1])
@@ -253,14 +255,14 @@ def panels(model: Shaken, sources: list[Source], refine: int) -> Array:
 
 
 def _free(z: Complex, start: float, widest: float, shares: Array) -> NDArray[np.bool_]:
-    """Whether an ellipse about a panel holds none of the poles, for panels of shares of the widest."""
+    """Test whether an ellipse about a panel holds none of the poles, for panels of shares of the widest."""
     half = 0.5 * widest * shares[:, None]
     x = (z - start - half) / half
     root = np.sqrt(x**2 - 1)
     return (np.maximum(np.abs(x + root), np.abs(x - root)) >= ELLIPSE).all(axis=1)
 
 
-def _poles(model: Shaken, low: float, high: float) -> Complex:
+def _poles(model: VibrationModel, low: float, high: float) -> Complex:
     """Frequencies [Hz] at which responses are infinite, above the real axis.
 
     Raises
@@ -302,13 +304,13 @@ class LinearRobot:
     loops: ModalLoops | None = None
 
     def poles(self, rate: float) -> Complex:
-        """Eigenvalues [1/s] up to a `rate` [rad/s], near enough to tell where responses change, see (T18.11).
+        """Eigenvalues [1/s] up to a `rate` [rad/s], near enough to find where responses change, see (T18.11).
 
         What is `FAR` times as fast and damped little below the rate gives way as at rest: the others' damping to it
         moves a pole by less than its distance from the imaginary axis over `FAR`.
         """
         if self.loops is not None:
-            return self.loops.eigen(self.omega, self.damping)[0]
+            return self.loops.eigenpairs(self.omega, self.damping)[0]
         near = (self.omega <= FAR * rate) | (np.diag(self.damping) * rate >= 1.0 / FAR)
         if not near.any():
             return np.zeros(0, dtype=complex)
@@ -336,21 +338,22 @@ def linear_robot(locked: LockedPoses) -> LinearRobot:
     ComputationError
         No equilibrium at this pose, or masses that no body can have.
     """
-    at, found = the_equilibrium(locked), unit_modes(locked, shapes=True)
+    at, found = single_equilibrium(locked), unit_modes(locked, shapes=True)
     if not found.positive[0]:
         raise no_mass(locked.system, at.state.q)
     damping, loops = modal_damping(locked, found.flat)[0], [*loops_of(locked), None]
     inputs = _inputs(locked, found.flat[0])
     model = LinearRobot(omega=found.omega[0], damping=damping, tool=inputs["wrench"].T, inputs=inputs, loops=loops[0])
-    if model.loops is not None and (words := unstable_words(growth(model.poles(np.inf)))):
-        raise InputError(words[0], key="leg.drive.loop", allowed="loops whose deviations decay")
+    if model.loops is not None and (rate := growth_rate(model.poles(np.inf))):
+        words = fill_template(UNSTABLE, where="", time=1 / rate)
+        raise InputError(words, key="leg.drive.loop", allowed="loops whose deviations decay")
     return model
 
 
 def _inputs(locked: LockedPoses, flat: Array) -> dict[str, Array]:
     """Modal forces of unit inputs of shapes (N, r): accelerations of the floor, wrench, forces of all drives."""
     plant, robot = plant_at_rest(locked), locked.robot
-    groups = {name: asked(name, robot, "inputs") for name in ("floor", "wrench", "drive")}
+    groups = {name: plant_channels(name, robot, "inputs") for name in ("floor", "wrench", "drive")}
     groups["floor"] = groups["floor"][:3]
     every = [channel for group in groups.values() for channel in group]
     forces = flat.T @ input_forces(plant, every, np.zeros(3))[0]

@@ -1,4 +1,4 @@
-"""A robot about rest on named motions: M, D, K, and what inputs do to them, Eqs. (T20.4)-(T20.10)."""
+"""Equations of a robot about rest on named motions: M, D, K, and forces by inputs, Eqs. (T20.4)-(T20.10)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from flexapod.common.errors import InputError
 from flexapod.kinematics.rotations import matrix
 from flexapod.solve.batch import residual
 from flexapod.solve.linear.channels import PlantChannel
-from flexapod.solve.linear.motions import coordinate_names, held_motions, on_motions
+from flexapod.solve.linear.motions import coordinate_names, held_motions, project_on_motions
 from flexapod.solve.linear.plant import Plant, tilt_stiffness, turning_forces
 from flexapod.solve.modal.modes import mass_on_motions, no_mass
 from flexapod.solve.statics.stiffness import tool_motion
@@ -80,7 +80,7 @@ def second_order(plant: Plant, inputs: Sequence[PlantChannel], *, about: Array, 
     flat = np.zeros((P, system.size, d + extra))
     flat[:, :, :d] = motions.flat(system, np.broadcast_to(np.eye(d), (P, d, d)))
     _held(plant, commands, flat[:, :, d : d + len(commands)])
-    A, R, Q = on_motions(system, plant.m, flat)
+    A, R, Q = project_on_motions(system, plant.m, flat)
     Q[:, :, d : d + len(commands)] += (by := _springs(plant, commands))[0]
     R[:, :, d : d + len(commands)] += by[1]
     if turns:
@@ -119,7 +119,7 @@ def _named(plant: Plant) -> tuple[list[str], list[int], list[int]]:
 
 
 def _mass(plant: Plant, loops: Sequence[int]) -> Array:
-    """Factor (P, rows, d) of the mass on the free motions, without what stands for loops."""
+    """Factor (P, rows, d) of the mass on the free motions, without the coordinates of loops."""
     U, positive = mass_on_motions(plant.system, plant.motions, plant.m)
     if not positive.all():
         raise no_mass(plant.system, plant.x.q[int((~positive).argmax())])
@@ -128,7 +128,7 @@ def _mass(plant: Plant, loops: Sequence[int]) -> Array:
 
 
 def _held(plant: Plant, commands: Sequence[PlantChannel], found: Array) -> None:
-    """Put into motions (P, size, c) those by commands of drives that hold what they are told to hold, Eq. (T20.5)."""
+    """Put into motions (P, size, c) those by commands of drives that hold what is commanded, Eq. (T20.5)."""
     system = plant.system
     stroke = system.kernel.shapes.l_index
     for k, channel in enumerate(commands):
@@ -140,7 +140,7 @@ def _held(plant: Plant, commands: Sequence[PlantChannel], found: Array) -> None:
 
 
 def _springs(plant: Plant, commands: Sequence[PlantChannel]) -> tuple[Array, Array]:
-    """What unit commands, and unit rates of them, of springs and loops add to all balances, two (P, size, c)."""
+    """Terms of unit commands, and of their unit rates, in all balances by springs and loops, two (P, size, c)."""
     system, x, wrench = plant.system, plant.x, plant.locked.acts.wrench
     none = np.zeros((len(x), system.legs, system.ports.size))
     found = np.zeros((2, len(x), system.size, len(commands)))
@@ -185,7 +185,7 @@ def input_forces(plant: Plant, inputs: Sequence[PlantChannel], about: Array) -> 
             case "force" if channel.at is not None:
                 found[:, hub, k] = point_motion(plant, channel.at)[:, channel.axis]
             case "drive":
-                found[:, channel.leg * system.n + plant.pushed(channel.leg), k] = 1.0
+                found[:, channel.leg * system.n + plant.force_coordinate(channel.leg), k] = 1.0
             case "floor" if channel.axis < 3:
                 found[:, :, k] = plant.by_gravity[:, :, channel.axis]
             case "floor" if turning is not None:

@@ -1,6 +1,6 @@
-"""The linear model of a robot as matrices A, B, C, D with names and units, Eqs. (T20.11)-(T20.23).
+"""Linear model of a robot as matrices A, B, C, D with names and units, Eqs. (T20.11)-(T20.23).
 
-M, D, K, B, C on named motions at many poses at once: what is smooth from pose to pose, Eq. (T20.6).
+At many poses at once M, D, K, B, C are those on named motions, which are smooth from pose to pose, Eq. (T20.6).
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from flexapod.common.errors import InputError
 from flexapod.model import Robot
 from flexapod.solve.linear.channels import PlantChannel
 from flexapod.solve.linear.first_order import FirstOrder, first_order, with_mass
-from flexapod.solve.linear.motions import coordinate_names, on_motions
-from flexapod.solve.linear.outputs import Seen
+from flexapod.solve.linear.motions import coordinate_names, project_on_motions
+from flexapod.solve.linear.outputs import PlantOutputs
 from flexapod.solve.linear.plant import Plant
 from flexapod.solve.linear.second_order import SecondOrder, second_order
 from flexapod.solve.statics.stiffness import tool_motion
@@ -73,7 +73,7 @@ class Descriptor:
     held: Mask
 
 
-def condensed(second: SecondOrder) -> FirstOrder:
+def to_first_order(second: SecondOrder) -> FirstOrder:
     """The first of the poses as a first-order system."""
     free, d = second.free, len(second.names)
     more = np.arange(free, d)
@@ -97,8 +97,8 @@ def states_of(
     ``about``, ``tilt``: as of `second_order`.
     """
     second = second_order(plant, inputs, tilt=tilt, about=about)
-    first = condensed(second)
-    seen = Seen(plant=plant, second=second, first=first, inputs=inputs)
+    first = to_first_order(second)
+    seen = PlantOutputs(plant=plant, second=second, first=first, inputs=inputs)
     n, m = first.B.shape
     rows = np.array([seen.row(channel) for channel in outputs]).reshape(len(outputs), n + m)
     names = [second.names[k] for k in [*first.second, *first.first]]
@@ -170,21 +170,21 @@ def descriptor_of(
     """The equations in flat coordinates at the one pose of a plant; ``about``: as of `second_order`."""
     system = plant.system
     second = second_order(plant, inputs, about=about)
-    M, D, K = (x[0] for x in on_motions(system, plant.m, np.eye(system.size)[None]))
+    M, D, K = (x[0] for x in project_on_motions(system, plant.m, np.eye(system.size)[None]))
     m = len(inputs)
-    seen = Seen(plant=plant, second=second, first=condensed(second), inputs=inputs)
+    seen = PlantOutputs(plant=plant, second=second, first=to_first_order(second), inputs=inputs)
     places = [c for c in outputs if c.group in ("tool", "com", "tool-base", "com-base", "stroke", "encoder")]
     B, B_rate = second.forces[0].copy(), np.zeros((system.size, m))
     for k, channel in enumerate(inputs):
         if channel.group == "command" and not system.held[channel.leg, plant.port[channel.leg]]:
             at = second.names.index(channel.name)
-            own = on_motions(system, plant.m, second.flat[:, :, at : at + 1])
+            own = project_on_motions(system, plant.m, second.flat[:, :, at : at + 1])
             B[:, k] = -(second.on_place[0, :, at] - own[2][0, :, 0])
             B_rate[:, k] = -(second.on_rate[0, :, at] - own[1][0, :, 0])
     return Descriptor(
         M=M, D=D, K=K, G=seen.jacobian, B=B, B_rate=B_rate, C=seen.by_coordinates(places),
         coordinates=tuple(coordinate_names(system)[: system.size]), inputs=tuple(c.name for c in inputs),
-        outputs=tuple(c.name for c in places), held=system.fixed,
+        outputs=tuple(c.name for c in places), held=system.fixed_mask,
     )  # fmt: skip
 
 

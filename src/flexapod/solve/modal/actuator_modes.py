@@ -106,8 +106,8 @@ def amplitude_groups(shapes: Shapes) -> dict[str, slice]:
 def turning_matrices(actuator: Actuator, simulation: Simulation, rate: float) -> tuple[Array, Array, Array]:
     """M, D, K (k, k) of the amplitudes of the beam in steady rotation, Eq. (T9.6); in space at its steady stretch."""
     shapes = actuator_shapes(actuator, simulation, rate)
-    residual, matrices, tangents = functions(shapes)
-    q, arguments, at_rest = straight(actuator, shapes, rate)
+    residual, matrices, tangents = interpreted_functions(shapes)
+    q, arguments, at_rest = straight_state(actuator, shapes, rate)
     c = columns(shapes.layout, "c")
     for _ in range(STEPS if shapes.beam.axial.count else 0):
         q[c] -= np.linalg.solve(tangents(q, *arguments)[0][c, c], residual(q, *arguments)[0][c])
@@ -117,7 +117,9 @@ def turning_matrices(actuator: Actuator, simulation: Simulation, rate: float) ->
     return M[moving, moving], D[moving, moving], 0.5 * (K + K.T)[moving, moving]
 
 
-def straight(actuator: Actuator, shapes: Shapes, rate: float) -> tuple[Array, tuple[Array, ...], tuple[Array, ...]]:
+def straight_state(
+    actuator: Actuator, shapes: Shapes, rate: float
+) -> tuple[Array, tuple[Array, ...], tuple[Array, ...]]:
     """Coordinates of the straight beam on a hub that turns, and what else `functions` ask for: in motion, and at rest.
 
     In motion rates, accelerations, no forces of a closure, commands, parameters and loads; at rest no rates.
@@ -127,7 +129,7 @@ def straight(actuator: Actuator, shapes: Shapes, rate: float) -> tuple[Array, tu
     for name, value in home(actuator).items():
         q[at[name]] = value
     v[at["rotation"]] = rate
-    constant = p, *[np.zeros(LOAD_SIZE)] * shapes.loaded
+    constant = p, *[np.zeros(LOAD_SIZE)] * shapes.has_tip_load
     return q, (v, still, none, np.zeros(COMMAND_SIZE), *constant), (none, *constant)
 
 
@@ -144,7 +146,7 @@ def stretching_lag(actuator: Actuator, simulation: Simulation, rate: float) -> A
 
 
 @lru_cache(maxsize=16)
-def functions(shapes: Shapes) -> tuple[Function, Function, Function]:
+def interpreted_functions(shapes: Shapes) -> tuple[Function, Function, Function]:
     """Residual, matrices at rest and tangents in motion of the leg, interpreted: each is called once per analysis."""
     from flexapod.mechanics.leg.kernel_functions import leg_functions, leg_tangents
     from flexapod.mechanics.symbolic.functions import Interpreted

@@ -1,10 +1,10 @@
-"""A robot with locked drives at poses, springs with what they lose: equilibria, modes, stiffness."""
+"""Robot with locked drives at poses, with structural damping of its springs: equilibria, modes, stiffness."""
 
 from flexapod import kinematics
 from flexapod.model import Load, Robot, Simulation
-from flexapod.solve.modal.modes import RobotModes, the_modes
-from flexapod.solve.modal.structural_damping import per_loss
-from flexapod.solve.statics.locked_robot import LockedPoses, lock, the_equilibrium
+from flexapod.solve.modal.elastic_robot import ElasticRobot
+from flexapod.solve.modal.modes import RobotModes, single_pose_modes
+from flexapod.solve.statics.locked_robot import LockedPoses, single_equilibrium
 from flexapod.solve.statics.stiffness import PoseStiffness, stiffness_of
 
 
@@ -20,7 +20,7 @@ def locked_poses(
     InputError
         A pure force drive.
     """
-    return lock(robot, simulation, path, load, time, per_loss=per_loss(robot, simulation))
+    return ElasticRobot(robot, simulation, load).lock(kinematics.RigidPoses(robot, path), time)
 
 
 def robot_modes(
@@ -39,7 +39,9 @@ def robot_modes(
     ComputationError
         No equilibrium at this pose, masses that no body can have, or a number that is not finite.
     """
-    return the_modes(locked_poses(robot, simulation, kinematics.home_pose(robot) if path is None else path, load, time))
+    return single_pose_modes(
+        locked_poses(robot, simulation, kinematics.home_pose(robot) if path is None else path, load, time)
+    )
 
 
 def robot_stiffness(
@@ -56,8 +58,12 @@ def robot_stiffness(
     ComputationError
         No equilibrium at this pose.
     """
-    locked = locked_poses(robot, simulation, kinematics.home_pose(robot) if path is None else path, load)
-    rest, found = the_equilibrium(locked), stiffness_of(robot, locked)
+    return stiffness_at(locked_poses(robot, simulation, kinematics.home_pose(robot) if path is None else path, load))
+
+
+def stiffness_at(locked: LockedPoses) -> PoseStiffness:
+    """Stiffness against a wrench at the tool at the one pose of a locked robot; raises as `robot_stiffness`."""
+    rest, found = single_equilibrium(locked), stiffness_of(locked.robot, locked)
     return PoseStiffness(
         total=found.total[0], legs=found.legs[0], load=found.load[0], equilibrium=rest, system=locked.system
     )

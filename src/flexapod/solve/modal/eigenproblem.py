@@ -1,6 +1,7 @@
-"""Frequencies and shapes from factors of stiffness and mass, right however light a part is, Eqs. (T7.21)-(T7.22).
+"""Undamped and damped modes from factors of stiffness and mass, Eqs. (T7.4)-(T7.5), (T7.21)-(T7.23).
 
-Damped modes without what has neither mass nor damper: damping ratios and poles, Eqs. (T7.4)-(T7.5), (T7.23).
+Frequencies and shapes are right however light a part is, Eqs. (T7.21)-(T7.22). Damping ratios and poles leave
+out what has neither mass nor damper, Eq. (T7.23).
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod.common.arrays import Array, Mask
-from flexapod.mechanics.shapes.beam_functions import finite
+from flexapod.mechanics.shapes.beam_functions import check_finite
 from flexapod.solve.saddle_point import cholesky_each
 
 ROUNDED = 1e-10  # eigenvalue of a mass matrix with a unit diagonal that may be rounding
@@ -65,7 +66,7 @@ def mass_rank(U: Array) -> Array:
     return np.asarray((np.linalg.svd(alike, compute_uv=False) > LIGHTEST).sum(axis=-1))
 
 
-def natural(U: Array, K: Array, *, shapes: bool) -> tuple[Array, Array, Mask]:
+def natural_modes(U: Array, K: Array, *, shapes: bool) -> tuple[Array, Array, Mask]:
     """Angular frequencies (p, r) [rad/s] ascending, shapes (p, r, r) of unit stiffness, and where K is positive.
 
     Parameters
@@ -91,7 +92,7 @@ def natural(U: Array, K: Array, *, shapes: bool) -> tuple[Array, Array, Mask]:
     L, positive = cholesky_each(K)
     L = np.where(positive[:, None, None], L, np.eye(K.shape[-1]))
     X = np.asarray(np.linalg.solve(L, U.swapaxes(1, 2)), dtype=np.float64)  # (T7.21), transposed
-    finite(X)
+    check_finite(X)
     if shapes:
         left, sizes, _ = np.linalg.svd(X, full_matrices=False)
     else:
@@ -107,7 +108,7 @@ def natural(U: Array, K: Array, *, shapes: bool) -> tuple[Array, Array, Mask]:
 
 
 def count_real(frequency: Array) -> int:
-    """How many modes any pose has, of frequencies (..., m), those that are none last; all where no pose has any."""
+    """Number of modes that any pose has, of frequencies (..., m) that are NaN last; all where no pose has any."""
     width = frequency.shape[-1]
     real = np.isfinite(frequency).reshape(-1, width).any(axis=0)
     return int(real.sum()) or width
@@ -117,8 +118,8 @@ OSCILLATES = 1e-9  # imaginary part over size of an eigenvalue: less is a pair o
 
 
 @dataclass(frozen=True, kw_only=True)
-class Reacting:
-    """What of m modes of unit stiffness takes time to move: r modes with mass, and d motions with a damper alone.
+class ReactingModes:
+    """Motions, of m modes of unit stiffness, that take time: r modes with mass, and d motions with dampers alone.
 
     ``basis`` (m, r + d): these by the modes, those with mass first; ``D`` (r + d, r + d): damping [s];
     ``slowness`` (r + d, r): one over the frequencies, by the ``rate`` [rad/s] of the lowest of them; 0 without mass.
@@ -136,7 +137,7 @@ class Reacting:
         return np.block([[-self.rate * self.D, -self.slowness], [self.slowness.T, np.zeros((count, count))]])
 
 
-def reacting(omega: Array, D: Array) -> Reacting:
+def reacting_modes(omega: Array, D: Array) -> ReactingModes:
     """Modes without what has neither mass nor damper: that is at rest, whatever the others do, Eq. (T7.23).
 
     ``omega``, ``D``: as of `damping_ratios`.
@@ -146,7 +147,7 @@ def reacting(omega: Array, D: Array) -> Reacting:
     ComputationError
         A number in it is not finite.
     """
-    finite(D)
+    check_finite(D)
     mass = np.isfinite(omega)
     damper, shapes = np.linalg.eigh(D[np.ix_(~mass, ~mass)])
     shapes = shapes[:, damper > np.finfo(float).eps * len(omega) * np.linalg.norm(D)]
@@ -156,7 +157,7 @@ def reacting(omega: Array, D: Array) -> Reacting:
     rate = float(omega[mass].min(initial=np.inf)) if count else 1.0
     slowness = np.zeros((basis.shape[1], count))
     slowness[:count] = np.diag(rate / omega[mass])
-    return Reacting(basis=basis, D=basis.T @ D @ basis, slowness=slowness, rate=rate)
+    return ReactingModes(basis=basis, D=basis.T @ D @ basis, slowness=slowness, rate=rate)
 
 
 def damping_ratios(omega: Array, D: Array) -> Array:
@@ -177,7 +178,7 @@ def damping_ratios(omega: Array, D: Array) -> Array:
     ComputationError
         A number in it is not finite.
     """
-    modes, mass = reacting(omega, D), np.isfinite(omega)
+    modes, mass = reacting_modes(omega, D), np.isfinite(omega)
     ratio = 0.5 * np.diag(D) * np.where(mass, omega, 0.0)
     if not D.any() or not mass.any():
         return ratio
@@ -198,5 +199,5 @@ def damping_ratios(omega: Array, D: Array) -> Array:
 
 def poles(omega: Array, D: Array) -> NDArray[np.complex128]:
     """Eigenvalues [1/s] of damped modes as of `damping_ratios`: two of each mass, one of each damper beside them."""
-    modes = reacting(omega, D)
+    modes = reacting_modes(omega, D)
     return (modes.rate / np.linalg.eigvals(modes.matrix)).astype(np.complex128)

@@ -1,4 +1,4 @@
-"""Loops that are more than springs and dampers on their rotors, in undamped modes, Eqs. (T23.58)-(T23.60)."""
+"""Loops beyond springs and dampers on their rotors, in undamped modes, Eqs. (T23.58)-(T23.60)."""
 
 from __future__ import annotations
 
@@ -8,16 +8,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod.common.arrays import Array
-from flexapod.common.quantities import text
-from flexapod.mechanics.shapes.beam_functions import finite
+from flexapod.mechanics.shapes.beam_functions import check_finite
 from flexapod.model import Robot
 from flexapod.solve.batch import RestStates
 from flexapod.solve.kernel import evaluate
-from flexapod.solve.modal.eigenproblem import reacting
+from flexapod.solve.modal.eigenproblem import reacting_modes
 from flexapod.solve.system import System
 
 Complex = NDArray[np.complex128]
 GROWS = 1e-9  # real part over size of an eigenvalue: less is rounding
+UNSTABLE = (
+    "the loops of the drives are unstable{where}: deviations grow by a factor of 2.7 in {time:~3 s}; smaller gains, a "
+    'motor of more bandwidth, or damping by the rotor\'s rate (encoder.rate = "rotor") may help'
+)
+"""That deviations grow, at a place in words, by a factor of e in a time [s]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,18 +41,18 @@ class ModalLoops:
     lag: Array
 
     def dynamic(self, s: NDArray[np.complexfloating]) -> Complex:
-        """What they add to the dynamic stiffness (f, r, r) at s (f,) [1/s], Eq. (T23.58)."""
+        """Terms of the loops in the dynamic stiffness (f, r, r) at s (f,) [1/s], Eq. (T23.58)."""
         s = s[:, None, None]
         k, c, g, lag = (x[:, None] for x in (self.stiffness, self.damping, self.integral, self.lag))
         asked = (k + g / s) * self.measured.T + s * c * self.damped.T
         return np.asarray(self.rotor @ (asked / (1 + s * lag) - (k + s * c) * self.rotor.T), dtype=np.complex128)
 
-    def eigen(self, omega: Array, D: Array) -> tuple[Complex, Complex]:
+    def eigenpairs(self, omega: Array, D: Array) -> tuple[Complex, Complex]:
         """Eigenvalues [1/s], and their shapes (r, any), of modes with damping (r, r), Eq. (T23.59).
 
         A force that comes at once is no unknown; a rotor has mass, so that what has none is as without loops.
         """
-        modes, (late, sums) = reacting(omega, D), (self.lag > 0, self.integral > 0)
+        modes, (late, sums) = reacting_modes(omega, D), (self.lag > 0, self.integral > 0)
         (s, r), rate = modes.slowness.shape, modes.rate  # times are in 1 over the first frequency
         z, y = slice(0, s), slice(s, s + r)
         force, total = slice(s + r, s + r + late.sum()), slice(s + r + late.sum(), s + r + late.sum() + sums.sum())
@@ -65,25 +69,15 @@ class ModalLoops:
         A[force, force], A[force, total] = np.eye(late.sum()), -summed[late]
         E[force, force] = rate * np.diag(self.lag[late])
         A[total, z], E[total, total] = (self.integral / unit * seen)[:, sums].T / rate, np.eye(sums.sum())
-        finite(A, E)
+        check_finite(A, E)
         values, shapes = np.linalg.eig(-np.linalg.solve(A, E))
         return (rate / values).astype(np.complex128), (modes.basis @ shapes[z]).astype(np.complex128)
 
 
-def growth(values: Complex) -> float:
+def growth_rate(values: Complex) -> float:
     """Rate at which the fastest of them grows [1/s]; 0 where all decay."""
     grows = values.real > GROWS * np.abs(values)
     return float(values.real[grows].max(initial=0.0))
-
-
-def unstable_words(rate: float, where: str = "") -> list[str]:
-    """That loops are unstable, whose deviations grow at a rate [1/s] at a place in words; nothing at 0."""
-    if not rate:
-        return []
-    return [
-        f"the loops of the drives are unstable{where}: deviations grow by a factor of 2.7 in {text(1 / rate, 's')}; "
-        'smaller gains, a motor of more bandwidth, or damping by the rotor\'s rate (encoder.rate = "rotor") may help'
-    ]
 
 
 def loops_in_modes(robot: Robot, system: System, x: RestStates, flat: Array) -> list[ModalLoops]:

@@ -9,12 +9,12 @@ import numpy as np
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.mechanics.leg.layout import LEG_PARAMETERS, columns, leg_parameters
-from flexapod.mechanics.shapes.beam_functions import finite
+from flexapod.mechanics.shapes.beam_functions import check_finite
 from flexapod.solve.batch import RestMatrices
-from flexapod.solve.modal.eigenproblem import OSCILLATES, count_real, damping_ratios, mass_factor, natural
-from flexapod.solve.modal.modal_loops import ModalLoops, growth, loops_in_modes
+from flexapod.solve.modal.eigenproblem import OSCILLATES, count_real, damping_ratios, mass_factor, natural_modes
+from flexapod.solve.modal.modal_loops import ModalLoops, growth_rate, loops_in_modes
 from flexapod.solve.statics.equilibrium import Equilibrium
-from flexapod.solve.statics.locked_robot import LockedPoses, the_equilibrium
+from flexapod.solve.statics.locked_robot import LockedPoses, single_equilibrium
 from flexapod.solve.statics.reduction import Motions, hub_motion
 from flexapod.solve.system import System
 
@@ -38,7 +38,7 @@ class RobotModes:
 
     @cached_property
     def damping_ratio(self) -> Array:
-        """Of the damped modes, (m,); an eigenproblem of twice as many, solved when it is asked for."""
+        """Damping ratios of the damped modes, (m,); from an eigenproblem of twice the size, solved on demand."""
         return self.ratio()
 
 
@@ -59,7 +59,7 @@ class ManyModes:
 
     @cached_property
     def damping_ratio(self) -> Array:
-        """Of the damped modes, (p, m)."""
+        """Damping ratios of the damped modes, (p, m)."""
         return np.array([self.ratio(k) for k in range(len(self.frequency))]).reshape(self.frequency.shape)
 
     def one(self, locked: LockedPoses, k: int, count: int | None = None) -> RobotModes:
@@ -88,10 +88,10 @@ class UnitModes:
     positive: Mask
 
 
-def the_modes(locked: LockedPoses, *, loops: bool = True) -> RobotModes:
+def single_pose_modes(locked: LockedPoses, *, loops: bool = True) -> RobotModes:
     """Modes at a single pose; raises as `robot_modes`. ``loops``: as of `modes_of`."""
-    found, m = the_equilibrium(locked), locked.m
-    finite(m.M, m.K, m.D, m.payload_M, m.payload_K)
+    found, m = single_equilibrium(locked), locked.m
+    check_finite(m.M, m.K, m.D, m.payload_M, m.payload_K)
     modes = modes_of(locked, shapes=True, loops=loops)
     if not modes.positive[0]:
         raise no_mass(locked.system, found.state.q)
@@ -127,7 +127,7 @@ def _turns_for_nothing(system: System) -> Mask:
 
 
 def modes_of(locked: LockedPoses, *, shapes: bool = False, loops: bool = True) -> ManyModes:
-    """Modes at all equilibria, Eq. (T7.3), on the admissible motions (T7.16), by (T7.21); with ``shapes`` if asked.
+    """Modes at all equilibria, Eq. (T7.3), on the admissible motions (T7.16), by (T7.21); ``shapes`` on demand.
 
     Without ``loops``, those that are not symmetric are springs and dampers on their rotors.
 
@@ -145,7 +145,7 @@ def modes_of(locked: LockedPoses, *, shapes: bool = False, loops: bool = True) -
         nothing, unknown = np.zeros((0, omega.shape[1])), np.full(omega.shape[1], np.nan)
         return ManyModes(frequency=frequency, positive=found.positive, shapes=nothing, ratio=lambda _: unknown)
     damping = modal_damping(locked, flat)
-    finite(damping[found.positive])
+    check_finite(damping[found.positive])
 
     def ratio(k: int) -> Array:
         found = omega[k] if np.isnan(omega[k]).any() else damping_ratios(omega[k], damping[k])
@@ -163,8 +163,8 @@ def _looping(locked: LockedPoses) -> ManyModes:
     frequency, ratio = np.full((2, p, size), np.nan)
     flat, rates = np.zeros((p, size, locked.system.size)), np.zeros(p)
     for k in np.flatnonzero(found.positive):
-        values, z = loops[k].eigen(found.omega[k], damping[k])
-        rates[k] = growth(values)
+        values, z = loops[k].eigenpairs(found.omega[k], damping[k])
+        rates[k] = growth_rate(values)
         chosen = np.flatnonzero(values.imag > OSCILLATES * np.abs(values))
         chosen = chosen[np.argsort(np.abs(values[chosen]))]
         values, z = values[chosen], z[:, chosen]
@@ -183,12 +183,12 @@ def loops_of(locked: LockedPoses) -> list[ModalLoops]:
     if not locked.system.kernel.shapes.has("j"):
         return []
     found = unit_modes(locked, shapes=True)
-    return loops_in_modes(locked.robot, locked.shaken.system, locked.equilibria.states[locked.at], found.flat)
+    return loops_in_modes(locked.robot, locked.vibration_model.system, locked.equilibria.states[locked.at], found.flat)
 
 
 def unit_modes(locked: LockedPoses, *, shapes: bool) -> UnitModes:
     """All undamped modes of unit stiffness; raises as `modes_of`."""
-    locked = locked.shaken
+    locked = locked.vibration_model
     system, m, motions = locked.system, locked.m, locked.motions
     K = motions.stiffness(system, m)
     U, positive = mass_on_motions(system, motions, m)
@@ -200,7 +200,7 @@ def unit_modes(locked: LockedPoses, *, shapes: bool) -> UnitModes:
             allowed=("" if system.kernel.shapes.beam.axial.count else "lumped, ")
             + "finite-segment, assumed-modes, beam-fem, solid-fem",
         )
-    omega, z, stable = natural(U, K, shapes=shapes)
+    omega, z, stable = natural_modes(U, K, shapes=shapes)
     positive = positive & stable
     omega = np.where(positive[:, None], omega, np.nan)
     flat = motions.flat(system, z) if shapes else np.zeros((len(omega), system.size, 0))
@@ -226,7 +226,7 @@ def mass_on_motions(system: System, motions: Motions, m: RestMatrices) -> tuple[
 
 def modal_damping(locked: LockedPoses, flat: Array) -> Array:
     """Damping matrices (p, m, m) of shapes (p, N, m)."""
-    locked = locked.shaken
+    locked = locked.vibration_model
     p, legs, n, _ = locked.m.D.shape
     moving = flat[:, : legs * n].reshape(p, legs, n, flat.shape[2])
     return np.asarray((moving.swapaxes(-1, -2) @ locked.m.D @ moving).sum(axis=1))

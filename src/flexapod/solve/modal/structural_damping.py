@@ -2,35 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import lru_cache
-from typing import cast
+from typing import NamedTuple, cast
 
 import numpy as np
 
 from flexapod.common.errors import ComputationError
-from flexapod.common.quantities import number, text
-from flexapod.kinematics import home_pose
+from flexapod.kinematics import RigidPoses, home_pose
 from flexapod.mechanics.elements.springs import springs_along, viscous
 from flexapod.model import (
     Drive,
     Encoder,
     ForceDrive,
-    HydraulicDrive,
     Motor,
     PrescribedDrive,
     Robot,
     ScrewDrive,
     Simulation,
 )
-from flexapod.solve.modal.modes import the_modes
+from flexapod.solve.modal.modes import single_pose_modes
 from flexapod.solve.statics.locked_robot import lock
 
 
 def per_loss(robot: Robot, simulation: Simulation) -> float:
     """Viscous damping over stiffness of a spring of loss factor 1 [s]; 0 of a robot none of whose springs has one."""
     frequency = loss_frequency(robot, simulation)
-    return 1 / (2 * np.pi * frequency) if frequency else 0.0  # (T13.19)
+    return _per_loss(frequency) if frequency else 0.0
+
+
+def _per_loss(frequency: float) -> float:
+    return 1 / (2 * np.pi * frequency)  # (T13.19)
 
 
 def loss_frequency(robot: Robot, simulation: Simulation) -> float:
@@ -54,14 +56,46 @@ def loss_frequency(robot: Robot, simulation: Simulation) -> float:
     return _first(robot, sliding.replace(fidelity="lumped") if simulation.fidelity == "rigid" else sliding)
 
 
-def loss_words(robot: Robot, simulation: Simulation) -> list[str]:
-    """Frequency at which loss factors were made viscous, and what became of each kind of spring, without full stops."""
+class JointDampers(NamedTuple):
+    """Joints alike at an `end` of `legs`, empty of all: what each of their springs got for a damper, with its unit."""
+
+    end: str
+    legs: tuple[int, ...]
+    dampers: tuple[tuple[str, float, str], ...]
+
+
+class ViscousLosses(NamedTuple):
+    """Dampers that loss factors were made into at a `frequency` [Hz], whose legs stretch at the least if `rigid`.
+
+    `mounts`: largest damper along [N s/m] and about [N m s/rad] the axes of each; `springs` along the legs beside their
+    joints: least and largest of the legs at home [N s/m].
+    """
+
+    frequency: float
+    rigid: bool
+    joints: tuple[JointDampers, ...]
+    mounts: tuple[tuple[str, float, float], ...]
+    springs: tuple[tuple[str, float, float], ...]
+
+
+def viscous_losses(robot: Robot, simulation: Simulation) -> ViscousLosses | None:
+    """Frequency at which loss factors were made viscous, and what became of each kind of spring; None without any."""
     frequency = loss_frequency(robot, simulation)
     if not frequency:
-        return []
-    stretched = ", pistons that stretch" if simulation.fidelity == "rigid" else ""
-    found = [f"at the first frequency there, {number(frequency, 4)} Hz (undamped, drives locked{stretched})"]
-    per = per_loss(robot, simulation)
+        return None
+    per = _per_loss(frequency)
+    mounts = ((name, getattr(robot, name)) for name in ("base_mount", "platform_mount"))
+    by_axis = {name: mount.loss * per * np.diag(mount.stiffness) for name, mount in mounts if mount and mount.loss}
+    return ViscousLosses(
+        frequency=frequency,
+        rigid=simulation.fidelity == "rigid",
+        joints=tuple(_of_joints(robot, per)),
+        mounts=tuple((name, float(c[:3].max()), float(c[3:].max())) for name, c in by_axis.items()),
+        springs=tuple((name, min(c), max(c)) for name, c in _of_springs(robot, per).items()),
+    )
+
+
+def _of_joints(robot: Robot, per: float) -> Iterator[JointDampers]:
     for end in ("base_joint", "platform_joint"):
         for joint in dict.fromkeys(getattr(leg, end) for leg in robot.legs):
             values = [(name, getattr(joint, name), "N m s/rad") for name in ("bending", "torsion")]
@@ -69,22 +103,14 @@ def loss_words(robot: Robot, simulation: Simulation) -> list[str]:
             if joint.stiffness is not None:
                 loss["stiffness"] = joint.loss_of_stiffness or 0.0
                 values.append(("stiffness", float(np.abs(joint.stiffness[:3, :3]).max()), "N s/m"))
-            parts = [f"{name} {text(loss[name] * per * k, unit)}" for name, k, unit in values if k and loss[name]]
-            if parts:
-                legs = [str(i) for i, leg in enumerate(robot.legs, start=1) if getattr(leg, end) == joint]
-                which = "" if len(legs) == robot.count else f" of leg{'s' * (len(legs) > 1)} {', '.join(legs)}"
-                found.append(f"{end}{which}: {', '.join(parts)}")
-    for name in ("base_mount", "platform_mount"):
-        mount = getattr(robot, name)
-        if mount is not None and mount.loss:
-            c = mount.loss * per * np.diag(mount.stiffness)
-            along, about = text(float(c[:3].max()), "N s/m"), text(float(c[3:].max()), "N m s/rad")
-            found.append(f"{name}: up to {along} along and {about} about its axes")
-    return found + _of_springs(robot, per)
+            dampers = tuple((name, loss[name] * per * k, unit) for name, k, unit in values if k and loss[name])
+            if dampers:
+                legs = tuple(i for i, leg in enumerate(robot.legs, start=1) if getattr(leg, end) == joint)
+                yield JointDampers(end, () if len(legs) == robot.count else legs, dampers)
 
 
-def _of_springs(robot: Robot, per: float) -> list[str]:
-    """Dampers of the springs along the legs beside their joints, from the least to the largest of the legs at home."""
+def _of_springs(robot: Robot, per: float) -> dict[str, list[float]]:
+    """Dampers of the springs along the legs beside their joints, of each leg at home."""
     dampers: dict[str, list[float]] = {}
     for leg, length in zip(robot.legs, robot.home_lengths, strict=True):
         for spring in springs_along(leg):
@@ -96,13 +122,12 @@ def _of_springs(robot: Robot, per: float) -> list[str]:
         found = (("gland", guide.gland), ("head", guide.head))
         for name, stiffness in found:
             dampers.setdefault(name, []).append(viscous(stiffness, 0.0, guide.loss, per))
-    ends = {name: (text(min(c), "N s/m"), text(max(c), "N s/m")) for name, c in dampers.items()}
-    return [f"{name}: {low}" + (f" to {high}" if high != low else "") for name, (low, high) in ends.items()]
+    return dampers
 
 
 def _computed(robot: Robot, simulation: Simulation) -> float:
-    lossless = _lossless(robot)
-    found = the_modes(lock(lossless, simulation, home_pose(lossless), per_loss=0.0))
+    held = _with_drives_held(robot)
+    found = single_pose_modes(lock(held, simulation, RigidPoses(held, home_pose(held)), per_loss=0.0))
     if not found.frequency.size:
         raise ComputationError("no mode at home, at whose frequency loss factors could be made viscous")
     return float(found.frequency[0])
@@ -111,41 +136,22 @@ def _computed(robot: Robot, simulation: Simulation) -> float:
 _first = cast("Callable[[Robot, Simulation], float]", lru_cache(maxsize=64)(_computed))
 
 
-def _lossless(robot: Robot) -> Robot:
-    none = {"loss": None, "stiffness_loss": None}
-    legs = tuple(
-        leg.replace(
-            base_joint=leg.base_joint.replace(**none),
-            platform_joint=leg.platform_joint.replace(**none),
-            springs=tuple(spring.replace(loss=None) for spring in leg.springs),
-            drive=_locked(leg.drive),
-            guide=leg.guide and leg.guide.replace(loss=None),
-        )
-        for leg in robot.legs
-    )
-    mounts = {name: getattr(robot, name) for name in ("base_mount", "platform_mount")}
-    still = {name: mount and mount.replace(loss=None) for name, mount in mounts.items()}
-    return robot.replace(legs=legs, base_motion=None, **still)
+def _with_drives_held(robot: Robot) -> Robot:
+    """The robot whose drives hold their places; itself, where they do."""
+    drives = [_held(leg.drive) for leg in robot.legs]
+    if drives == [leg.drive for leg in robot.legs]:
+        return robot
+    return robot.replace(legs=tuple(x.replace(drive=drive) for x, drive in zip(robot.legs, drives, strict=True)))
 
 
-def _locked(drive: Drive) -> Drive:
-    """A drive that holds its place, without loss factors."""
+def _held(drive: Drive) -> Drive:
+    """A drive that holds its place."""
     if isinstance(drive, ForceDrive):
         return PrescribedDrive()
-    if isinstance(drive, HydraulicDrive):
-        return drive.replace(leakage=0.0)
     if not isinstance(drive, ScrewDrive):
         return drive
     drive = drive.replace(motor=Motor(), encoder=drive.encoder if drive.holds else Encoder())
-    nut, bearing = drive.nut.replace(loss=None), drive.bearing.replace(loss=None)
-    held = {
-        "command": "position",
-        "law": "rigid",
-        "value": None,
-        "file": None,
-        "time": None,
-        "torque": None,
-        "loop": None,
-    }
-    held = held if drive.command == "torque" else {}
-    return drive.replace(nut=nut, bearing=bearing, **held)
+    if drive.command != "torque":
+        return drive
+    none = dict.fromkeys(("value", "file", "time", "torque", "loop"))
+    return drive.replace(command="position", law="rigid", **none)

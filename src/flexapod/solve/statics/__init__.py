@@ -1,1 +1,1 @@
-"""What a robot is at rest: loads, equilibria, stiffness, forces in joints, one batch of poses at once."""
+"""Statics of a robot: loads, equilibria, stiffness, forces in joints, one batch of poses at once."""

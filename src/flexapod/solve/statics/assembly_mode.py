@@ -1,4 +1,4 @@
-"""Another assembly than the drives mean: beyond a singularity, or a platform joint half a turn off."""
+"""Detection of another assembly than the drives mean: beyond a singularity, or a platform joint half a turn off."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import numpy as np
 from flexapod import kinematics
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import ComputationError
-from flexapod.kinematics.closures import turned_over
+from flexapod.kinematics.closures import false_roots
 from flexapod.kinematics.rotations import matrix
 from flexapod.kinematics.screws import screws
 from flexapod.model import Robot
 from flexapod.solve.batch import RestStates, matrices_at_rest
-from flexapod.solve.frames import on_plates
+from flexapod.solve.frames import plate_frames
 from flexapod.solve.rigid_motion import leg_coordinates
 from flexapod.solve.statics.elimination import leg_bases
 from flexapod.solve.system import System
@@ -26,8 +26,8 @@ def platform_poses(robot: Robot, pose: Array) -> kinematics.Poses:
     return kinematics.Poses.at_rest(pose[:, :3] - R @ robot.com, R)
 
 
-def fallen(system: System, robot: Robot, start: RestStates, states: RestStates) -> Mask:
-    """Which of P equilibria are another assembly than their undeformed states ``start``, (P,)."""
+def assembly_changes(system: System, robot: Robot, start: RestStates, states: RestStates) -> Mask:
+    """Mask of the P equilibria that are another assembly than their undeformed states ``start``, (P,)."""
     if not len(start):
         return np.zeros(0, dtype=bool)
     if kinematics.rigid_limbs(robot).plain and system.legs == system.hub_free.size == 6:
@@ -35,10 +35,10 @@ def fallen(system: System, robot: Robot, start: RestStates, states: RestStates) 
         before, after = np.split(kinematics.determinants(robot, both), 2)
     else:
         before, after = (_determinant(system, robot, x) for x in (start, states))
-    return (np.sign(before) != np.sign(after)) | flipped(system, robot, states.q, states.pose).any(axis=1)
+    return (np.sign(before) != np.sign(after)) | false_root_legs(system, robot, states.q, states.pose).any(axis=1)
 
 
-def flipped(system: System, robot: Robot, q: Array, pose: Array) -> Mask:
+def false_root_legs(system: System, robot: Robot, q: Array, pose: Array) -> Mask:
     """Legs (P, legs) at the false root of (T13.12), in states of coordinates (P, legs, n) and payload poses (P, 7)."""
     legs = kinematics.robot_limbs(robot)
     if system.rows < 6:
@@ -46,11 +46,11 @@ def flipped(system: System, robot: Robot, q: Array, pose: Array) -> Mask:
     there, at = leg_coordinates(system.kernel.shapes)
     of_leg = np.tile(legs.home, (len(q), 1, 1))
     of_leg[..., there] = q[..., at]
-    return turned_over(legs, screws(legs, of_leg), on_plates(system, robot, q, pose)[-1][2])
+    return false_roots(legs, screws(legs, of_leg), plate_frames(system, robot, q, pose)[-1][2])
 
 
 def _determinant(system: System, robot: Robot, x: RestStates) -> Array:
-    """Of the rates of what the rigid robot holds by steps of the payload, (P,); 1 where it is held in excess."""
+    """Determinant of what the rigid robot holds by steps of the payload, (P,); 1 if overconstrained."""
     there, at = leg_coordinates(system.kernel.shapes)
     holds = np.zeros_like(system.held)
     holds[:, at] = kinematics.rigid_limbs(robot).given[:, there]
@@ -62,9 +62,9 @@ def _determinant(system: System, robot: Robot, x: RestStates) -> Array:
     return np.linalg.det(found) if found.shape[1] == found.shape[2] else np.ones(len(x))
 
 
-def refuse_flipped(system: System, robot: Robot, x: RestStates) -> None:
-    """Raise ComputationError where a leg of one state is `flipped`."""
-    turned = np.argwhere(flipped(system, robot, x.q, x.pose))
+def refuse_false_root(system: System, robot: Robot, x: RestStates) -> None:
+    """Raise ComputationError where a leg of one state is `false_root_legs`."""
+    turned = np.argwhere(false_root_legs(system, robot, x.q, x.pose))
     if len(turned):
         raise ComputationError(
             f"leg {turned[0, 1] + 1} meets the platform half a turn off: legs and platform do not fit so",
@@ -72,8 +72,8 @@ def refuse_flipped(system: System, robot: Robot, x: RestStates) -> None:
         )
 
 
-def refuse_fallen(system: System, robot: Robot, start: RestStates, states: RestStates) -> None:
-    """Raise ComputationError where the equilibrium of one state is `fallen`."""
-    refuse_flipped(system, robot, states)
-    if fallen(system, robot, start, states).any():
+def refuse_assembly_change(system: System, robot: Robot, start: RestStates, states: RestStates) -> None:
+    """Raise ComputationError where the equilibrium of one state is `assembly_changes`."""
+    refuse_false_root(system, robot, states)
+    if assembly_changes(system, robot, start, states).any():
         raise ComputationError(FALLS_THROUGH, next_step="Choose a pose farther from the singularity.")

@@ -9,8 +9,8 @@ import numpy as np
 from flexapod.common.arrays import Array
 from flexapod.solve.batch import RestMatrices
 from flexapod.solve.saddle_point import solve_each
-from flexapod.solve.statics.elimination import LegBases, leg_bases, of_border
-from flexapod.solve.statics.reduction import reduced
+from flexapod.solve.statics.elimination import LegBases, border_columns, leg_bases
+from flexapod.solve.statics.reduction import reduce_stiffness
 from flexapod.solve.system import System
 
 
@@ -29,7 +29,7 @@ class ArrowStep:
 
 @dataclass(frozen=True, kw_only=True)
 class _Group:
-    """Legs that are eliminated alike: z = free - by_payload y + by_force f, columns (P, g, m, 1, f or h).
+    """Legs eliminated in the same way: z = free - by_payload y + by_force f, columns (P, g, m, 1, f or h).
 
     ``given`` (P, g, n): motion that closes the gaps; ``load`` (P, g, n): residual with it; ``payload`` (P, g, f): what
     it loads the payload with; ``E`` (P, g, f, m).
@@ -62,10 +62,10 @@ def arrow_solve(system: System, m: RestMatrices, r: Array, r_payload: Array, g: 
     Where legs that cannot give way hold the payload more often than it needs, forces are those of least norm.
     """
     bases = leg_bases(system, m)
-    A = reduced(system, bases, m)
+    A = reduce_stiffness(system, bases, m)
     groups = [_eliminated(system, b, A.B[k], A.C[k], m, r, g, gap) for k, b in enumerate(bases)]
-    r_border = of_border(system, r_payload)
-    y, forces = _border(groups, A.S, r_border, gap, open_forces=system.open)
+    r_border = border_columns(system, r_payload)
+    y, forces = _border(groups, A.S, r_border, gap, open_forces=system.has_self_stress)
     dq, dlam, balance, dy = np.zeros(r.shape), np.zeros(g.shape), np.zeros(r.shape), np.zeros((len(r), m.P.shape[-1]))
     dy[:, system.hub_free] = y[:, : system.hub_free.size]
     for group, f in zip(groups, forces, strict=True):
@@ -90,7 +90,7 @@ def _eliminated(
     load, Nt = r[:, b.legs] + (m.K[:, b.legs] @ given[..., None])[..., 0], b.N.swapaxes(-1, -2)
     payload = b.Y.swapaxes(-1, -2) @ load[..., None]
     if m.X is not None:
-        payload = payload + of_border(system, m.X[:, b.legs]).swapaxes(-1, -2) @ given[..., None]
+        payload = payload + border_columns(system, m.X[:, b.legs]).swapaxes(-1, -2) @ given[..., None]
     f = C.shape[-1]
     z = solve_each(B, np.concatenate([-Nt @ load[..., None], C, Nt[..., b.border]], axis=-1))
     return _Group(

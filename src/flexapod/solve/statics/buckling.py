@@ -1,4 +1,4 @@
-"""The thrust at which a leg buckles between its joints, with all parts that it has, Eq. (T25.16)."""
+"""Thrust at which a leg buckles between its joints, with all its parts, Eq. (T25.16)."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def leg_loads(robot: Robot, length: Array, system: System | None = None) -> Arra
 
 
 def _loads(system: System, legs: Limbs, length: Array) -> Array:
-    """Of legs of some lengths (n,)."""
+    """Buckling loads of legs of some lengths (n,) [N]."""
     shapes, p = system.kernel.shapes, system.leg_p.copy()
     p[:, columns(leg_parameters(shapes), "gravity")] = 0.0
     q = np.zeros((system.legs, system.n))
@@ -56,7 +56,7 @@ def _loads(system: System, legs: Limbs, length: Array) -> Array:
     lam[:, :3] = axes
     pushed = K - _matrices(system, q, lam, p, legs)[0]
     locked = system.held.copy()
-    locked[:, [shapes.l_index, *shapes.shared]] = True
+    locked[:, [shapes.l_index, *shapes.shared_coordinates]] = True
     loads = np.full(system.legs, np.inf)
     for i, (own, less, rows) in enumerate(zip(K, pushed, J, strict=True)):
         rows = rows.copy()
@@ -68,7 +68,7 @@ def _loads(system: System, legs: Limbs, length: Array) -> Array:
 
 
 def _matrices(system: System, q: Array, lam: Array, p: Array, legs: Limbs) -> tuple[Array, Array]:
-    n, rows, posed = system.n, system.rows, system.kernel.shapes.posed
+    n, rows, posed = system.n, system.rows, system.kernel.shapes.reads_pose
     R = np.eye(3) if rows == 3 else legs.rotation
     pose = np.concatenate([np.zeros(3), quaternion(R)])
     outputs = [(n, n)] * 3 + [(rows, n)] + ([(rows, 6), (6, 6), (n, 6)] if posed else [])
@@ -85,7 +85,7 @@ def _kernel_of(rows: Array) -> Array:
 
 
 def _least(K: Array, less: Array) -> float:
-    """Smallest positive P of det(K - P less) = 0; inf where nothing gives way."""
+    """Smallest positive P of det(K - P less) = 0; inf where nothing is compliant."""
     scale = 1 / np.sqrt(np.maximum(np.diag(K), LOOSE * np.diag(K).max(initial=1e-300)))
     values, vectors = np.linalg.eigh(scale[:, None] * K * scale)
     held = values > LOOSE

@@ -1,8 +1,9 @@
-"""Each leg eliminated onto the payload, for many poses at once, Eqs. (T6.6)-(T6.9) and (T7.16)-(T7.17).
+"""Elimination of each leg onto the payload, for many poses at once, Eqs. (T6.6)-(T6.9) and (T7.16)-(T7.17).
 
-The readable twin of ``native/arrow.c`` with the pose as first axis. Every leg is pivoted by the coordinates that its
-closure determines; a pivot that is held stays as a row of the border. Where independent motions are wanted, shapes of
-the leg take the place of its held pivots (`closed`), the same ones at every pose (`substitutes`).
+The readable twin of ``native/arrow.c`` with the pose as first axis. Every leg is pivoted by the coordinates
+that its closure determines; a pivot that is held stays as a row of the border. Where independent motions are
+wanted, shapes of the leg take the place of its held pivots (`keep_held_pivots`), the same ones at every pose
+(`System.substitutes`).
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ class LegBases:
     most: Array
 
     def __getitem__(self, chosen: Index) -> LegBases:
-        """Those at some of the poses."""
+        """Select some of the poses."""
         return replace(self, **{name: getattr(self, name)[chosen] for name in ("inverse", "N", "Y", "most")})
 
 
@@ -48,8 +49,8 @@ def leg_bases(system: System, m: RestMatrices) -> list[LegBases]:
 
 
 def _bases(system: System, m: RestMatrices, legs: Index, held: Mask, rest: Index) -> LegBases:
-    pivot, n, shared = np.array(system.kernel.shapes.pivots, dtype=np.intp), system.n, system.shared
-    J, P = m.J[:, legs], of_border(system, m.P[:, legs])
+    pivot, n, shared = np.array(system.kernel.shapes.pivots, dtype=np.intp), system.n, system.shared_coordinates
+    J, P = m.J[:, legs], border_columns(system, m.P[:, legs])
     P[..., system.hub_free.size :] = -J[..., shared]
     inverse = inverse_each(J[..., pivot])
     N, Y = np.zeros((*J.shape[:2], n, rest.size)), np.zeros((*J.shape[:2], n, P.shape[-1]))
@@ -61,15 +62,15 @@ def _bases(system: System, m: RestMatrices, legs: Index, held: Mask, rest: Index
     return LegBases(legs=legs, pivot=pivot, rest=each, border=border, inverse=inverse, N=N, Y=Y, most=most)
 
 
-def of_border(system: System, x: Array) -> Array:
+def border_columns(system: System, x: Array) -> Array:
     """Columns (..., 6) by the payload's steps as columns by the border's coordinates, (..., f)."""
     found, free = np.zeros((*x.shape[:-1], system.border.size)), system.hub_free
     found[..., : free.size] = x[..., free]
     return found
 
 
-def closed(system: System, bases: list[LegBases]) -> list[LegBases]:
-    """Bases whose legs keep their held pivots, as far as legs can give way; the others have their borders still.
+def keep_held_pivots(system: System, bases: list[LegBases]) -> list[LegBases]:
+    """Bases whose legs keep their held pivots where legs are compliant; the others have their borders still.
 
     ``system`` with `substitutes`.
     """

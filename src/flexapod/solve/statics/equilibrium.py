@@ -11,7 +11,7 @@ from flexapod.solve.saddle_point import cholesky_each, solve_each
 from flexapod.solve.statics.block_arrow import arrow_solve
 from flexapod.solve.statics.ideal_robot import with_substitutes
 from flexapod.solve.statics.minimum_energy_forces import least_energy
-from flexapod.solve.statics.reduction import Motions, independent, reduced
+from flexapod.solve.statics.reduction import Motions, independent_motions, reduce_stiffness
 from flexapod.solve.system import Index, State, System
 
 FOUND, SINGULAR, GIVES_WAY, NOT_SETTLED, UNSTABLE, TOO_FAR = range(6)
@@ -29,7 +29,7 @@ REASONS = (
 
 @dataclass(frozen=True, kw_only=True)
 class Equilibrium:
-    """Result of a search: the state, whether it is one, and in words why not."""
+    """Result of a search: the state, whether it is an equilibrium, and as text why not."""
 
     state: State
     found: bool
@@ -51,7 +51,7 @@ class Equilibria:
     most: Array
 
     def one(self, k: int) -> Equilibrium:
-        """One of them, with its reason in words."""
+        """Equilibrium of one pose, with its reason as text."""
         code = int(self.code[k])
         reason = f"no equilibrium: {REASONS[code].format(most=self.most[k])}" if code else ""
         return Equilibrium(state=self.states.state(k), found=code == FOUND, reason=reason)
@@ -62,7 +62,7 @@ def equilibrium(system: System, start: State, command: Array, force: Array, wren
 
     See `equilibria`.
     """
-    return equilibria(system, RestStates.of(start), command[None], force[None], wrench).one(0)
+    return equilibria(system, RestStates.from_state(start), command[None], force[None], wrench).one(0)
 
 
 def equilibria(system: System, start: RestStates, command: Array, force: Array, wrench: Array) -> Equilibria:
@@ -89,13 +89,13 @@ def equilibria(system: System, start: RestStates, command: Array, force: Array, 
     lost = np.flatnonzero(code)
     if lost.size:
         part, codes = _loaded_slowly(system, start[lost], acts[lost])
-        states, code[lost] = states.with_(lost, part), codes
+        states, code[lost] = states.replace_states(lost, part), codes
     found = np.flatnonzero(code == FOUND)
     m = matrices_at_rest(system, states[found], wrench)
-    if system.open and found.size:
-        states = states.with_(found, least_energy(system, states[found], m))
+    if system.has_self_stress and found.size:
+        states = states.replace_states(found, least_energy(system, states[found], m))
         m = matrices_at_rest(system, states[found], wrench)
-    motions, most = independent(system, m), np.full(len(start), np.nan)
+    motions, most = independent_motions(system, m), np.full(len(start), np.nan)
     most[found], near = motions.most, motions.most <= FARTHEST
     stable = _stable(system, m, motions)
     code[found[~stable]], code[found[~near]] = UNSTABLE, TOO_FAR
@@ -107,7 +107,7 @@ def equilibria(system: System, start: RestStates, command: Array, force: Array, 
 
 @dataclass(frozen=True, kw_only=True)
 class _Acts:
-    """What acts on P states, and the share that a load step leaves of gaps and gravity.
+    """Commands and loads on P states, and the share that a load step leaves of gaps and gravity.
 
     ``kept`` (P, legs, rows): gaps of the closures that are left.
     """
@@ -137,7 +137,7 @@ def _loaded_slowly(system: System, x: RestStates, acts: _Acts) -> tuple[RestStat
             kept=(1.0 - share) * gap,
         )
         states, codes = _newton(_scaled(system, share), x[on], part[on])
-        x, code[on] = x.with_(on, states), codes
+        x, code[on] = x.replace_states(on, states), codes
     return x, code
 
 
@@ -160,7 +160,7 @@ def _newton(system: System, x: RestStates, acts: _Acts) -> tuple[RestStates, np.
         away = ~singular & (largest > 0.5)  # half a radian or half a metre is not an elastic deformation
         code[on[singular]], code[on[away]] = SINGULAR, GIVES_WAY
         good = ~singular & ~away
-        x = new if every and good.all() else x.with_(on[good], new[np.flatnonzero(good)])
+        x = new if every and good.all() else x.replace_states(on[good], new[np.flatnonzero(good)])
         done = good & ((largest < 1e-13) | ((largest < 1e-10) & (largest >= best[on])))
         code[on[done]] = FOUND
         best[on] = largest
@@ -178,19 +178,19 @@ def _newton_step(system: System, x: RestStates, acts: _Acts) -> tuple[RestStates
     step = arrow_solve(system, matrices_at_rest(system, x, acts.wrench), r, r_payload, g - acts.kept, gap)
     largest = np.maximum(np.abs(step.dq).max(axis=(1, 2)), np.abs(step.dy).max(axis=1, initial=0.0))
     dy = step.dy if np.isfinite(largest).all() else np.nan_to_num(step.dy)  # no rotation by NaN
-    moved = x.moved(step.dq, dy)
+    moved = x.displace(step.dq, dy)
     return replace(moved, lam=x.lam + step.dlam, drive=x.drive + step.drive), largest
 
 
 def _stable(system: System, m: RestMatrices, motions: Motions) -> Mask:
-    """Whether the stiffness on the constraints is positive, (P,).
+    """Test whether the stiffness on the constraints is positive definite, (P,).
 
     By Sylvester's law of inertia it is where B of every leg and the payload's Schur complement are. Factors tell, not
     eigenvalues: their sign does not depend on how much stiffer another part is.
     """
     if motions.N is not None:
         return cholesky_each(motions.stiffness(system, m))[1]
-    A = reduced(system, motions.bases, m)
+    A = reduce_stiffness(system, motions.bases, m)
     rest, stable = A.S, np.ones(len(A.S), dtype=bool)
     for B, C in zip(A.B, A.C, strict=True):
         if B.shape[-1]:

@@ -1,6 +1,6 @@
-"""The robot of the rigid path: welds and springs of joints released, drives prescribed.
+"""Ideal robot of the rigid path: clamped and compliant joints released, drives prescribed; substitutes of pivots.
 
-What stands for held pivots, chosen once, at home, so that motions keep their meaning over poses, Eq. (T7.28).
+Substitutes of held pivots are chosen once, at home, so that motions keep their meaning over poses, Eq. (T7.28).
 """
 
 from __future__ import annotations
@@ -11,14 +11,14 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.common.arrays import Array, Mask
-from flexapod.common.ranking import EQUALS, alike, first_largest
+from flexapod.common.ranking import EQUALS, first_largest, is_largest
 from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN
-from flexapod.kinematics.robot import once
+from flexapod.kinematics.robot import cache_per_robot
 from flexapod.model import ForceDrive, Leg, PrescribedDrive, Robot, Simulation
 from flexapod.solve.batch import RestStates, matrices_at_rest
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.robot_system import robot_system
-from flexapod.solve.statics.elimination import LegBases, closed, leg_bases
+from flexapod.solve.statics.elimination import LegBases, keep_held_pivots, leg_bases
 from flexapod.solve.statics.minimum_energy_forces import open_forces
 from flexapod.solve.statics.reduction import border_rows, flat_columns
 from flexapod.solve.statics.rigid_forces import displacement_by_error, joint_forces
@@ -28,9 +28,9 @@ from flexapod.solve.system import Index, System
 STILL = {"base_mount": None, "platform_mount": None, "base_motion": None}
 
 
-@once
-def released(robot: Robot) -> Robot:
-    """The same robot as drawn, without elements of its own tables, with ideal joints: fixed ones universal, or balls.
+@cache_per_robot
+def idealize_robot(robot: Robot) -> Robot:
+    """Nominal robot, without elements of its own tables, with ideal joints: fixed ones universal, or balls.
 
     Its drives are prescribed.
     """
@@ -57,10 +57,10 @@ def _ideal(leg: Leg) -> Leg:
     )
 
 
-@once
+@cache_per_robot
 def rigid_system(robot: Robot) -> System:
     """Equations of the robot of the rigid path."""
-    return robot_system(released(robot), Simulation(fidelity="rigid"), 0.0)  # no spring is left
+    return robot_system(idealize_robot(robot), Simulation(fidelity="rigid"), 0.0)  # no spring is left
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,9 +95,7 @@ class RobotForces:
     open_forces: int = 0
 
 
-def rigid_forces(
-    robot: Robot, path: kinematics.Poses, wrench: Array, legs: kinematics.LegState | None = None
-) -> RobotForces:
+def rigid_forces(at: kinematics.RigidPoses, wrench: Array) -> RobotForces:
     """Forces of drives and joints of the robot of the rigid path.
 
     Six legs UPS by Newton and Euler (T2.26)-(T2.36), others by their equations of motion (T7.24). Drives with a
@@ -105,20 +103,18 @@ def rigid_forces(
 
     Parameters
     ----------
-    robot : Robot
-    path : Poses
+    at : RigidPoses
     wrench : ndarray, shape (T, 6) or (6,)
         At the tool, world axes.
-    legs : LegState, optional
-        Of the same poses, where they are known.
 
     Raises
     ------
     ComputationError
         A pose is singular.
     """
+    robot = at.robot
     if is_hexapod(robot):
-        found = kinematics.inverse_dynamics(robot, path, wrench, legs)
+        found = at.inverse_dynamics(wrench)
         return RobotForces(
             drive_force=found.actuator_force,
             joint_force=found.joint_force,
@@ -126,7 +122,7 @@ def rigid_forces(
             base_moment=found.base_moment,
         )
     system = rigid_system(robot)
-    states, rates = rigid_motion(system, released(robot), path)
+    states, rates = rigid_motion(system, _ideal_poses(at))
     pushed, loose = _constant(robot, system)
     # drives with a force of their own, where the others hold the robot without them
     if loose.any() and loose.sum() <= open_forces(system):
@@ -145,6 +141,11 @@ def rigid_forces(
     )
 
 
+def _ideal_poses(at: kinematics.RigidPoses) -> kinematics.RigidPoses:
+    """The robot of the rigid path at poses: its legs are those that rigid kinematics has anyway."""
+    return kinematics.RigidPoses(idealize_robot(at.robot), at.poses, at.legs)
+
+
 def _constant(robot: Robot, system: System) -> tuple[Array, Mask]:
     """Constant forces of drives (legs, n), and which coordinates nothing but these drives."""
     legs, force = kinematics.rigid_limbs(robot), np.zeros(system.held.shape)
@@ -158,14 +159,14 @@ def _constant(robot: Robot, system: System) -> tuple[Array, Mask]:
 
 
 def is_hexapod(robot: Robot) -> bool:
-    """Whether a robot has six driven legs UPS, ball joints being ideal or released."""
+    """Test whether a robot has six driven legs UPS, with ball joints ideal or released."""
     legs = kinematics.rigid_limbs(robot)
     driven = (legs.state[:, COORDINATES.index("l")] == DRIVEN).all()
     return legs.plain and len(legs) == 6 and bool(driven) and not legs.hub_held.any()
 
 
 def _of_drives(robot: Robot, held: Array) -> Array:
-    """Of all held coordinates (T, legs, n) those that drives hold, (T, legs)."""
+    """Forces of drives (T, legs), out of those of all held coordinates (T, legs, n)."""
     shapes, legs = rigid_system(robot).kernel.shapes, kinematics.rigid_limbs(robot)
     found = np.zeros(held.shape[:2])
     for k, name in enumerate(COORDINATES):
@@ -175,10 +176,10 @@ def _of_drives(robot: Robot, held: Array) -> Array:
     return found
 
 
-def rigid_errors(robot: Robot, path: kinematics.Poses) -> Array:
+def rigid_errors(at: kinematics.RigidPoses) -> Array:
     """Displacement of the payload for unit errors of each of `COORDINATES`, (T, legs, 8, 6); see T7.27."""
-    system = rigid_system(robot)
-    states = rigid_motion(system, released(robot), path)[0]
+    system = rigid_system(at.robot)
+    states = rigid_motion(system, _ideal_poses(at))[0]
     steps, shapes = displacement_by_error(system, states), system.kernel.shapes
     found = np.zeros((*steps.shape[:2], len(COORDINATES), 6))
     for k, name in enumerate(COORDINATES):
@@ -192,7 +193,7 @@ DEPENDENT = 1e-9  # share of a row that others leave of it: less is rounding
 
 
 def with_substitutes(system: System, home: RestStates) -> System:
-    """The same system with what stands for its held pivots, as its one state at home suggests it.
+    """System with substitutes of its held pivots, as its one state at home suggests them.
 
     First the shapes of each leg for its own pivots; for the rows of legs that cannot give way other shapes, then steps
     of the payload. Among equals the first: legs that are alike choose alike.
@@ -204,7 +205,7 @@ def with_substitutes(system: System, home: RestStates) -> System:
         if by is not None:
             found[b.legs[:, None], b.border] = b.legs[:, None] * n + by
     chosen = replace(system, substitutes=found)
-    left = closed(chosen, bases)
+    left = keep_held_pivots(chosen, bases)
     legs, pivots = (np.concatenate(x) for x in zip(*map(_rows, left), strict=True))
     if legs.size:
         columns = flat_columns(system, left)
@@ -218,14 +219,14 @@ def _rows(b: LegBases) -> tuple[Index, Index]:
 
 
 def _shapes(b: LegBases) -> Index | None:
-    """Coordinates (g, h) of legs that stand for their held pivots; None where a leg has none that moves one enough."""
+    """Coordinates (g, h) that substitute held pivots of legs; None where a leg has none that moves one enough."""
     left, Y = b.N[0][:, b.border], b.Y[0][:, b.border]
     if left.shape[-1] < left.shape[-2]:
         return None
     size = np.maximum(np.abs(left).max(axis=-1, initial=0.0), np.abs(Y).max(axis=-1, initial=0.0))
     chosen, each = np.zeros(left.shape[:-1], dtype=np.intp), np.arange(len(left))
     for k in range(left.shape[-2]):
-        column = alike(np.abs(left[:, k]), axis=-1, same=EQUALS).argmax(axis=-1)
+        column = is_largest(np.abs(left[:, k]), axis=-1, same=EQUALS).argmax(axis=-1)
         pivot = left[each, k, column]
         if not (np.abs(pivot) > YIELDS * size[:, k]).all():
             return None

@@ -16,25 +16,25 @@ from flexapod.model import Load, Robot, Simulation
 from flexapod.solve.batch import RestMatrices, RestStates, matrices_at_rest
 from flexapod.solve.friction import with_friction
 from flexapod.solve.rigid_motion import rigid_rest
-from flexapod.solve.robot_system import at_rotors, robot_system, smooth
-from flexapod.solve.statics.assembly_mode import refuse_fallen
+from flexapod.solve.robot_system import robot_system, rotor_loop_system, without_ripple
+from flexapod.solve.statics.assembly_mode import refuse_assembly_change
 from flexapod.solve.statics.equilibrium import FOUND, TOO_FAR, Equilibria, Equilibrium, equilibria
 from flexapod.solve.statics.ideal_robot import with_substitutes
-from flexapod.solve.statics.reduction import Motions, independent
+from flexapod.solve.statics.reduction import Motions, independent_motions
 from flexapod.solve.statics.static_loads import RestLoad, rest_commands, rest_load
 from flexapod.solve.system import Index, System
 
 
 @dataclass(frozen=True, kw_only=True)
 class LockedPoses:
-    """A robot with drives locked at the ``command`` (P, legs, ports) of a rigid ``path`` of P poses.
+    """A robot with drives locked at the ``command`` (P, legs, ports) of P ``rigid`` poses.
 
     Its undeformed states ``start``, what ``acts`` on it, equilibria, and matrices ``m`` and independent ``motions`` of
     those found, ``at``; ``per_loss`` [s]: as of `robot_system`.
     """
 
     robot: Robot
-    path: kinematics.Poses
+    rigid: kinematics.RigidPoses
     system: System
     simulation: Simulation
     per_loss: float
@@ -46,25 +46,32 @@ class LockedPoses:
     m: RestMatrices
     motions: Motions
 
+    @property
+    def path(self) -> kinematics.Poses:
+        """Poses of the platform frame, before it sags."""
+        return self.rigid.poses
+
     @cached_property
-    def shaken(self) -> "LockedPoses":
-        """The same about which to vibrate: a rotor whose loop sums its error is at rest, and has its spring beside."""
+    def vibration_model(self) -> "LockedPoses":
+        """Poses for vibration about them: a rotor at rest by integral action vibrates on its loop's spring."""
         if self.system.kernel.shapes.has("j"):
-            system = at_rotors(smooth(self.robot), self.simulation.replace(play="static"), self.per_loss)
+            system = rotor_loop_system(
+                without_ripple(self.robot), self.simulation.replace(play="static"), self.per_loss
+            )
             system = replace(system, substitutes=self.system.substitutes)
             at, stuck = self.equilibria.states[self.at], self.simulation.friction == "stuck"
             m = with_friction(system, at, matrices_at_rest(system, at, self.acts.wrench), stuck=stuck)
-            return replace(self, system=system, m=m, motions=independent(system, m))
+            return replace(self, system=system, m=m, motions=independent_motions(system, m))
         if not self.system.kernel.shapes.has("w"):
             return self
         held, shapes = self.system.held.copy(), self.system.kernel.shapes
         rests = [leg.screw is not None and leg.screw.rests and not leg.screw.holds for leg in self.robot.legs]
         held[rests, shapes.index("r")] = False
         system = replace(self.system, held=held)
-        return replace(self, system=system, motions=independent(system, self.m))
+        return replace(self, system=system, motions=independent_motions(system, self.m))
 
     def one(self, k: int) -> "LockedPoses":
-        """The k-th pose of those whose equilibrium was found, by itself."""
+        """Single pose, the k-th of those whose equilibrium was found."""
         at, found = self.at[k : k + 1], self.equilibria
         here = np.array([k])
         alone = Equilibria(
@@ -76,7 +83,7 @@ class LockedPoses:
         )
         return replace(
             self,
-            path=self.path.part(slice(at[0], at[0] + 1)),
+            rigid=kinematics.RigidPoses(self.robot, self.path.part(slice(at[0], at[0] + 1))),
             start=self.start[at],
             command=self.command[at],
             acts=replace(self.acts, force=self.acts.force[at]),
@@ -120,7 +127,7 @@ def refuse_taut(robot: Robot, simulation: Simulation) -> None:
 
 
 def _held_by_others(robot: Robot, pure: Mask) -> bool:
-    """Whether the drives that hold a position leave the platform no motion at home."""
+    """Test whether the drives that hold a position leave the platform no motion at home."""
     legs = kinematics.rigid_limbs(robot)
     loose = pure[:, None] & (legs.state == DRIVEN)
     others = replace(legs, state=np.where(loose, FREE, legs.state).astype(legs.state.dtype))
@@ -130,7 +137,7 @@ def _held_by_others(robot: Robot, pure: Mask) -> bool:
 def lock(
     robot: Robot,
     simulation: Simulation,
-    path: kinematics.Poses,
+    at: kinematics.RigidPoses,
     load: Load | None = None,
     time: float = 0.0,
     *,
@@ -149,13 +156,13 @@ def lock(
     refuse_pure_force(robot, "a static equilibrium")
     refuse_taut(robot, simulation)
     robot, system = _at_rest(robot, simulation, per_loss)
-    start, acts = rigid_rest(system, robot, path), rest_load(system, robot, path, load, time)
+    start, acts = rigid_rest(system, at), rest_load(system, at, load, time)
     command = rest_commands(system, robot, start.q, time)
     found = equilibria(system, start, command, acts.force, acts.wrench)
-    at = np.flatnonzero(found.code == FOUND)
+    there = np.flatnonzero(found.code == FOUND)
     return LockedPoses(
         robot=robot,
-        path=path,
+        rigid=at,
         system=system,
         simulation=simulation,
         per_loss=per_loss,
@@ -163,28 +170,29 @@ def lock(
         command=command,
         acts=acts,
         equilibria=found,
-        at=at,
-        m=with_friction(system, found.states[at], found.m, stuck=simulation.friction == "stuck"),
+        at=there,
+        m=with_friction(system, found.states[there], found.m, stuck=simulation.friction == "stuck"),
         motions=found.motions,
     )
 
 
 def _model(robot: Robot, simulation: Simulation, per_loss: float) -> tuple[Robot, System]:
-    """The robot without a motion of its base, and its equations at rest with what stands for held pivots."""
+    """Robot without a motion of its base, and its equations at rest with substitutes of held pivots."""
     robot = robot if robot.base_motion is None else robot.replace(base_motion=None)  # poses are those of a base at rest
-    system = robot_system(smooth(robot), simulation.replace(play="static"), per_loss, at_rest=True)
-    return robot, with_substitutes(system, rigid_rest(system, robot, kinematics.home_pose(robot)))
+    system = robot_system(without_ripple(robot), simulation.replace(play="static"), per_loss, at_rest=True)
+    home = kinematics.RigidPoses(robot, kinematics.home_pose(robot))
+    return robot, with_substitutes(system, rigid_rest(system, home))
 
 
 _at_rest = cast("Callable[[Robot, Simulation, float], tuple[Robot, System]]", lru_cache(maxsize=64)(_model))
 
 
-def the_equilibrium(locked: LockedPoses) -> Equilibrium:
-    """The equilibrium of a single pose; ComputationError if there is none."""
+def single_equilibrium(locked: LockedPoses) -> Equilibrium:
+    """Equilibrium of a single pose; ComputationError if there is none."""
     found = locked.equilibria.one(0)
     if not found.found:
         far = locked.equilibria.code[0] == TOO_FAR
         singular = "Check the pose for a singularity and the load of the legs."
         raise ComputationError(found.reason, next_step="Give the robot a home nearer to the pose." if far else singular)
-    refuse_fallen(locked.system, locked.robot, locked.start, locked.equilibria.states)
+    refuse_assembly_change(locked.system, locked.robot, locked.start, locked.equilibria.states)
     return found

@@ -1,4 +1,4 @@
-"""What friction at its limits does to a robot at rest: lost motion, Eqs. (T19.13)-(T19.15)."""
+"""Lost motion of a robot at rest by friction at its limits, Eqs. (T19.13)-(T19.15)."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 
 from flexapod.common.arrays import Array
-from flexapod.kinematics.robot import once
+from flexapod.kinematics.robot import cache_per_robot
 from flexapod.mechanics.elements.registry import kinds_of, slots_of
-from flexapod.mechanics.elements.springs import before_piston, twist_share
+from flexapod.mechanics.elements.springs import springs_before_piston, twist_share
 from flexapod.model import ForceDrive, Leg, Robot
 from flexapod.solve.batch import matrices_at_rest
-from flexapod.solve.friction import numbers, sliding
+from flexapod.solve.friction import bristle_parameters, sliding_jacobian
 from flexapod.solve.statics.locked_robot import LockedPoses
 from flexapod.solve.statics.stiffness import displacement, tool_motion
 
@@ -24,13 +24,17 @@ def reversal(locked: LockedPoses) -> dict[str, Array]:
     """
     system, at = locked.system, locked.equilibria.states[locked.at]
     shapes, legs, found = system.kernel.shapes, system.legs, {}
-    if not shapes.sliding or any(basis.border.size for basis in locked.motions.bases):
+    if not shapes.friction_parameters or any(basis.border.size for basis in locked.motions.bases):
         return found
     if locked.simulation.friction == "stuck":
         locked = replace(locked, m=matrices_at_rest(system, at, locked.acts.wrench))
-    tool, rates, (p, force) = tool_motion(locked.robot, at.pose), sliding(system, at.q), numbers(system, at.lam)
+    tool, rates, (p, force) = (
+        tool_motion(locked.robot, at.pose),
+        sliding_jacobian(system, at.q),
+        bristle_parameters(system, at.lam),
+    )
     limit, first = force * (1 + p[..., 3]), 0  # (T19.13)
-    for slot, count in shapes.rubbing:
+    for slot, count in shapes.friction_elements:
         here = slice(first, first + count)
         loads = np.zeros((*at.q.shape, legs, count))
         for i in range(legs):
@@ -44,21 +48,21 @@ def reversal(locked: LockedPoses) -> dict[str, Array]:
     return found
 
 
-@once
+@cache_per_robot
 def places_with_friction(robot: Robot) -> tuple[str, ...]:
-    """Where something rubs in a robot, in the order of `reversal`."""
-    kinds = (kind for kind in kinds_of(robot.legs) if any(map(kind.rubs, robot.legs)))
+    """Names of the places with friction in a robot, in the order of `reversal`."""
+    kinds = (kind for kind in kinds_of(robot.legs) if any(map(kind.has_friction, robot.legs)))
     return tuple(slot.rubs_at for kind in kinds for slot in slots_of(kind, robot.legs))
 
 
 def before_friction(leg: Leg, length: Array) -> dict[str, Array]:
-    """Compliance [m/N] by which the friction of a leg's drive lets each part before it give, Eq. (T19.15).
+    """Compliance [m/N] by which the friction of a leg's drive makes each part before it yield, Eq. (T19.15).
 
     "drive": the loop, servo or feedback. None where the stroke is held.
     """
     if leg.drive.friction is None or (leg.drive.holds and leg.holds_stroke):
         return {}
-    found = {spring.name: spring.at_length(length) for spring in before_piston(leg)}
+    found = {spring.name: spring.at_length(length) for spring in springs_before_piston(leg)}
     loop = found.pop("drive", None)
     if isinstance(leg.drive, ForceDrive) and leg.drive.feedback is not None and leg.drive.feedback.stiffness:
         loop = np.full_like(length, 1 / leg.drive.feedback.stiffness)

@@ -17,12 +17,12 @@ SAME = 1e-6  # sine of an angle below which two balances count as one
 
 
 def open_forces(system: System) -> int:
-    """How many closure forces the balance of all free coordinates leaves open in a robot that cannot give way."""
+    """Number of closure forces undetermined by the balance of free coordinates in a robot without compliance."""
     return max(system.legs * system.rows - _balances(system), 0)
 
 
 def _balances(system: System) -> int:
-    return int((~system.held).sum()) - (system.legs - 1) * system.shared.size + system.hub_free.size
+    return int((~system.held).sum()) - (system.legs - 1) * system.shared_coordinates.size + system.hub_free.size
 
 
 def closure_forces(system: System, x: RestStates, m: RestMatrices, r: Array, r_payload: Array) -> Array:
@@ -69,11 +69,11 @@ def _rows(system: System, m: RestMatrices) -> Array:
     T, legs, rows, _ = m.J.shape
     A, at = np.zeros((T, _balances(system), legs, rows)), 0
     for i, held in enumerate(system.held):
-        free = np.setdiff1d(np.flatnonzero(~held), system.shared)
+        free = np.setdiff1d(np.flatnonzero(~held), system.shared_coordinates)
         A[:, at : at + free.size, i] = m.J[:, i][..., free].swapaxes(-1, -2)
         at += free.size
-    A[:, at : at + system.shared.size] = np.moveaxis(m.J[..., system.shared], -1, 1)
-    at += system.shared.size
+    A[:, at : at + system.shared_coordinates.size] = np.moveaxis(m.J[..., system.shared_coordinates], -1, 1)
+    at += system.shared_coordinates.size
     A[:, at:] = np.moveaxis(m.P[..., system.hub_free], -1, 1)
     return A.reshape(T, -1, legs * rows)
 
@@ -90,7 +90,7 @@ def _inverse_root(system: System, x: RestStates, m: RestMatrices) -> Array:
 
 
 def _compliance(system: System, x: RestStates, m: RestMatrices) -> Array:
-    """How far the legs' tips give way to closure forces, stroke and joints held, (T, legs, rows, rows), Eq. (T7.25)."""
+    """Compliance of the legs' tips to closure forces, stroke and joints held, (T, legs, rows, rows), Eq. (T7.25)."""
     layout = leg_parameters(system.kernel.shapes)
     EA, EI, Lp, mouth = (system.leg_p[:, columns(layout, name)][..., 0] for name in ("EA", "EI", "Lp", "mouth"))
     GJ = system.leg_p[:, columns(layout, "GJ")][..., 0] if system.kernel.shapes.has("t") else EI / 1.3

@@ -1,4 +1,4 @@
-"""How stiff every part along every leg is at given lengths, Eq. (T15.3)."""
+"""Stiffness of every part along every leg at given lengths, Eq. (T15.3)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.common.arrays import Array
-from flexapod.mechanics.elements.springs import Spring, before_piston, of_servo, springs_along
+from flexapod.mechanics.elements.springs import Spring, servo_spring, springs_along, springs_before_piston
 from flexapod.model import ForceDrive, Leg, Robot
 
 
@@ -31,16 +31,15 @@ def part_stiffness(robot: Robot, length: Array) -> dict[str, Array]:
 
 
 def _inside(leg: Leg, spring: Spring) -> bool:
-    """Whether a part gives way inside of what the leg's encoder measures, Eq. (T23.11)."""
+    """Test whether a part is compliant inside of what the leg's encoder measures, Eq. (T23.11)."""
     if leg.screw is None or leg.measured == "rotor" or spring.name == "drive":
         return False
     return leg.measured == "joint-to-joint" or (spring.at == "nut" and spring.name != "piston")
 
 
-def mount_stiffness(robot: Robot, path: kinematics.Poses) -> dict[str, Array]:
+def mount_stiffness(at: kinematics.RigidPoses) -> dict[str, Array]:
     """Stiffness of the mounts against a force along each leg alone at its joint, (T, legs) [N/m], Eq. (T24.11)."""
-    legs = kinematics.inverse_kinematics(robot, path)
-    axes, found = kinematics.leg_axes(robot, path, legs), {}
+    robot, path, legs, axes, found = at.robot, at.poses, at.legs, at.axes, {}
     tips = path.position[:, None] + np.einsum("tij,kj->tki", path.rotation, robot.platform_joints)
     if (mount := robot.platform_mount) is not None:
         inverse = path.rotation[:, None].swapaxes(-1, -2)
@@ -73,7 +72,7 @@ def _against(stiffness: Array, along: Array, arm: Array) -> Array:
 def _all(leg: Leg) -> list[Spring]:
     """The springs along a leg, its piston's stretch and its drive's position among them."""
     piston = Spring(name="piston", at="nut", compliance=(leg.piston.length / leg.piston.EA, 0.0, 0.0))
-    drive = [spring for spring in before_piston(leg) if spring.name == "drive" and leg.driven == "stroke"]
+    drive = [spring for spring in springs_before_piston(leg) if spring.name == "drive" and leg.driven == "stroke"]
     if isinstance(leg.drive, ForceDrive) and leg.driven == "stroke" and not leg.drive.pushes:
-        drive = [of_servo(leg.drive.feedback.stiffness)]  # type: ignore[union-attr]
+        drive = [servo_spring(leg.drive.feedback.stiffness)]  # type: ignore[union-attr]
     return [piston, *springs_along(leg), *drive]

@@ -9,7 +9,7 @@ import numpy as np
 from flexapod.common.arrays import Array
 from flexapod.solve.batch import RestMatrices
 from flexapod.solve.saddle_point import solve_each
-from flexapod.solve.statics.elimination import LegBases, closed, leg_bases, of_border
+from flexapod.solve.statics.elimination import LegBases, border_columns, keep_held_pivots, leg_bases
 from flexapod.solve.system import Index, System
 
 DEPENDENT = 1e-6  # by how much a row that others imply at home may miss what they imply elsewhere: elastic turns
@@ -19,9 +19,10 @@ DEPENDENT = 1e-6  # by how much a row that others imply at home may miss what th
 class Motions:
     """Independent motions of a robot at P poses, the same ones at all of them.
 
-    ``bases``: of the legs; ``N`` (P, r, d): the d motions by the r of `Reduced`, None where they are these; ``columns``
-    (d,): which coordinate each of them is, as `flat_columns` counts; ``most`` (P,): by how much what stands for a held
-    pivot moves while one of them moves by one, at most; infinite where other rows are held than at home.
+    ``bases``: of the legs; ``N`` (P, r, d): the d motions by the r of `ReducedStiffness`, None where they are these;
+    ``columns`` (d,): which coordinate each of them is, as `flat_columns` counts; ``most`` (P,): by how much
+    what stands for a held pivot moves while one of them moves by one, at most; infinite where other rows are held
+    than at home.
     """
 
     bases: list[LegBases]
@@ -30,22 +31,22 @@ class Motions:
     most: Array
 
     def __getitem__(self, chosen: Index) -> Motions:
-        """Those at some of the poses."""
+        """Select some of the poses."""
         N = None if self.N is None else self.N[chosen]
         return replace(self, bases=[b[chosen] for b in self.bases], N=N, most=self.most[chosen])
 
     def stiffness(self, system: System, m: RestMatrices) -> Array:
         """The whole stiffness on them, (P, d, d), Eq. (T7.17)."""
-        K = reduced(system, self.bases, m).dense()
+        K = reduce_stiffness(system, self.bases, m).dense()
         return K if self.N is None else self.N.swapaxes(1, 2) @ K @ self.N
 
     def flat(self, system: System, vectors: Array) -> Array:
         """Flat coordinates (P, size, any) of motions (P, d, any)."""
-        return expanded(system, self.bases, vectors if self.N is None else self.N @ vectors)
+        return expand_motions(system, self.bases, vectors if self.N is None else self.N @ vectors)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Reduced:
+class ReducedStiffness:
     """The stiffness K of the whole robot on admissible motions (z of each leg, y of the payload), Eq. (T7.17).
 
     ``B``, ``C``: N^T K N (P, g, m, m) and N^T (K Y + X) (P, g, m, f) of each group; ``S`` (P, f, f): of the payload
@@ -71,8 +72,8 @@ class Reduced:
         return 0.5 * (full + full.swapaxes(1, 2))
 
 
-def reduced(system: System, bases: list[LegBases], m: RestMatrices) -> Reduced:
-    """Stiffness on admissible motions; ``bases`` from `leg_bases` or `closed`."""
+def reduce_stiffness(system: System, bases: list[LegBases], m: RestMatrices) -> ReducedStiffness:
+    """Stiffness on admissible motions; ``bases`` from `leg_bases` or `keep_held_pivots`."""
     free = system.border
     B, C, S = [], [], m.payload_K[:, free[:, None], free]
     for b in bases:
@@ -80,7 +81,7 @@ def reduced(system: System, bases: list[LegBases], m: RestMatrices) -> Reduced:
         B.append(b_part)
         C.append(c_part)
         S = S + s_part.sum(axis=1)
-    return Reduced(B=B, C=C, S=S)
+    return ReducedStiffness(B=B, C=C, S=S)
 
 
 def reduced_legs(system: System, b: LegBases, m: RestMatrices) -> tuple[Array, Array, Array]:
@@ -89,16 +90,16 @@ def reduced_legs(system: System, b: LegBases, m: RestMatrices) -> tuple[Array, A
     KY = K @ b.Y
     if m.X is None:
         return Nt @ (K @ b.N), Nt @ KY, Yt @ KY
-    X = of_border(system, m.X[:, b.legs])
+    X = border_columns(system, m.X[:, b.legs])
     return Nt @ (K @ b.N), Nt @ (KY + X), Yt @ (KY + X) + X.swapaxes(-1, -2) @ b.Y
 
 
 def hub_motion(system: System, flat: Array) -> Array:
     """Rows of the payload's steps and of shared coordinates (..., 6 + shared, m) of flat coordinates (..., size, m)."""
-    return np.concatenate([flat[..., system.legs * system.n :, :], flat[..., system.shared, :]], axis=-2)
+    return np.concatenate([flat[..., system.legs * system.n :, :], flat[..., system.shared_coordinates, :]], axis=-2)
 
 
-def expanded(system: System, bases: list[LegBases], vectors: Array) -> Array:
+def expand_motions(system: System, bases: list[LegBases], vectors: Array) -> Array:
     """Flat coordinates (P, size, m) of admissible motions (P, r, m)."""
     P, _, count = vectors.shape
     flat = np.zeros((P, system.size, count))
@@ -113,9 +114,9 @@ def expanded(system: System, bases: list[LegBases], vectors: Array) -> Array:
     return flat
 
 
-def independent(system: System, m: RestMatrices) -> Motions:
+def independent_motions(system: System, m: RestMatrices) -> Motions:
     """Independent motions of a whole robot with `substitutes`, Eqs. (T7.16), (T7.28)."""
-    bases = closed(system, leg_bases(system, m))
+    bases = keep_held_pivots(system, leg_bases(system, m))
     most = np.max([b.most for b in bases], axis=0)
     G, of = border_rows(bases), system.substitutes
     by = np.concatenate([of[b.legs[:, None], b.border].ravel() for b in bases])
@@ -137,7 +138,7 @@ def _not_implied(rows: Array, most: Array) -> Array:
 
 
 def flat_columns(system: System, bases: list[LegBases]) -> Index:
-    """Which coordinate each of (z, y) is, (r,): of the legs as in flat coordinates, then as `System.border` counts."""
+    """Coordinate of each of (z, y), (r,): of the legs as in flat coordinates, then as in `System.border`."""
     of_legs = [(b.legs[:, None] * system.n + b.rest).ravel() for b in bases]
     return np.concatenate([*of_legs, system.legs * system.n + system.border])
 

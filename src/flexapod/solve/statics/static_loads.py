@@ -1,6 +1,6 @@
-"""What acts on a robot at rest: forces of its drives and the wrench at the tool, Eq. (T7.20).
+"""Loads on a robot at rest: forces of its drives, where they act, and the wrench at the tool, Eq. (T7.20).
 
-Where the drives of a robot act, and the forces that they are given, Eqs. (T15.13), (T23.13), (T23.55).
+Forces that drives are given follow Eqs. (T15.13), (T23.13), (T23.55).
 """
 
 from __future__ import annotations
@@ -46,19 +46,19 @@ def force_ports(system: System, robot: Robot) -> Index:
     return found
 
 
-def feed_forward(robot: Robot, t: Array, path: kinematics.Poses, wrench: Array) -> Array:
+def feed_forward(at: kinematics.RigidPoses, t: Array, wrench: Array) -> Array:
     """Feed-forward forces of drives on the rigid path at instants (T,), (T, legs) [N]; zero for those that have none.
 
     A torque of a screw is what the rigid robot and the rotor need, Eq. (T15.13), or the motor's by its law,
     Eq. (T23.13).
     """
-    drives = [leg.drive for leg in robot.legs]
+    drives = [leg.drive for leg in at.robot.legs]
     force = np.zeros((len(t), len(drives)))
     rigid_force = force
     replay = [is_turned(d) and getattr(d, "law", "") == "rigid" for d in drives]
     if any((isinstance(d, ForceDrive) and d.law == "rigid") for d in drives) or any(replay):
-        rigid_force = rigid_forces(robot, path, wrench).drive_force
-    change = kinematics.inverse_kinematics(robot, path).accel if any(replay) else force
+        rigid_force = rigid_forces(at, wrench).drive_force
+    change = at.legs.accel if any(replay) else force
     for i, drive in enumerate(drives):
         if isinstance(drive, ScrewDrive) and is_turned(drive):
             force[:, i] = rigid_force[:, i] + drive.inertia / drive.per_turn**2 * change[:, i]
@@ -79,7 +79,7 @@ def feed_forward(robot: Robot, t: Array, path: kinematics.Poses, wrench: Array) 
 
 
 def is_turned(drive: Drive) -> bool:
-    """Whether a drive is a torque on a screw."""
+    """Test whether a drive is a torque on a screw."""
     return isinstance(drive, ScrewDrive) and drive.command == "torque"
 
 
@@ -88,7 +88,7 @@ BEFORE = -1e-12  # just before an instant [s]: a load that steps there has not c
 
 @dataclass(frozen=True, kw_only=True)
 class RestLoad:
-    """Of P poses: ``force`` (P, legs, ports) of force drives without their feedback; ``wrench`` (6,), tool, world."""
+    """Load at P poses: ``force`` (P, legs, ports) of force drives without feedback; ``wrench`` (6,), tool, world."""
 
     force: Array
     wrench: Array
@@ -117,7 +117,7 @@ def rest_commands(system: System, robot: Robot, q: Array, time: float = 0.0) -> 
     return command
 
 
-def at_drives(system: System, robot: Robot, values: Array) -> Array:
+def drive_values(system: System, robot: Robot, values: Array) -> Array:
     """Values (..., legs) of the driven ports out of those of all, (..., legs, ports); 0 of a passive leg."""
     found = np.zeros(values.shape[:-1])
     state = kinematics.robot_limbs(robot).state
@@ -128,15 +128,13 @@ def at_drives(system: System, robot: Robot, values: Array) -> Array:
 
 
 def _ports(system: System) -> Iterator[tuple[int, int]]:
-    """Which of `kinematics.limbs.COORDINATES` are ports, and which ones."""
+    """Pairs of index and port of those `leg_geometry.COORDINATES` that are ports."""
     for k, at in zip(*leg_coordinates(system.kernel.shapes), strict=True):
         yield from ((k, int(port)) for port in np.flatnonzero(system.ports == at))
 
 
-def rest_load(
-    system: System, robot: Robot, path: kinematics.Poses, load: Load | None = None, time: float = 0.0
-) -> RestLoad:
-    """What acts on a robot that rests at poses just before an instant.
+def rest_load(system: System, at: kinematics.RigidPoses, load: Load | None = None, time: float = 0.0) -> RestLoad:
+    """Loads on a robot that rests at poses just before an instant.
 
     Every static quantity takes it from here. A force drive of law "rigid" pushes with what the rigid robot needs at the
     pose, at rest, under gravity and wrench (T7.20); one with a table with its value at the instant, whatever the pose;
@@ -146,8 +144,7 @@ def rest_load(
     Parameters
     ----------
     system : System
-    robot : Robot
-    path : Poses
+    at : RigidPoses
         P rigid poses; their rates do not matter.
     load : Load, optional
         None: no wrench.
@@ -156,9 +153,9 @@ def rest_load(
     """
     before = np.array([min(time + BEFORE, np.nextafter(time, -np.inf))])
     wrench = kinematics.wrench(Load() if load is None else load, before)
-    still, count = kinematics.Poses.at_rest(path.position, path.rotation), len(path)
-    pushed = feed_forward(robot, np.repeat(before, count), still, np.repeat(wrench, count, axis=0))
+    robot, count = at.robot, len(at.poses)
+    pushed = feed_forward(at.resting(), np.repeat(before, count), np.repeat(wrench, count, axis=0))
     force = np.zeros((count, system.legs, system.ports.size))
-    for i, at in enumerate(force_ports(system, robot)):
-        force[:, i, system.ports == at] = pushed[:, i, None]
+    for i, port in enumerate(force_ports(system, robot)):
+        force[:, i, system.ports == port] = pushed[:, i, None]
     return RestLoad(force=force, wrench=wrench[0])

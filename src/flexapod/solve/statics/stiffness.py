@@ -7,7 +7,7 @@ import numpy as np
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.kinematics.rotations import matrix
-from flexapod.mechanics.shapes.beam_functions import finite
+from flexapod.mechanics.shapes.beam_functions import check_finite
 from flexapod.model import Robot
 from flexapod.solve.saddle_point import inverse_each, solve_each
 from flexapod.solve.statics.equilibrium import Equilibrium
@@ -48,7 +48,9 @@ def stiffness_of(robot: Robot, locked: LockedPoses) -> Stiffness:
     system, m, free = locked.system, locked.m, locked.system.hub_free
     _refuse_rigid(locked)
     border = system.border
-    legs = np.zeros((len(locked.at), system.legs, 6 + system.shared.size, 6 + system.shared.size))
+    legs = np.zeros(
+        (len(locked.at), system.legs, 6 + system.shared_coordinates.size, 6 + system.shared_coordinates.size)
+    )
     for b in locked.motions.bases:  # (T7.6)  joint forces that a unit step of the payload meets, legs eliminated
         B, C, own = reduced_legs(system, b, m)
         legs[:, b.legs[:, None, None], border[:, None], border] = own - C.swapaxes(-1, -2) @ solve_each(B, C)
@@ -64,7 +66,7 @@ def stiffness_of(robot: Robot, locked: LockedPoses) -> Stiffness:
 
 def _with_mounts(system: System, parts: Array) -> Array:
     """Shares (p, any, 6, 6) in the stiffness against steps of the payload that plates on mounts follow, Eq. (T24.7)."""
-    if not system.shared.size:
+    if not system.shared_coordinates.size:
         return parts
     whole = parts.sum(axis=1)
     follow = np.zeros((len(parts), parts.shape[-1], 6))
@@ -74,7 +76,7 @@ def _with_mounts(system: System, parts: Array) -> Array:
 
 
 def _refuse_rigid(locked: LockedPoses) -> None:
-    """Raise InputError where legs cannot give way to the payload, or nothing but the base holds it."""
+    """Raise InputError where legs are not compliant to the payload, or nothing but the base holds it."""
     if locked.system.hub_held.all():
         raise InputError(
             "leaves no stiffness to ask for: the platform does not move",
@@ -98,13 +100,13 @@ def _refuse_rigid(locked: LockedPoses) -> None:
 
 
 def displacement(locked: LockedPoses, loads: Array, on_payload: Array) -> Array:
-    """Steps of the payload (p, 6, k) that k loads (p, legs, n, k) and (p, 6, k) cause, for legs that give way.
+    """Steps of the payload (p, 6, k) by k loads (p, legs, n, k) and (p, 6, k), of legs that are compliant.
 
     Behind the loads on the payload may stand those on the coordinates that legs share.
     """
     system, m, free = locked.system, locked.m, locked.system.border
     S = m.payload_K[:, free[:, None], free]
-    side = np.zeros((len(on_payload), 6 + system.shared.size, on_payload.shape[2]))
+    side = np.zeros((len(on_payload), 6 + system.shared_coordinates.size, on_payload.shape[2]))
     side[:, : on_payload.shape[1]] = on_payload
     side = side[:, free]
     for b in locked.motions.bases:
@@ -114,7 +116,7 @@ def displacement(locked: LockedPoses, loads: Array, on_payload: Array) -> Array:
         less = C.swapaxes(-1, -2) @ z
         S = S + (own - less[..., :width]).sum(axis=1)
         side = side + (b.Y.swapaxes(-1, -2) @ f - less[..., width:]).sum(axis=1)
-    y = np.zeros((len(side), 6 + system.shared.size, side.shape[2]))
+    y = np.zeros((len(side), 6 + system.shared_coordinates.size, side.shape[2]))
     y[:, free] = solve_each(S, side)
     return y[:, :6]
 
@@ -130,7 +132,7 @@ def compliance(total: Array) -> Array:
     free = np.flatnonzero(~np.isposinf(np.diagonal(total, axis1=1, axis2=2)).any(axis=0))
     part, found = total[:, free[:, None], free], np.zeros_like(total)
     inverse = inverse_each(part)
-    finite(part, inverse)
+    check_finite(part, inverse)
     found[:, free[:, None], free] = 0.5 * (inverse + inverse.swapaxes(-1, -2))
     return found
 

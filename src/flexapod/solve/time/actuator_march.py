@@ -86,7 +86,7 @@ def prepare_actuator(
         outputs=outputs,
         measure=lambda recording: _measure(system, study.actuator, recording),
         restart=lambda flow, t, h: after_impact(system, flow, law, t, method, h),
-        stops=Stops.of(kinematics.actuator_breaks(study, far), output_step, simulation.step, outputs),
+        stops=Stops.from_breaks(kinematics.actuator_breaks(study, far), output_step, simulation.step, outputs),
         check=lambda recording: _check(system, study.actuator, recording),
         tolerance=simulation.tolerance,
         weights=_weights(system, study.actuator),
@@ -101,7 +101,7 @@ def prepare_actuator(
 
 
 def _retracting(system: System, actuator: Actuator, chunks: Iterator[Chunk]) -> Iterator[Chunk]:
-    """The chunks; where they fail because next to nothing of the beam is left outside, that is what is said."""
+    """Chunks of the march; a failure with next to nothing of the beam left outside is reported as such."""
     (now, free, rate), at = (0.0, actuator.free_length, 0.0), system.kernel.shapes.l_index
     try:
         for chunk in chunks:
@@ -174,7 +174,7 @@ def _state(study: ActuatorStudy, system: System, law: Law, amplitudes: Array | N
 
 
 def _measure(system: System, actuator: Actuator, recording: Recording) -> list[Array]:
-    """How far the tip moves, and angles and length where they are free.
+    """Displacements of the tip, and angles and length where they are free.
 
     Stretch, and twist times the length of the beam, count as far as they do beside the deflection (T9.11).
     """
@@ -187,7 +187,7 @@ def _measure(system: System, actuator: Actuator, recording: Recording) -> list[A
 
 
 def _weights(system: System, actuator: Actuator) -> tuple[Weight, ...]:
-    """What moves each group of `_measure`."""
+    """Weights of coordinates in each group of `_measure`."""
     shapes, n = system.kernel.shapes, system.n
     there, none = dict(shapes.layout), np.zeros(6)
     tip = np.zeros(n)

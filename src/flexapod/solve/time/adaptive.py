@@ -1,4 +1,4 @@
-"""Time integration within a tolerance, chunk by chunk: ends of steps, scales of errors, failures as words."""
+"""Time integration within a tolerance, chunk by chunk: ends of steps, scales of errors, failures as text."""
 
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
@@ -13,9 +13,9 @@ from flexapod.solve.system import Flow
 from flexapod.solve.time import native
 from flexapod.solve.time.chebyshev import Series
 from flexapod.solve.time.problem import CAUSES, Chunk, Problem
-from flexapod.solve.time.radau import MOST, OUT_OF_REACH, SHORTEST, Advanced, Within
+from flexapod.solve.time.radau import MOST, OUT_OF_REACH, SHORTEST, AdvanceResult, RadauMemory
 from flexapod.solve.time.recording import Counters, Recording, unpack
-from flexapod.solve.time.time_events import NEAR, Stop, after
+from flexapod.solve.time.time_events import NEAR, Stop, just_after
 
 FEW, MANY = 4, 500  # outputs of a chunk: of the first ones, which tell the scales; between looks at progress
 CHUNK_STEPS = 2000  # steps in a chunk of several outputs
@@ -40,7 +40,7 @@ def adaptive_march(problem: Problem, start: Flow, counters: Counters) -> Iterato
     run = _Run(problem, counters, first)
     done, count, stops = 0, FEW, problem.stops
     if 0 in stops.ends:
-        flow, _ = run.restarted(flow, 0.0, stops.ends[0])
+        flow, _ = run.restart_after(flow, 0.0, stops.ends[0])
     while done < problem.outputs:
         chunk, flow, failure = run.chunk(flow, done, _chunk_end(problem, done, count))
         sound, fault = _sound(problem, chunk.recording)
@@ -80,7 +80,7 @@ def _sound(problem: Problem, recording: Recording) -> tuple[int, ComputationErro
 
 
 class _Run:
-    """What is remembered between chunks."""
+    """State of the integration that is remembered between chunks."""
 
     def __init__(self, problem: Problem, counters: Counters, first: Recording) -> None:
         self.problem, self.counters = problem, counters
@@ -90,7 +90,7 @@ class _Run:
         knots = problem.knots[(problem.knots > 0) & (problem.knots < edges[-1])]
         edges = _apart(sorted([*edges, *knots]))
         series = Series(problem.tables, edges, min(FINEST, problem.output_step))
-        self.within = Within(problem.system, series, edges[-1], problem.tolerance or 0.0, problem.loop)
+        self.within = RadauMemory(problem.system, series, edges[-1], problem.tolerance or 0.0, problem.loop)
         self.steps = 0  # of the last chunk
         self.look = MOST  # steps to the next look at the scales
         self._scale(first)
@@ -98,7 +98,7 @@ class _Run:
             self.look = LOOK
 
     def chunk(self, flow: Flow, done: int, to: int) -> tuple[Chunk, Flow, ComputationError | None]:
-        """Outputs after `done` up to `to`, or as far as it goes, the flow at their end, and what went wrong."""
+        """Outputs after `done` up to `to`, or until it fails, the flow at their end, and the error if any."""
         p, rows, control, before = self.problem, [], [], self.counters.steps
         begin, end, failure = done * p.output_step, to * p.output_step, None
         between = slice(*(bisect_right(self.ends, t, key=_first) for t in (begin + NEAR, end - NEAR)))
@@ -118,7 +118,7 @@ class _Run:
                 break
             if stop.jumps:
                 try:
-                    flow, _ = self.restarted(flow, stop.first, stop)
+                    flow, _ = self.restart_after(flow, stop.first, stop)
                 except ComputationError as error:
                     failure = error
                     break
@@ -126,7 +126,7 @@ class _Run:
         time = np.asarray((done - len(whole) + 1 + np.arange(len(whole))) * p.output_step, dtype=float)
         recording = unpack(p.system, time, whole, _joined(control) if p.loop else None)
         if failure is None and to in p.stops.ends:  # what is stored there is the value after the jump
-            flow, last = self.restarted(flow, end, p.stops.ends[to])
+            flow, last = self.restart_after(flow, end, p.stops.ends[to])
             recording = recording.ending(last)
         self.steps = self.counters.steps - before
         self._scale(recording)
@@ -137,7 +137,7 @@ class _Run:
         chunk = Chunk(recording=recording, error=self.within.spent, step=step, force_error=self.within.thrust)
         return chunk, flow, failure
 
-    def _advance(self, flow: Flow, stops: Sequence[float], done: int, to: int) -> Advanced:
+    def _advance(self, flow: Flow, stops: Sequence[float], done: int, to: int) -> AdvanceResult:
         """Advance to the last of `stops`; where many steps lie between outputs, with looks at the scales on the way."""
         rows, control, now, step = [], [], self.within.time, self.problem.output_step
         while True:
@@ -152,10 +152,10 @@ class _Run:
             flow, now = found.flow, found.time
             self._scale(_recorded(self.problem, flow, now)[1])
 
-    def restarted(self, flow: Flow, t: float, stop: Stop) -> tuple[Flow, Recording]:
+    def restart_after(self, flow: Flow, t: float, stop: Stop) -> tuple[Flow, Recording]:
         """Flow after a jump at time t, and its record."""
-        now = after(max(t, stop.last))
-        self.within.jumped()
+        now = just_after(max(t, stop.last))
+        self.within.forget_history()
         flow, row = _recorded(self.problem, self.problem.restart(flow, now, 0.0), now)
         return flow, replace(row, time=np.array([t]))
 
@@ -164,7 +164,7 @@ class _Run:
         affordable = count * CHUNK_STEPS // max(self.steps, 1)
         return max(1, min(4 * count, MANY, affordable))
 
-    def _failure(self, found: Advanced) -> ComputationError:
+    def _failure(self, found: AdvanceResult) -> ComputationError:
         if found.status == OUT_OF_REACH:
             return self._out_of_reach(
                 found.time,
@@ -173,7 +173,7 @@ class _Run:
             )
         where = f" in leg {found.leg + 1}" if 0 <= found.leg < self.problem.system.legs else ""
         at = f"at t = {found.time:.6g} s (step {self.within.step:.3g} s)"
-        return self.problem.failed(found.status, f"{at}: {CAUSES[found.status]}{where}")
+        return self.problem.stop_error(found.status, f"{at}: {CAUSES[found.status]}{where}")
 
     def _out_of_reach(self, now: float, why: str) -> ComputationError:
         return ComputationError(
@@ -201,7 +201,7 @@ class _Run:
 
 
 def _ends(problem: Problem) -> list[Stop]:
-    """Where steps end: breaks, and knots of the path."""
+    """Instants on which steps end: breaks, and knots of the path."""
     found = list(problem.stops.every)
     at = np.array([-np.inf, *(stop.first for stop in found), np.inf])
     after = np.searchsorted(at, problem.knots)

@@ -34,7 +34,7 @@ class Series:
         self._todo = deque(itertools.pairwise(edges))
         self._pieces: deque[tuple[float, float, Array]] = deque()
 
-    def between(self, first: float, last: float) -> tuple[Array, Array]:
+    def covering_pieces(self, first: float, last: float) -> tuple[Array, Array]:
         """Edges (n + 1,) and series (n, NODES, width) of the pieces that cover an interval; none before it again.
 
         An end of the interval within `NEAR` of an edge is that edge: beyond it nothing is taken.

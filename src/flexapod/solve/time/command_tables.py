@@ -1,4 +1,4 @@
-"""What the robot is commanded at given instants: strokes with rate and acceleration, feed-forward forces, wrench."""
+"""Commands of the robot at given instants: strokes with rate and acceleration, feedforward forces, wrench."""
 
 from collections.abc import Callable
 
@@ -15,12 +15,12 @@ from flexapod.solve.time.piecewise_chebyshev import Groups, Pieces
 #: Of instants (T,): the table of the ports (T, legs, ports, 4), and the load (T, load_size), of a payload the wrench
 #: at the tool in world axes.
 Law = Callable[[Array], tuple[Array, Array]]
+#: The rigid robot at instants (T,).
+RigidAt = Callable[[Array], kinematics.RigidPoses]
 
 
-def robot_law(
-    system: System, robot: Robot, load: Load, poses: Callable[[Array], kinematics.Poses], knots: Array | None = None
-) -> Law:
-    """Return what a robot is commanded as a function of time; ``poses`` is the rigid path.
+def robot_law(system: System, robot: Robot, load: Load, rigid: RigidAt, knots: Array | None = None) -> Law:
+    """Return what a robot is commanded as a function of time; ``rigid`` is the rigid path.
 
     Driven coordinates follow the path; what else is held stays where it is at home, of a flexure at zero; and to both
     comes what the robot as built adds (T16.5). With the ``knots`` (n,) between which the path is smooth, legs without
@@ -42,8 +42,9 @@ def robot_law(
     places = {k: (COORDINATES.index(names[port]), turned.get(port, every)) for k, port in ports if port in names}
     pushed = system.ports == force_ports(system, robot)[:, None]
 
-    def commanded(t: Array) -> list[Array]:
-        legs = kinematics.inverse_kinematics(robot, poses(t))
+    def command_values(t: Array) -> list[Array]:
+        at = rigid(t)
+        legs = at.legs
         parts = np.zeros((3, len(t), system.legs, system.ports.size))
         parts[0] = home
         for k in np.flatnonzero(driven.any(axis=0)):
@@ -51,15 +52,15 @@ def robot_law(
             for part, values in zip(parts, legs.coordinate(names[system.ports[k]]), strict=True):
                 part[:, which, k] = values[:, which]
         if built:
-            _as_built(robot, t, legs, poses, parts, places)
+            _as_built(at, t, parts, places)
         return list(parts)
 
     built = kinematics.built_parts(robot)
     forces = any(isinstance(leg.drive, ForceDrive) or is_turned(leg.drive) for leg in robot.legs)
-    coordinates: Groups = commanded
+    coordinates: Groups = command_values
     changing = any(part.time is not None for part in built)
     if knots is not None and not (kinematics.rigid_limbs(robot).plain or forces or changing):
-        coordinates = Pieces(commanded, knots)
+        coordinates = Pieces(command_values, knots)
 
     def law(t: Array) -> tuple[Array, Array]:
         wrench = kinematics.wrench(load, t)
@@ -70,28 +71,21 @@ def robot_law(
             for column, part in enumerate(kinematics.base_law(robot, t)):
                 table[:, :, system.floor, column] = part[:, None]
         if forces:
-            table[:, pushed, 3] = feed_forward(robot, t, poses(t), wrench)[:, pushed.any(axis=1)]
+            table[:, pushed, 3] = feed_forward(rigid(t), t, wrench)[:, pushed.any(axis=1)]
         return table, wrench
 
     return law
 
 
-def _as_built(
-    robot: Robot,
-    t: Array,
-    legs: kinematics.LegState,
-    poses: Callable[[Array], kinematics.Poses],
-    parts: Array,
-    ports: dict[int, tuple[int, Mask]],
-) -> None:
+def _as_built(at: kinematics.RigidPoses, t: Array, parts: Array, ports: dict[int, tuple[int, Mask]]) -> None:
     """Add to the places, rates and accelerations (3, T, legs, ports) of a rigid path what the robot as built adds.
 
     ``ports``: of each port the coordinate that it follows, and in which legs.
     """
-    q = kinematics.Law(*np.stack([legs.coordinate(name) for name in COORDINATES], axis=-1))
+    robot, q = at.robot, kinematics.Law(*np.stack([at.legs.coordinate(name) for name in COORDINATES], axis=-1))
     added = kinematics.added_by_all(robot, t, q)
     for part in filter(kinematics.is_plate, kinematics.built_parts(robot)):
-        for more, longer in zip(added, kinematics.plate_grows(part, t, poses(t), robot), strict=True):
+        for more, longer in zip(added, kinematics.plate_grows(part, t, at.poses, robot), strict=True):
             more[..., COORDINATES.index("l")] += longer
     for column, more in enumerate(added):
         for port, (place, legs_there) in ports.items():

@@ -7,11 +7,11 @@ import numpy as np
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError
 from flexapod.common.generalized_alpha import GeneralizedAlpha
-from flexapod.kinematics.rotations import turned
+from flexapod.kinematics.rotations import displace_pose
 from flexapod.solve.system import Flow, System
 from flexapod.solve.time.native import MAX_ITERATIONS, TOL_CLOSURE, TOL_FORCE, Advance
 from flexapod.solve.time.recording import Counters
-from flexapod.solve.time.start import constrained, normal_velocity
+from flexapod.solve.time.start import normal_velocity, solve_constrained
 
 
 def _row(system: System, x: Flow, table: Array, wrench: Array) -> Array:
@@ -63,12 +63,12 @@ def _predict(system: System, method: GeneralizedAlpha, x: Flow, h: float, table:
     a = (x.v_dot - method.alpha_m * x.a) / (1 - method.alpha_m)
     step = h * x.v + h**2 * ((0.5 - method.beta) * x.a + method.beta * a)
     v, v_dot = x.v + h * ((1 - method.gamma) * x.a + method.gamma * a), x.v_dot.copy()
-    q, held = x.q + system.by_leg(step), system.enforced[:, system.ports]
+    q, held = x.q + system.by_leg(step), system.enforced_mask[:, system.ports]
     for part, column in ((q, 0), (v, 1), (v_dot, 2), (a, 2)):
         legs = part if part is q else system.by_leg(part)
         legs[:, system.ports] = np.where(held, table[:, :, column], legs[:, system.ports])
     step = step[system.legs * system.n :]
-    return replace(x, q=q, v=v, v_dot=v_dot, a=a, pose=turned(x.pose, step) if system.hub else x.pose), step
+    return replace(x, q=q, v=v, v_dot=v_dot, a=a, pose=displace_pose(x.pose, step) if system.hub else x.pose), step
 
 
 def _step(
@@ -79,7 +79,7 @@ def _step(
     x, turn = _predict(system, method, old, h, table)
     for iteration in range(MAX_ITERATIONS + 1):
         r, g, powers = system.residual(x, table, wrench, h)
-        r[k:][system.fixed[k:]] = 0.0
+        r[k:][system.fixed_mask[k:]] = 0.0
         force = max(1.0, np.abs(x.lam).max(initial=0.0), np.abs(x.drive).max(initial=0.0))
         tolerable = TOL_FORCE * force + system.force_floor
         balance = r if system.tie is None else system.tie.T @ r
@@ -95,7 +95,7 @@ def _step(
         counters.iterations += 1
         counters.factorisations += 1
         try:
-            dq, dlam = constrained(system, A, m.G, -r, -g)
+            dq, dlam = solve_constrained(system, A, m.G, -r, -g)
         except ComputationError:
             break
         own = system.by_leg(r + A @ dq + m.G.T @ dlam)
@@ -107,8 +107,8 @@ def _step(
             v_dot=x.v_dot + c_a * dq,
             a=x.a + c_q * dq,
             lam=x.lam + dlam.reshape(x.lam.shape),
-            drive=x.drive + np.where(system.enforced, own, 0.0)[:, system.ports],
-            pose=turned(old.pose, turn) if system.hub else x.pose,
+            drive=x.drive + np.where(system.enforced_mask, own, 0.0)[:, system.ports],
+            pose=displace_pose(old.pose, turn) if system.hub else x.pose,
         )
         if done:  # after a last correction: index 3 magnifies what is left
             counters.steps += 1

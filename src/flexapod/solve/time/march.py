@@ -1,4 +1,4 @@
-"""Time integration in chunks: fixed step or tolerance, failures as words, Eq. (T6.15)."""
+"""Time integration in chunks: fixed step or tolerance, failures as text, Eq. (T6.15)."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -13,7 +13,7 @@ from flexapod.solve.time import interpreted, native
 from flexapod.solve.time.adaptive import adaptive_march
 from flexapod.solve.time.problem import CAUSES, Chunk, Problem
 from flexapod.solve.time.recording import Counters, Recording, unpack
-from flexapod.solve.time.time_events import Stop, after, before
+from flexapod.solve.time.time_events import Stop, just_after, just_before
 
 CHUNK = 100  # output intervals between looks at the tolerance, or at progress where steps are slow
 CHUNK_STEPS = 2000  # steps in a chunk of several intervals: tables of fine steps must not outgrow the output
@@ -115,7 +115,7 @@ class _Control:
 
     @property
     def settings(self) -> tuple[float, int, list[float]]:
-        """What it remembers: step of the flow, steps per output, scales of the errors."""
+        """Memory of the control: step of the flow, steps per output, scales of the errors."""
         return self.h, self.per_output, self.scales
 
     @settings.setter
@@ -165,7 +165,7 @@ class _Control:
         return count - count % 2 if self.per_output == 1 else count
 
     def _twice(self, flow: Flow, done: int, count: int) -> tuple[float, native.Advance, float]:
-        """Run a chunk with steps twice as long and with those to be kept: error, second run, its last step."""
+        """Run a chunk with steps twice as long and with those to be stored: error, second run, its last step."""
         (coarse, _), (fine, h) = (self._once(flow, done, count, parts) for parts in (1, 2))
         every = count // len(coarse.rows)
         a, b = (self._measured(rows, done, every) for rows in (coarse.rows, fine.rows[every - 1 :: every]))
@@ -173,7 +173,7 @@ class _Control:
 
     def _once(self, flow: Flow, done: int, count: int, parts: int) -> tuple[native.Advance, float]:
         """Run a chunk, each of the longest steps in `parts`; the outcome and the last step's length."""
-        stops, per_output = self.problem.stops.within(done, self.coarse), self.coarse * parts
+        stops, per_output = self.problem.stops.unaligned_stops(done, self.coarse), self.coarse * parts
         if stops:
             return self._through(flow, done, stops, parts)
         if self.problem.tolerance is None and per_output > CHUNK_STEPS:
@@ -218,7 +218,7 @@ class _Control:
         steps = done * per_output + np.arange(count * per_output + 1)
         t = np.asarray(steps * (p.output_step / per_output), dtype=float)
         if (stop := p.stops.ends.get(done + count)) is not None:
-            t[-1] = before(min(t[-1], stop.first))
+            t[-1] = just_before(min(t[-1], stop.first))
         return t
 
     def _run(self, flow: Flow, grid: list[Array], per_output: float) -> native.Advance:
@@ -243,7 +243,7 @@ class _Control:
             if result.status:
                 where = f" in leg {result.leg + 1}" if 0 <= result.leg < p.system.legs else ""
                 at = f"at t = {t[first + result.step]:.6g} s (step {h:.3g} s)"
-                raise p.failed(result.status, f"{at}: {CAUSES[result.status]}{where}")
+                raise p.stop_error(result.status, f"{at}: {CAUSES[result.status]}{where}")
             flow, first = result.flow, first + len(tables[0]) - 1
         return result
 
@@ -269,13 +269,13 @@ def _pieces(edges: list[float], counts: list[int], ends: Sequence[Stop | None]) 
     times = [np.linspace(a, b, n + 1) for a, b, n in zip(edges[:-1], edges[1:], counts, strict=True)]
     for t, stop in zip(times, ends, strict=True):
         if stop is not None:
-            t[-1] = before(min(t[-1], stop.first))
+            t[-1] = just_before(min(t[-1], stop.first))
     return times
 
 
 def _restarted(problem: Problem, flow: Flow, t: float, stop: Stop, h: float) -> tuple[Flow, Recording]:
     """Flow after a jump at time t, prepared for steps h, with the new powers; and what is recorded of it."""
-    now = after(max(t, stop.last))
+    now = just_after(max(t, stop.last))
     table, wrench = problem.tables_under(flow)(np.array([now]))
     flow, row = first_record(problem.system, problem.restart(flow, now, h), table, wrench)
     return flow, unpack(problem.system, np.array([t]), row)
@@ -298,7 +298,7 @@ def _loop(system: System) -> ModuleType:
 
 
 def _finer(steps: int) -> int:
-    """Next number of kept steps of 1, 2, 4, 6, 8, 12, 16, 24 ... for an output interval; coarse ones are half of it."""
+    """Next number of stored steps, 1, 2, 4, 6, 8, 12, 16, 24 ..., for an output interval; half of it if coarse."""
     if steps <= 2:
         return 2 * steps
     return steps * 3 // 2 if steps & (steps - 1) == 0 else steps * 4 // 3

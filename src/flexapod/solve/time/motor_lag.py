@@ -1,4 +1,4 @@
-"""Where motors that lag, and loops closed elsewhere than at the rotor, start, Eq. (T23.54)."""
+"""Start of lagging motors, and of loops closed elsewhere than at the rotor, Eq. (T23.54)."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import numpy as np
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import ComputationError
 from flexapod.solve.system import State, System
-from flexapod.solve.time.start import constrained
+from flexapod.solve.time.start import solve_constrained
 
 SETTLED, ROUNDING = 1e-13, 1e-10  # largest step of a coordinate [m, rad]; below it a step may stop shrinking
 ROUNDS = 20
 
 
-def settled(system: System, x: State, table: Array, wrench: Array, *, rests: bool) -> State:
-    """A state whose motors give what is asked of them; with ``rests`` the equilibrium next to it, Eq. (T23.54).
+def settle_motors(system: System, x: State, table: Array, wrench: Array, *, rests: bool) -> State:
+    """State whose motors have the requested forces; with ``rests`` the equilibrium next to it, Eq. (T23.54).
 
     Raises
     ------
@@ -35,8 +35,8 @@ def settled(system: System, x: State, table: Array, wrench: Array, *, rests: boo
         A[w] = m.D[w]
         error = places - table[:, system.ports == shapes.index("r"), 0][:, 0]
         r[w] = error[w[: system.legs * system.n].reshape(system.legs, -1).any(axis=1)]
-        step, lam = constrained(system, A, m.G, -r, -g)
-        x = replace(system.moved(x, step), lam=x.lam + lam.reshape(x.lam.shape))
+        step, lam = solve_constrained(system, A, m.G, -r, -g)
+        x = replace(system.displace(x, step), lam=x.lam + lam.reshape(x.lam.shape))
         x, largest = _at_force(system, x, table, wrench), float(np.abs(step[~w]).max())
         if largest < SETTLED or (largest < ROUNDING and largest >= before):
             return x
@@ -53,11 +53,11 @@ def _flat(system: System, name: str) -> Mask:
     """Free coordinates of a name among all, (size,)."""
     found = np.zeros(system.size, dtype=bool)
     system.by_leg(found)[:, system.kernel.shapes.index(name)] = True
-    return found & ~system.fixed
+    return found & ~system.fixed_mask
 
 
 def _at_force(system: System, x: State, table: Array, wrench: Array) -> State:
-    """State whose motors that lag give what is asked of them."""
+    """State whose lagging motors have the requested forces."""
     v, j = x.v.copy(), _flat(system, "j")
     v[j] = 0.0
     v[j] = -system.residual(replace(x, v=v, v_dot=np.zeros_like(v)), table, wrench)[0][j]

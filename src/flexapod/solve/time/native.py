@@ -12,7 +12,7 @@ import numpy as np
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError
 from flexapod.common.generalized_alpha import GeneralizedAlpha
-from flexapod.common.resources import keep_freed
+from flexapod.common.resources import retain_freed_memory
 from flexapod.mechanics.symbolic.compiler import lanes, written_library
 from flexapod.solve.kernel import Equations, Kernel
 from flexapod.solve.system import Flow, System
@@ -75,7 +75,7 @@ class Advance:
 
 
 def address(array: Array) -> c_void_p:
-    """Where an array begins, for C."""
+    """Address of an array, for C."""
     return c_void_p(array.ctypes.data)
 
 
@@ -90,7 +90,7 @@ class Call:
 
 
 def settings(system: System, method: GeneralizedAlpha, h: float, every: int) -> Structure:
-    """What does not change in a call; it points to arrays of the system."""
+    """Settings that do not change in a call; they point to arrays of the system."""
     if system.kernel.equations is None:
         raise RuntimeError("this kernel is not compiled: its steps are those of solve.interpreted")
     return _Settings(
@@ -103,7 +103,7 @@ def settings(system: System, method: GeneralizedAlpha, h: float, every: int) -> 
 
 
 def loops(kernel: Kernel) -> ctypes.CDLL:
-    """The compiled time loops, the same for all kernels that one compiler makes.
+    """Compiled time loops, the same for all kernels that one compiler makes.
 
     Raises
     ------
@@ -121,7 +121,7 @@ def loops(kernel: Kernel) -> ctypes.CDLL:
 
 @cache
 def _loops(command: tuple[str, ...]) -> ctypes.CDLL:
-    keep_freed()
+    retain_freed_memory()
     library = written_library(SOURCES, list(command))
     library.march_memory.restype = library.radau_memory.restype = c_long
     library.record_state.restype = None

@@ -1,4 +1,4 @@
-"""Robots that are held more often than they need while nothing of them gives way, Eqs. (T6.26)-(T6.27)."""
+"""Overconstrained robots in which nothing is compliant, Eqs. (T6.26)-(T6.27)."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ DEPENDENT = 1e-9  # singular value, relative to the largest, below which closure
 MISFIT = 1e-9  # m, or rad: by which a coordinate may miss what should hold it, rounding of positions
 
 
-def independent(system: System, x: State) -> System:
-    """The same system, of whose held coordinates as many are left to the closures as these determine, Eq. (T6.26)."""
+def release_redundant(system: System, x: State) -> System:
+    """System that leaves as many of its held coordinates to the closures as these determine, Eq. (T6.26)."""
     G = system.matrices(x, np.zeros(6)).G
-    free = G[:, ~system.fixed] if system.independent is None else G @ system.independent
+    free = G[:, ~system.fixed_mask] if system.independent is None else G @ system.independent
     size = np.linalg.svd(free, compute_uv=False)
     rank = int((size > DEPENDENT * size.max(initial=0.0)).sum())
     if rank == len(G):
@@ -34,7 +34,7 @@ def independent(system: System, x: State) -> System:
 
 
 def _independent_columns(A: Array) -> list[int]:
-    """As many columns as there are independent ones, the longest first of what the others leave."""
+    """Indices of as many columns as are independent, each the longest residual of those before."""
     rest, least, chosen = A.copy(), DEPENDENT * np.abs(A).max(), []
     for _ in range(len(A)):
         size = np.linalg.norm(rest, axis=0)
@@ -47,7 +47,7 @@ def _independent_columns(A: Array) -> list[int]:
     return chosen
 
 
-def shared(system: System, recording: Recording, table: Array) -> Recording:
+def minimum_energy_recording(system: System, recording: Recording, table: Array) -> Recording:
     """The recording with the forces of least strain energy of the legs, among all that hold the robot, Eq. (T6.27).
 
     Parameters
@@ -63,7 +63,7 @@ def shared(system: System, recording: Recording, table: Array) -> Recording:
     ComputationError
         A coordinate that was left to the closures does not stay where it is held: the rigid robot cannot move so.
     """
-    slack = (system.held & ~system.enforced)[:, system.ports]
+    slack = (system.held & ~system.enforced_mask)[:, system.ports]
     gap = np.where(slack, recording.q[..., system.ports] - table[..., 0], 0.0)
     if np.abs(gap).max() > MISFIT:
         k, leg, port = np.argwhere(np.abs(gap) > MISFIT)[0]

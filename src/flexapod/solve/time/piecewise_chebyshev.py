@@ -1,4 +1,4 @@
-"""A function of time that takes long to compute, as polynomials between the instants at which it is not smooth."""
+"""Piecewise polynomials of a costly function of time, between the instants at which it is not smooth."""
 
 from collections.abc import Callable, Sequence
 

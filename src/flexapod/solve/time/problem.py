@@ -1,4 +1,4 @@
-"""What a time integration is to solve, and the words for where it fails."""
+"""Problem of a time integration, and the messages for where it fails."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -34,7 +34,7 @@ OF_LOOPS = "Its controller may make it grow: reduce gain or delay, or sample mor
 
 @dataclass(frozen=True, kw_only=True)
 class Weight:
-    """How much displacements of coordinates count in one group of the measure: of a leg (n,), of the payload (6,)."""
+    """Weights of displacements of coordinates in one group of the measure: of a leg (n,), of the payload (6,)."""
 
     leg: Array
     hub: Array
@@ -66,10 +66,10 @@ class Problem:
 
     def tables_under(self, flow: Flow) -> Law:
         """Commands and loads with what a controller holds."""
-        return self.loop.onto(self.tables, flow) if self.loop else self.tables
+        return self.loop.add_held_outputs(self.tables, flow) if self.loop else self.tables
 
-    def failed(self, status: int, where: str) -> ComputationError:
-        """What to raise where an integration stopped; the fault of a controller's function as it is."""
+    def stop_error(self, status: int, where: str) -> ComputationError:
+        """Error for an integration that stopped; an exception of a controller's function is raised as it is."""
         if status == ASKED and self.loop and self.loop.fault:
             raise self.loop.fault
         return ComputationError(
@@ -78,7 +78,7 @@ class Problem:
 
     @property
     def adaptive(self) -> bool:
-        """Whether steps follow the tolerance one by one: compiled equations."""
+        """True where steps follow the tolerance one by one: compiled equations."""
         return self.tolerance is not None and self.system.kernel.library is not None
 
 

@@ -40,7 +40,7 @@ class _Control(Structure):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Advanced:
+class AdvanceResult:
     """Outcome of a call: new flow, output rows so far, status (0: done), where it failed and when.
 
     ``control``: rows of a controller's record.
@@ -54,7 +54,7 @@ class Advanced:
     control: Array | None = None
 
 
-class Within:
+class RadauMemory:
     """The method's memory from call to call: time, step, local errors so far, and all that C works with.
 
     Parameters
@@ -90,7 +90,7 @@ class Within:
 
     @property
     def thrust(self) -> float | None:
-        """Sum of the local errors of the force along a leg, the largest of all legs [N]; None: nothing tells it.
+        """Sum of the local errors of the force along a leg, the largest of all legs [N]; None: not estimated.
 
         Of rigid legs it is the largest error of a step: their forces follow from the motion of that instant.
         """
@@ -111,7 +111,7 @@ class Within:
         """Go on with weights that are `ratio` times those before: what is remembered of errors is in their units."""
         self._memory[[SPENT, PEAK]] *= ratio
 
-    def jumped(self) -> None:
+    def forget_history(self) -> None:
         """Forget what is extrapolated from: commands have jumped."""
         self._memory[[STEP, PEAK, STAGES]] = FIRST, 0.0, 0.0
 
@@ -123,14 +123,16 @@ class Within:
         outputs: tuple[float, float, int],
         most: int,
         counters: Counters,
-    ) -> Advanced:
+    ) -> AdvanceResult:
         """Advance to the last of `stops`, ascending instants on which steps end, or by `most` steps.
 
         `outputs`: first instant, distance and number of the records on the way.
         """
         new, rows = flow.copy(), np.empty((outputs[2], record_width(self.system)))
         call = Call(self.system, new, rows, GeneralizedAlpha(1.0), 1.0, 1)
-        edges, series = (np.ascontiguousarray(x) for x in self.series.between(float(self._memory[TIME]), stops[-1]))
+        edges, series = (
+            np.ascontiguousarray(x) for x in self.series.covering_pieces(float(self._memory[TIME]), stops[-1])
+        )
         leg, hub = (np.ascontiguousarray(x) for x in weights)
         control = _Control(
             self.horizon, self.tolerance, address(leg), address(hub), LONGEST, SHORTEST,
@@ -148,7 +150,7 @@ class Within:
         counters.factorisations += call.state.factorisations
         counters.rejected += int(self._memory[REJECTED] - before)
         written = int(self._memory[RECORDED])
-        return Advanced(
+        return AdvanceResult(
             flow=new, rows=rows[:written], status=status, leg=call.state.bad_leg, time=self.time,
             control=found[:written] if self.loop else None,
         )  # fmt: skip
@@ -163,6 +165,6 @@ def _along(system: System) -> tuple[int, int]:
 
 
 def is_rigid(system: System) -> bool:
-    """Whether legs have neither shapes nor a spring along them: their forces are those of a motion that is given."""
+    """Test whether legs have neither shapes nor a spring along them: a given motion determines their forces."""
     beam = system.kernel.shapes.beam
     return bool(system.rows) and not (_along(system)[1] or beam.a.count or beam.b.count or beam.inside)

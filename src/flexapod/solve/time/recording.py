@@ -1,4 +1,4 @@
-"""What a time integration writes at its output instants, and what it costs."""
+"""Recording of a time integration at its output instants, and its cost."""
 
 import itertools
 import math
@@ -12,7 +12,7 @@ from flexapod.solve.system import System
 
 @dataclass(kw_only=True)
 class Counters:
-    """What the integration cost."""
+    """Cost of an integration: steps, iterations, factorisations, rejected steps."""
 
     steps: int = 0
     iterations: int = 0
@@ -45,7 +45,7 @@ class Recording:
     control: Array
 
     def part(self, which: slice) -> "Recording":
-        """Some of the instants."""
+        """Recording at some of the instants."""
         return replace(self, **{field.name: getattr(self, field.name)[which] for field in fields(self)})
 
     def ending(self, last: "Recording") -> "Recording":
@@ -74,7 +74,7 @@ def record_shapes(system: System) -> dict[str, tuple[int, ...]]:
 
 
 def record_places(system: System) -> dict[str, slice]:
-    """Where they stand in it."""
+    """Slices of the parts in an output row, by name."""
     shapes = record_shapes(system)
     ends = [0, *itertools.accumulate(map(math.prod, shapes.values()))]
     return {name: slice(*both) for name, both in zip(shapes, itertools.pairwise(ends), strict=True)}

@@ -16,18 +16,18 @@ from flexapod.mechanics.leg.layout import columns
 from flexapod.model import ForceDrive, Robot, Study
 from flexapod.solve.batch import RestStates
 from flexapod.solve.frames import floor
-from flexapod.solve.modal.structural_damping import per_loss
+from flexapod.solve.modal.elastic_robot import ElasticRobot
 from flexapod.solve.rigid_motion import built_state, rigid_state
-from flexapod.solve.robot_system import refuse_massless, robot_system
-from flexapod.solve.statics.assembly_mode import flipped, refuse_fallen, refuse_flipped
+from flexapod.solve.robot_system import refuse_massless
+from flexapod.solve.statics.assembly_mode import false_root_legs, refuse_assembly_change, refuse_false_root
 from flexapod.solve.statics.equilibrium import equilibrium
 from flexapod.solve.statics.locked_robot import refuse_pure_force
 from flexapod.solve.statics.static_loads import rest_commands, rest_load
 from flexapod.solve.system import Flow, State, System
 from flexapod.solve.time.command_tables import Law, robot_law
 from flexapod.solve.time.march import initial_step, march
-from flexapod.solve.time.motor_lag import settled
-from flexapod.solve.time.overconstrained import independent, shared
+from flexapod.solve.time.motor_lag import settle_motors
+from flexapod.solve.time.overconstrained import minimum_energy_recording, release_redundant
 from flexapod.solve.time.piecewise_chebyshev import Pieces
 from flexapod.solve.time.problem import OF_LOOPS, Chunk, Problem, Weight
 from flexapod.solve.time.radau import is_rigid
@@ -36,7 +36,7 @@ from flexapod.solve.time.start import consistent_start
 from flexapod.solve.time.time_events import Stops
 
 if TYPE_CHECKING:
-    from flexapod.solve.time.sampled_control import Sampled, SampledLoop
+    from flexapod.solve.time.sampled_control import SampledController, SampledLoop
 
 AHEAD = 2000  # outputs whose rigid places are made at once
 ROUNDING = 1e-12  # of the sum of what rounding makes along the legs [m]
@@ -58,7 +58,12 @@ class RobotMarch:
     counters: Counters = field(default_factory=Counters)
 
 
-def prepare(study: Study, state: State | None = None, sampled: "Sampled | None" = None) -> RobotMarch:
+def prepare(
+    study: Study,
+    state: State | None = None,
+    sampled: "SampledController | None" = None,
+    elastic: ElasticRobot | None = None,
+) -> RobotMarch:
     """Start and time integration of a robot study.
 
     Parameters
@@ -66,8 +71,10 @@ def prepare(study: Study, state: State | None = None, sampled: "Sampled | None" 
     study : Study
     state : State, optional
         Configuration (closures satisfied) and velocities in place of the study's start.
-    sampled : Sampled, optional
+    sampled : SampledController, optional
         A controller.
+    elastic : ElasticRobot, optional
+        The robot of the study in its fidelity, where it is known.
 
     Raises
     ------
@@ -76,21 +83,17 @@ def prepare(study: Study, state: State | None = None, sampled: "Sampled | None" 
     ComputationError
         There is no equilibrium at the start, or a platform joint is half a turn off.
     """
-    refuse_massless(study)
-    refuse_growing_plates(study)
-    refuse_gaps(study)
+    _refuse_unfit(study)
     robot, simulation = study.robot, study.simulation
-    system = robot_system(robot, simulation, per_loss(robot, simulation))
-    path = _Path(study)
-    law = robot_law(system, robot, study.load, path.poses, path.knots)
+    elastic = elastic or ElasticRobot(robot, simulation, study.load)
+    system, path = elastic.moving, _Path(study)
+    law = robot_law(system, robot, study.load, path.rigid, path.knots)
     method = GeneralizedAlpha(simulation.rho_inf)
-    state = _begun(study, system, law) if state is None else state
-    refuse_flipped(system, robot, RestStates.of(state))
-    system = independent(system, state)
-    counters, output_step = Counters(), simulation.stored_step
-    outputs = simulation.outputs(study.duration)
-    measure = _Measure(study, system, path)
-    loop = _around(sampled, system, study, path)
+    state = _begun(study, elastic, law) if state is None else state
+    refuse_false_root(system, robot, RestStates.from_state(state))
+    system = release_redundant(system, state)
+    counters, output_step, outputs = Counters(), simulation.stored_step, simulation.outputs(study.duration)
+    measure, loop = _Measure(study, system, path), _around(sampled, system, study, path)
     far = 0.0 if simulation.tolerance is not None and system.kernel.library else None  # steps end on every row
     problem = Problem(
         system=system,
@@ -101,8 +104,10 @@ def prepare(study: Study, state: State | None = None, sampled: "Sampled | None" 
         measure=measure,
         weights=measure.weights(),
         knots=path.knots,
-        restart=lambda flow, t, h: after_impact(system, flow, loop.onto(law, flow) if loop else law, t, method, h),
-        stops=Stops.of(kinematics.robot_breaks(study, far), output_step, simulation.step, outputs),
+        restart=lambda flow, t, h: after_impact(
+            system, flow, loop.add_held_outputs(law, flow) if loop else law, t, method, h
+        ),
+        stops=Stops.from_breaks(kinematics.robot_breaks(study, far), output_step, simulation.step, outputs),
         check=_Range(study, system, controlled=loop is not None),
         tolerance=simulation.tolerance,
         loop=loop,
@@ -114,13 +119,23 @@ def prepare(study: Study, state: State | None = None, sampled: "Sampled | None" 
         start = replace(start, loop=loop.start())
     chunks = march(problem, start, step, counters)
     if system.slack is not None:
-        chunks = (replace(x, recording=shared(system, x.recording, law(x.recording.time)[0])) for x in chunks)
+        chunks = (
+            replace(x, recording=minimum_energy_recording(system, x.recording, law(x.recording.time)[0]))
+            for x in chunks
+        )
     return RobotMarch(
         system=system, start=start, impact=impact, step=step, chunks=chunks, problem=problem, counters=counters
     )
 
 
-def _around(sampled: "Sampled | None", system: System, study: Study, path: "_Path") -> "SampledLoop | None":
+def _refuse_unfit(study: Study) -> None:
+    """Raise InputError of a study that has statics, but no motion in time."""
+    refuse_massless(study)
+    refuse_growing_plates(study)
+    refuse_gaps(study)
+
+
+def _around(sampled: "SampledController | None", system: System, study: Study, path: "_Path") -> "SampledLoop | None":
     """A controller around a robot, which compiled equations alone have."""
     if sampled is None:
         return None
@@ -166,22 +181,22 @@ def refuse_growing_plates(study: Study) -> None:
             )
 
 
-def _begun(study: Study, system: System, law: Law) -> State:
+def _begun(study: Study, elastic: ElasticRobot, law: Law) -> State:
     """State before the impact projection, with what motors that lag ask for."""
-    state = _configuration(study, system)
+    system, state = elastic.moving, _configuration(study, elastic)
     if not system.kernel.shapes.has("j"):
         return state
     rests = study.initial.start == "equilibrium"
     table, wrench = (part[0] for part in law(np.zeros(1)))
     table[..., 1:3] *= not rests
-    return settled(system, state, table, wrench, rests=rests)
+    return settle_motors(system, state, table, wrench, rests=rests)
 
 
-def _configuration(study: Study, system: System) -> State:
+def _configuration(study: Study, elastic: ElasticRobot) -> State:
     """Configuration and velocities before the impact projection, by the kind of start and what acts until then."""
-    path = kinematics.poses(study.robot, study.motion, np.zeros(1))
+    system, at = elastic.moving, kinematics.rigid_poses(study.robot, study.motion, np.zeros(1))
     built = bool(kinematics.built_parts(study.robot)) and study.initial.start != "equilibrium"
-    straight = (built_state if built else rigid_state)(system, study.robot, path)
+    straight = (built_state if built else rigid_state)(system, at)
     if study.initial.start == "moving":
         return straight
     at_rest = replace(straight, v=np.zeros(system.size), v_dot=np.zeros(system.size))
@@ -190,21 +205,21 @@ def _configuration(study: Study, system: System) -> State:
     refuse_pure_force(study.robot, "the equilibrium start")
     still = system
     if system.kernel.shapes.has("w") or system.kernel.shapes.has("j"):
-        still = robot_system(study.robot, study.simulation, per_loss(study.robot, study.simulation), at_rest=True)
+        still = elastic.resting
         at_rest = replace(at_rest, drive=np.zeros((still.legs, still.ports.size)))
-    acts = rest_load(still, study.robot, path, study.load)
+    acts = rest_load(still, at, elastic.load)
     command = rest_commands(still, study.robot, straight.q[None])[0]
     found = equilibrium(still, at_rest, command, acts.force[0], acts.wrench)
     if not found.found:
         raise ComputationError(f"the robot cannot start at rest: {found.reason}", next_step="See `flexapod check`.")
-    refuse_fallen(still, study.robot, RestStates.of(straight), RestStates.of(found.state))
+    refuse_assembly_change(still, study.robot, RestStates.from_state(straight), RestStates.from_state(found.state))
     if system.kernel.shapes.has("j"):
         return replace(found.state, drive=np.zeros((system.legs, system.ports.size)))
     return found.state if still is system else _summed(study.robot, system, still, found.state)
 
 
 def _summed(robot: Robot, system: System, still: System, state: State) -> State:
-    """A state at rest whose loops have summed what holds their rotors, Eq. (T23.16)."""
+    """State at rest whose loops have the integrals that hold their rotors, Eq. (T23.16)."""
     shapes, q = system.kernel.shapes, state.q.copy()
     force = state.drive[:, still.ports == shapes.index("r")][:, 0]
     gain = np.array([leg.screw.integral if leg.screw is not None else 0.0 for leg in robot.legs])
@@ -223,10 +238,10 @@ class _Path:
         self.output_step, self.outputs = study.simulation.stored_step, study.simulation.outputs(study.duration)
         self.stored, self.centres = np.zeros(0), (np.zeros((0, 3)), np.zeros((0, 3, 3)))
 
-    def poses(self, t: Array) -> kinematics.Poses:
-        """Poses with rates at instants (T,), ascending."""
+    def rigid(self, t: Array) -> kinematics.RigidPoses:
+        """The rigid robot at instants (T,), ascending."""
         if self.last is None or not np.array_equal(t, self.time):
-            self.time, self.last = t, kinematics.poses(self.robot, self.motion, t)
+            self.time, self.last = t, kinematics.rigid_poses(self.robot, self.motion, t)
         return self.last
 
     def centre(self, t: Array) -> tuple[Array, Array]:
@@ -245,7 +260,7 @@ class _Path:
         return place[at], rotation[at]
 
     def exact(self, t: Array) -> tuple[Array, Array]:
-        """The same at any instants, computed one by one."""
+        """Centre of mass and rotation as of `centre` at any instants, computed one by one."""
         place, rotation = kinematics.places(self.robot, self.motion, t)
         return place + rotation @ self.robot.com, rotation
 
@@ -268,7 +283,7 @@ class _Measure:
         self.least = ROUNDING / (study.simulation.tolerance or 1.0)  # what is smaller along a leg does not count
 
     def weights(self) -> tuple[Weight, ...]:
-        """What moves the deviation, and the lateral amplitudes: these may have ten times the error."""
+        """Weights of the deviation, and of the lateral amplitudes, which may have ten times the error."""
         still, lateral = np.zeros(self.system.n), np.zeros(self.system.n)
         if self.fixed:
             along, none = still.copy(), np.zeros(6)
@@ -327,7 +342,9 @@ class _Range:
             (np.abs(q[:, :, self.beta]) > BETA_LIMIT, "its universal joint has turned over"),
         ]
         if self.tilt is not None:
-            turned = flipped(self.system, self.robot, q, recording.pose) | (np.abs(q[:, :, self.tilt]) > BETA_LIMIT)
+            turned = false_root_legs(self.system, self.robot, q, recording.pose) | (
+                np.abs(q[:, :, self.tilt]) > BETA_LIMIT
+            )
             found.append((turned, "its joint at the platform has turned over"))
         for bad, words in found:
             if bad.any():

@@ -1,4 +1,4 @@
-"""A sampled controller around the time integration: channels by name, and what `native/loop.c` reads of them."""
+"""Sampled controller around the time integration: channels by name, and their form for `native/loop.c`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from flexapod.kinematics.robot import robot_limbs
 from flexapod.kinematics.rotations import quaternion
 from flexapod.mechanics.leg.layout import columns, leg_parameters
 from flexapod.model import Leg, Robot
-from flexapod.solve.linear.channels import Geophone, PlantChannel, asked
+from flexapod.solve.linear.channels import Geophone, PlantChannel, plant_channels
 from flexapod.solve.statics.static_loads import force_ports, push_ports
 from flexapod.solve.system import Flow, System
 from flexapod.solve.time.command_tables import Law
@@ -35,7 +35,7 @@ _ASKED = ctypes.CFUNCTYPE(ctypes.c_int, c_double, ctypes.POINTER(c_double), ctyp
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sampled:
+class SampledController:
     """A controller from sample to sample: x_next = A x + B y, u = C x + D y, Eq. (T26.1); or a function in its place.
 
     Parameters
@@ -118,7 +118,7 @@ class SampledLoop:
 
     Parameters
     ----------
-    sampled : Sampled
+    sampled : SampledController
     system : System
     robot : Robot
     path : callable
@@ -130,11 +130,11 @@ class SampledLoop:
         No such channel; an output that moves what is held.
     """
 
-    sampled: Sampled
+    sampled: SampledController
     system: System
 
     def __init__(
-        self, sampled: Sampled, system: System, robot: Robot, path: Callable[[Array], tuple[Array, Array]]
+        self, sampled: SampledController, system: System, robot: Robot, path: Callable[[Array], tuple[Array, Array]]
     ) -> None:
         self.sampled, self.system, self._path = sampled, system, path
         start = path(np.zeros(1))[1][0]
@@ -156,24 +156,24 @@ class SampledLoop:
         return len(self.sampled.readings) + len(self.sampled.outputs) + 1
 
     def start(self) -> Array:
-        """What it remembers before the first sample, as `split` of loop.c says."""
+        """Memory before the first sample, laid out as `split` of loop.c has it."""
         readings, states = len(self.sampled.readings), len(self.sampled.A)
         return np.zeros(
             3 + 2 * states + len(self.sampled.outputs) + (3 + PROOF + self.sampled.delay_samples) * readings
         )
 
-    def held(self, flow: Flow) -> Array:
+    def held_outputs(self, flow: Flow) -> Array:
         """Outputs that are held, (m,)."""
         first = 3 + len(self.sampled.A)
         return flow.loop[first : first + len(self.sampled.outputs)]
 
-    def onto(self, law: Law, flow: Flow) -> Law:
+    def add_held_outputs(self, law: Law, flow: Flow) -> Law:
         """A law with what is held on top."""
 
         def with_held(t: Array) -> tuple[Array, Array]:
             table, load = law(t)
             table = table.copy()
-            for (leg, port, column), value in zip(self._at, self.held(flow), strict=True):
+            for (leg, port, column), value in zip(self._at, self.held_outputs(flow), strict=True):
                 table[:, leg, port, column] += value
             return table, load
 
@@ -212,7 +212,7 @@ class SampledLoop:
             )
 
     def call(self, flow: Flow, begin: float, end: float, rows: Array) -> tuple[_Loop, tuple[Array, ...]]:
-        """What a call in C reads of it, from `begin` to `end` [s], and the arrays that this points to.
+        """Structure that a call in C reads, from `begin` to `end` [s], and the arrays to which it points.
 
         ``rows``: its record, (outputs, width).
         """
@@ -233,7 +233,7 @@ class SampledLoop:
         return loop, (*kept, flow.loop, rows)
 
     def _ask(self, t: float, readings: object, outputs: object) -> int:
-        """The function in place of the matrices; 1 where it fails."""
+        """Call the function in place of the matrices; 1 where it fails."""
         p, m = len(self.sampled.readings), len(self.sampled.outputs)
         try:
             y = np.ctypeslib.as_array(readings, (p,)).copy()  # type: ignore[arg-type]
@@ -257,7 +257,7 @@ def _structures(kind: type[Structure], items: Sequence[Structure]) -> ctypes.Arr
 
 
 def _reading(name: str, system: System, robot: Robot, start: Array, period: float) -> _Reading:
-    """What a channel reads every `period` [s]; ``start``, (3, 3): attitude of the platform at the start."""
+    """Reading of a channel every `period` [s]; ``start``, (3, 3): attitude of the platform at the start."""
     channel = _single(name, robot, "outputs")
     leg, group = max(channel.leg, 0), channel.group
     none = (c_double * 3)()
@@ -303,7 +303,7 @@ def _proof_mass(sensor: Geophone, period: float) -> tuple[Array, Array, Array]:
 
 
 def _single(name: str, robot: Robot, key: str) -> PlantChannel:
-    found = asked(name, robot, key)
+    found = plant_channels(name, robot, key)
     if len(found) != 1 or found[0].name != re.sub(r"\s*\[.*\]", "", name):
         raise InputError(
             "is not one channel",
@@ -315,7 +315,7 @@ def _single(name: str, robot: Robot, key: str) -> PlantChannel:
 
 
 def _moving_base(robot: Robot) -> bool:
-    """Whether base joints do not stand still, or legs close the attitude too."""
+    """Test whether base joints move, or legs close the attitude too."""
     return bool(robot.base_mount or robot.base_motion or robot.platform_mount or robot_limbs(robot).carriage)
 
 
@@ -340,7 +340,7 @@ def _action(name: str, system: System, robot: Robot) -> _Action:
         )
     leg = channel.leg
     at = push_ports(system, robot)[leg]
-    if system.enforced[leg, at]:
+    if system.enforced_mask[leg, at]:
         raise InputError(
             f"moves leg {leg + 1}, whose drive keeps its command whatever the force",
             key="controller.outputs",

@@ -35,7 +35,7 @@ def consistent_start(
     jerk = _jerk(system, x, law, now, h)
     if system.hub:
         jerk = _resolved(system, m, jerk, h)
-    a = np.where(system.fixed, x.v_dot, x.v_dot + method.delta * h * jerk)  # (T6.13)
+    a = np.where(system.fixed_mask, x.v_dot, x.v_dot + method.delta * h * jerk)  # (T6.13)
     v = x.v + method.velocity_defect * h**2 * normal_velocity(system, m, jerk)  # (T6.14)
     return Flow(v=v, a=a, **parts), impact
 
@@ -44,12 +44,12 @@ def _given(system: System, table: Array, column: int) -> Array:
     """Rates (column 1) or accelerations (2) of the coordinates that are held, (size,); zero elsewhere."""
     given = np.zeros(system.size)
     system.by_leg(given)[:, system.ports] = table[:, :, column]
-    return np.where(system.fixed, given, 0.0)
+    return np.where(system.fixed_mask, given, 0.0)
 
 
-def constrained(system: System, A: Array, G: Array, r: Array, g: Array) -> tuple[Array, Array]:
+def solve_constrained(system: System, A: Array, G: Array, r: Array, g: Array) -> tuple[Array, Array]:
     """Solve A x + G^T lam = r, G x = g for the coordinates that are not fixed; x is zero for those that are."""
-    free, x, tie = ~system.fixed, np.zeros(system.size), system.independent
+    free, x, tie = ~system.fixed_mask, np.zeros(system.size), system.independent
     if tie is not None:  # what legs share is one coordinate
         y, lam = saddle_solve(tie.T @ A @ tie, G @ tie, tie.T @ r, g)
         return tie @ y, lam
@@ -59,12 +59,12 @@ def constrained(system: System, A: Array, G: Array, r: Array, g: Array) -> tuple
 
 def _impact(system: System, x: State, m: Matrices, table: Array) -> tuple[State, float]:
     """Velocities after the projection, Eq. (T6.10), and the step of kinetic energy [J]."""
-    jump = np.where(system.fixed, _given(system, table, 1) - x.v, 0.0)
+    jump = np.where(system.fixed_mask, _given(system, table, 1) - x.v, 0.0)
     gap = -m.G @ (x.v + jump)
     if np.abs(np.concatenate([jump, gap])).max() < 1e-12:
         return x, 0.0
-    step, _ = constrained(system, m.M, m.G, -m.M @ jump, gap)
-    v = np.where(system.fixed, _given(system, table, 1), x.v + step)
+    step, _ = solve_constrained(system, m.M, m.G, -m.M @ jump, gap)
+    v = np.where(system.fixed_mask, _given(system, table, 1), x.v + step)
     return replace(x, v=v), float(0.5 * v @ m.M @ v - 0.5 * x.v @ m.M @ x.v)
 
 
@@ -77,10 +77,10 @@ def accelerations(system: System, x: State, table: Array, wrench: Array, h: floa
     rest = replace(x, v_dot=given, lam=np.zeros_like(x.lam), drive=np.zeros_like(x.drive))
     r, _, _ = system.residual(rest, table, wrench, h)
     m = system.matrices(x, wrench)
-    step, lam = constrained(system, m.M, m.G, -r, _constraint_curvature(system, x) - m.G @ given)
+    step, lam = solve_constrained(system, m.M, m.G, -r, _constraint_curvature(system, x) - m.G @ given)
     found = replace(rest, v_dot=given + step, lam=lam.reshape(x.lam.shape))
     own = system.by_leg(system.residual(found, table, wrench, h)[0])
-    return replace(found, drive=np.where(system.enforced, own, 0.0)[:, system.ports])
+    return replace(found, drive=np.where(system.enforced_mask, own, 0.0)[:, system.ports])
 
 
 def _constraint_curvature(system: System, x: State) -> Array:
@@ -91,7 +91,7 @@ def _constraint_curvature(system: System, x: State) -> Array:
     step, legs = 1e-4, system.by_leg(x.v)
     t, payload = step * np.array([1.0, -1.0, 2.0, -2.0]), x.v[legs.size :]
     here = RestStates(**{name: np.repeat(getattr(x, name)[None], 4, axis=0) for name in ("q", "pose", "lam", "drive")})
-    m = matrices_at_rest(system, here.moved(t[:, None, None] * legs, t[:, None] * payload), np.zeros(6))
+    m = matrices_at_rest(system, here.displace(t[:, None, None] * legs, t[:, None] * payload), np.zeros(6))
     rate = ((m.J @ legs[..., None])[..., 0] - m.P @ payload).reshape(4, -1)
     return -(8 * (rate[0] - rate[1]) - (rate[2] - rate[3])) / (12 * step)
 
@@ -99,7 +99,7 @@ def _constraint_curvature(system: System, x: State) -> Array:
 def _jerk(system: System, x: State, law: Law, now: float, h: float) -> Array:
     """Time derivative of the accelerations at the start, (size,), by a one-sided difference over a small time."""
     t = min(1e-3 * h, 1e-6)
-    ahead = system.moved(x, t * x.v + 0.5 * t**2 * x.v_dot)
+    ahead = system.displace(x, t * x.v + 0.5 * t**2 * x.v_dot)
     table, wrench = (part[0] for part in law(np.array([now + t])))
     later = accelerations(system, replace(ahead, v=x.v + t * x.v_dot), table, wrench, t)
     return (later.v_dot - x.v_dot) / t
@@ -110,9 +110,9 @@ def _resolved(system: System, m: Matrices, jerk: Array, h: float) -> Array:
     left, t = jerk, FOLLOWED * h
     A = m.M + t * m.D + t**2 * m.K
     for _ in range(2):
-        given = np.where(system.fixed, left, 0.0)
+        given = np.where(system.fixed_mask, left, 0.0)
         rest = left - given
-        part, _ = constrained(system, A, m.G, m.M @ left - A @ given, m.G @ rest)
+        part, _ = solve_constrained(system, A, m.G, m.M @ left - A @ given, m.G @ rest)
         left = rest - part
     return jerk - left
 
@@ -122,4 +122,4 @@ def normal_velocity(system: System, m: Matrices, vector: Array) -> Array:
 
     For a velocity this is the part that violates the closures' rates, held coordinates included.
     """
-    return constrained(system, m.M, m.G, np.zeros(system.size), m.G @ vector)[0]
+    return solve_constrained(system, m.M, m.G, np.zeros(system.size), m.G @ vector)[0]

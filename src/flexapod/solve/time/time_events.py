@@ -1,4 +1,4 @@
-"""Where the steps of a time integration have to end: at breaks of commands and loads, Eq. (T6.17)."""
+"""Instants at which the steps of a time integration have to end: breaks of commands and loads, Eq. (T6.17)."""
 
 from bisect import bisect_left
 from collections.abc import Sequence
@@ -35,7 +35,7 @@ class Stops:
     every: tuple[Stop, ...] = ()
 
     @classmethod
-    def of(cls, breaks: Breaks, output_step: float, step: float | None, outputs: int) -> "Stops":
+    def from_breaks(cls, breaks: Breaks, output_step: float, step: float | None, outputs: int) -> "Stops":
         """Sort breaks up to the last output; a corner on an output instant needs nothing."""
         near = min(NEAR, SHARE * (step or output_step))
         stops = cls(output_step=output_step, every=tuple(_joined(breaks, near)))
@@ -48,7 +48,7 @@ class Stops:
                 stops.inside.setdefault(k, []).append(stop)
         return stops
 
-    def within(self, interval: int, per_output: float) -> Sequence[Stop]:
+    def unaligned_stops(self, interval: int, per_output: float) -> Sequence[Stop]:
         """Stops inside an interval that its steps do not meet anyway: jumps, and corners off the grid of steps."""
         found = self.inside.get(interval, ())
         return () if all(self._met(stop, per_output) for stop in found) else found
@@ -67,17 +67,17 @@ class Stops:
         for k in self._places[bisect_left(self._places, done) : bisect_left(self._places, most)]:
             if k > done and k in self.ends:
                 return k
-            if self.within(k, per_output):
+            if self.unaligned_stops(k, per_output):
                 return max(k, done + 1)
         return most
 
 
-def before(instant: float) -> float:
+def just_before(instant: float) -> float:
     """Just before a break: the value that a command has until then."""
     return instant - 1e-12 * max(1.0, instant)
 
 
-def after(instant: float) -> float:
+def just_after(instant: float) -> float:
     """Just after a break."""
     return instant + 1e-12 * max(1.0, instant)
 

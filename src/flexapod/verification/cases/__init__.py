@@ -34,8 +34,7 @@ __all__ = ["CASES"]
 _SUBJECTS = (
     bending, solids, turning, sliding, integration, hexapods, frequencies, stiffness, mechanisms,
     slider_crank, squeezer, four_bar, bricard, real_parts, machines, linear, control, feed_forward,
-    mujoco_forces, calculix_beams, calculix_beams, exudyn,
-    exudyn_parts, linear,
+    mujoco_forces, calculix_beams, exudyn, exudyn_parts,
 )  # fmt: skip
 
 

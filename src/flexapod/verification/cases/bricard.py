@@ -14,7 +14,7 @@ from flexapod.common.arrays import Array
 from flexapod.mechanics.symbolic.vocabulary import SX, constant, cos, dot, mtimes, sin, time_derivative, vertcat, zeros
 from flexapod.solve.time.recording import Recording
 from flexapod.verification.case import Check, case, checks
-from flexapod.verification.mechanism import Mechanism, extrapolated, run_mechanism, still
+from flexapod.verification.mechanism import Mechanism, extrapolate_second_order, rest_motion, run_mechanism
 
 LENGTH, SIDE, MASS, GRAVITY = 1.0, 0.1, 1.0, 9.81  # m, m, kg, m/s^2
 HINGES = np.array([[0, 0, 0], [1, 0, 0], [1, -1, 0], [1, -1, 1], [0, -1, 1], [0, 0, 1]]) * LENGTH
@@ -80,7 +80,7 @@ def run(steps: int) -> list[Recording]:
     loop = Mechanism(
         branch=_branch,
         hub=_hub,
-        drive=still,
+        drive=rest_motion,
         shapes=0,
         parameters=np.array([[0.0], [OFFSET]]),
         file=__file__,
@@ -110,7 +110,7 @@ def motion(steps: int) -> tuple[Array, Array, Array]:
 )
 def _bricard() -> list[Check]:
     coarse, fine = motion(STEPS), motion(2 * STEPS)
-    angles, energy = (extrapolated(coarse[i], fine[i]) for i in (0, 2))
+    angles, energy = (extrapolate_second_order(coarse[i], fine[i]) for i in (0, 2))
     first, copies = fine[0], fine[1]
     one, two = np.sin(first[:, 0]), np.sin(first[:, 1])
     rows = [

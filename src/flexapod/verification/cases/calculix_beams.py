@@ -1,12 +1,10 @@
-"""Solid beams by CalculiX: the piston and the beam of the paper's Table 2, and our solid on the same mesh.
+"""CalculiX: solid beams, the piston and the beam of the paper's Table 2, and whole locked robots.
 
-What a solid beam does and an Euler-Bernoulli beam leaves out: rotary inertia and shear, to first order.
-
-Both are far below the rest: with the mode's displacement v, slope v' and v''' they add ``rho I int v'^2 dx`` to the
-kinetic energy and ``(EI)^2 / (k G A) int v'''^2 dx`` to the complementary energy (Rayleigh's quotient; S. Timoshenko,
+Robots are those of the deck that `flexapod export` writes; our solid beam has the same mesh. Rotary inertia and
+shear, which a solid beam has and an Euler-Bernoulli beam leaves out, are added to first order. Both are far
+below the rest: with the mode's displacement v, slope v' and v''' they add ``rho I int v'^2 dx`` to the kinetic
+energy and ``(EI)^2 / (k G A) int v'''^2 dx`` to the complementary energy (Rayleigh's quotient; S. Timoshenko,
 "Vibration Problems in Engineering", 3rd ed. 1955, art. 55). The second order is of the size of their square.
-
-Whole locked robots by CalculiX, from the deck that `flexapod export` writes.
 """
 
 from __future__ import annotations
@@ -26,7 +24,7 @@ from flexapod.mechanics.shapes.beam_functions import gauss_unit
 from flexapod.output.exchange.decks import ELEMENTS, clamped_frequencies, clamped_release
 from flexapod.output.exchange.pose_deck import abaqus_deck
 from flexapod.solve.fem.frequencies import frequencies
-from flexapod.solve.fem.hexahedra import SolidMesh, extruded
+from flexapod.solve.fem.hexahedra import SolidMesh, extrude_section
 from flexapod.solve.fem.section_mesh import section_mesh
 from flexapod.solve.modal.actuator_modes import actuator_modes
 from flexapod.solve.modal.at_poses import robot_modes
@@ -34,7 +32,7 @@ from flexapod.solve.modal.modes import RobotModes
 from flexapod.verification.case import Check, case, checks
 from flexapod.verification.engines import calculix
 from flexapod.verification.engines.engine import CALCULIX
-from flexapod.verification.robots import ROUND, STEEL, unlike_legs, without_cylinders, without_gravity
+from flexapod.verification.robots import ROUND, STEEL, with_unequal_legs, without_cylinders, without_gravity
 
 ONE_ELEMENT = 2.0
 """E / k G of solid elements at Poisson's ratio 0, one across the height: their section stays plane, so k = 1."""
@@ -86,7 +84,7 @@ def robot_thick(robot: model.Robot, found: RobotModes, shear: float) -> Array:
 
 
 def _thick(frequency: Array, inertia: Array, give: Array) -> Array:
-    """Of mass-normalised modes: what is added to their kinetic energy, and taken from their squared frequency.
+    """Frequencies [Hz] of mass-normalised modes, lowered by rotary inertia and by shear.
 
     Written as one quotient, which for a pinned beam leaves only the product of both out.
     """
@@ -108,7 +106,7 @@ _THREE_MESHES = "CalculiX, C3D20R on three meshes and the limit of two"
 
 
 def _mesh(section: model.Tube | model.Rectangle, size: float, length: float, layers: int, kind: str) -> SolidMesh:
-    return extruded(section_mesh(section, size, kind), length, layers)
+    return extrude_section(section_mesh(section, size, kind), length, layers)
 
 
 def _theirs(mesh: SolidMesh, material: model.Material, poisson: float, *, reduced: bool) -> Array:
@@ -118,19 +116,19 @@ def _theirs(mesh: SolidMesh, material: model.Material, poisson: float, *, reduce
 
 
 def _limit(coarse: Array, fine: Array) -> Array:
-    """Of two meshes, the second with half the edges: the error falls with their fourth power (Richardson)."""
+    """Limit of two meshes, the second with half the edges; errors fall with their fourth power (Richardson)."""
     return fine + (fine - coarse) / 15
 
 
 def _compared(found: dict[str, Array], limit: Array, ours: Array, tolerance: Array) -> Iterator[Check]:
-    """Each mesh may be off by what it differs from the limit, and the limit by `tolerance`."""
+    """Compare ours with each mesh and their limit, within `tolerance` plus the mesh's distance from it."""
     for name, f in {**found, "limit": limit}.items():
         bound = tolerance + np.abs(limit / f - 1)
         yield from checks([f"{name}, bending {i + 1}" for i in range(len(ours))], f, ours, bound, "Hz")
 
 
 def _correction(beam: model.Actuator, thick: Array) -> Array:
-    """How far shear and rotary inertia lower the frequencies."""
+    """Relative decrease of the frequencies by shear and rotary inertia."""
     thin = actuator_modes(beam, model.Simulation(basis="clamped-free", modes=5)).frequency
     return 1 - thick / thin[: len(thick)]
 
@@ -282,7 +280,7 @@ def _calculix_robot() -> list[Check]:
     return [
         *_robot_frequencies("preset", robot, None),
         *_robot_frequencies("no cylinders", without_cylinders(robot), None),
-        *_robot_frequencies("unlike legs, rolled", unlike_legs(robot), ROLLED),
+        *_robot_frequencies("unlike legs, rolled", with_unequal_legs(robot), ROLLED),
     ]
 
 

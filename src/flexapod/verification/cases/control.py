@@ -18,7 +18,7 @@ __all__: list[str] = []
 
 
 def _system(A: ArrayLike, B: ArrayLike, C: ArrayLike, D: ArrayLike) -> StateSpace:
-    """One drive that moves a stroke."""
+    """State-space model of one drive that moves a stroke."""
     A, B = (np.asarray(x, dtype=float) for x in (A, B))
     n = len(A)
     return StateSpace(
@@ -28,7 +28,7 @@ def _system(A: ArrayLike, B: ArrayLike, C: ArrayLike, D: ArrayLike) -> StateSpac
 
 
 def _limit(stable: Callable[[float], bool], low: float, high: float) -> float:
-    """Where something stops to be stable."""
+    """Largest stable value between `low` and `high`, by bisection."""
     for _ in range(50):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if stable(middle) else (low, middle)

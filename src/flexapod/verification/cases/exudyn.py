@@ -12,11 +12,11 @@ from flexapod import kinematics, model
 from flexapod.analysis.actuator import simulate_actuator
 from flexapod.analysis.simulation import simulate
 from flexapod.common.arrays import Array
-from flexapod.verification.case import Case, Check, case, checks, curves
+from flexapod.verification.case import Case, Check, case, checks, curve_checks
 from flexapod.verification.cases.turning import DURATION, TABLE
 from flexapod.verification.engines.engine import EXUDYN
 from flexapod.verification.engines.exudyn_actuator import simulate_actuator as exudyn_actuator
-from flexapod.verification.engines.exudyn_integration import Integration, extrapolated
+from flexapod.verification.engines.exudyn_integration import Integration, extrapolate_first_order
 from flexapod.verification.engines.exudyn_robot import MESHES, STEP, simulate_robot
 
 SPIN_UP_STEP, ELEMENTS = 5e-3, 16
@@ -54,7 +54,7 @@ def _sliding_beam(duration: float, elements: int) -> list[Check]:
     study = model.override(model.preset("paper-actuator"), duration=duration)
     plan = Integration(duration=duration, step=SLIDING_STEP, tolerance=1e-5)
     coarse, fine = (exudyn_actuator(study, plan, elements=n).tip_deflection for n in (elements, 2 * elements))
-    theirs = extrapolated(coarse, fine)
+    theirs = extrapolate_first_order(coarse, fine)
     ours = simulate_actuator(study, modes=3, step=SLIDING_STEP, output_step=SLIDING_STEP).tip_deflection.values
     peak, half = float(np.abs(theirs).max()), float(np.abs(fine - coarse).max()) / 2
     worst = float(np.abs(ours - theirs).max())
@@ -118,7 +118,7 @@ def _robot(amplitude: float, travel: float, duration: float) -> Iterator[Check]:
     theirs, ours = pair("com_deviation")
     yield from checks(["sag at the start, y", "sag at the start, z"], theirs[0, 1:], ours[0, 1:], 1e-5, "m")
     for i, axis in enumerate("xyz"):
-        yield from curves(f"deviation, {axis}", theirs[:, i], ours[:, i], 2e-3, 1e-2, "m")
+        yield from curve_checks(f"deviation, {axis}", theirs[:, i], ours[:, i], 2e-3, 1e-2, "m")
     yield from _forces_and_tips(pair)
 
 
@@ -131,12 +131,12 @@ def _curve_pairs(
     plan = Integration(duration=duration, step=STEP)
     coarse, fine = (simulate_robot(robot, motion, plan, elements=n, guide=d, time_limit=900.0) for n, d in MESHES)
     data = simulate(robot, motion, modes=3, axial_modes=2, step=STEP, output_step=STEP, duration=duration)
-    return lambda name: (extrapolated(getattr(coarse, name), getattr(fine, name)), data[name].values)
+    return lambda name: (extrapolate_first_order(getattr(coarse, name), getattr(fine, name)), data[name].values)
 
 
 def _forces_and_tips(pair: Callable[[str], tuple[Array, Array]]) -> Iterator[Check]:
-    yield from curves("drive force", *pair("actuator_force"), 5e-4, 2e-3, "N")
-    yield from curves("deflection of a tip", *pair("tip_deflection"), 1e-2, 4e-2, "m")
+    yield from curve_checks("drive force", *pair("actuator_force"), 5e-4, 2e-3, "N")
+    yield from curve_checks("deflection of a tip", *pair("tip_deflection"), 1e-2, 4e-2, "m")
 
 
 FLEXIBLE = [
@@ -172,5 +172,5 @@ def _exudyn_tripod() -> Iterator[Check]:
     pair = _curve_pairs("tripod", motion, 0.3)
     theirs, ours = pair("com_deviation")
     yield Check("sag at the start, z", theirs[0, 2], ours[0, 2], 1e-4, "m")
-    yield from curves("deviation, y", theirs[:, 1], ours[:, 1], 1e-2, 4e-2, "m")
+    yield from curve_checks("deviation, y", theirs[:, 1], ours[:, 1], 1e-2, 4e-2, "m")
     yield from _forces_and_tips(pair)

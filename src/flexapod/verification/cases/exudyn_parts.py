@@ -1,4 +1,4 @@
-"""A hexapod on joints that give way, springs and screws, against Exudyn."""
+"""Hexapod on compliant joints, springs and screws, against Exudyn."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from flexapod import model
 from flexapod.analysis.simulation import simulate
 from flexapod.common.arrays import Array
 from flexapod.model.leg.friction import TurningStribeck
-from flexapod.verification.case import Check, case, curves
+from flexapod.verification.case import Check, case, curve_checks
 from flexapod.verification.engines.engine import EXUDYN
 from flexapod.verification.engines.exudyn_integration import Integration
 from flexapod.verification.engines.exudyn_robot import simulate_robot
@@ -28,8 +28,8 @@ MOTION = model.CombinedMotion(
 )
 
 
-def damped(robot: model.Robot, **drive: Any) -> model.Robot:
-    """A robot on screws with a damper for every loss factor, as drawn, without friction and damping of its pistons."""
+def with_dampers(robot: model.Robot, **drive: Any) -> model.Robot:
+    """Nominal robot on screws with a damper for every loss factor, without friction and damping of its pistons."""
     none = {"stiffness_loss": None, "stiffness_damping": DAMPER, "friction": None}
 
     def leg(old: model.Leg) -> model.Leg:
@@ -48,7 +48,7 @@ def damped(robot: model.Robot, **drive: Any) -> model.Robot:
     return robot.replace(heat=None, tolerances=None, legs=tuple(leg(old) for old in robot.legs))
 
 
-def rubbing(robot: model.Robot) -> model.Robot:
+def with_joint_friction(robot: model.Robot) -> model.Robot:
     """The robot with friction in all its joints and screws."""
 
     def leg(old: model.Leg) -> model.Leg:
@@ -70,7 +70,7 @@ def _curves(robot: model.Robot, *, flexible: bool = True) -> dict[str, tuple[Arr
 
 
 def _checked(name: str, found: dict[str, tuple[Array, Array]]) -> Iterator[Check]:
-    """Their largest values, and largest differences."""
+    """Check largest values and largest differences of the curves of Exudyn and ours."""
     a, b = found["com_deviation"]
     yield Check(f"{name}: sag at the start, z", a[0, 2], b[0, 2], 1e-4, "m")
     for what, key, unit, bound in (
@@ -79,7 +79,7 @@ def _checked(name: str, found: dict[str, tuple[Array, Array]]) -> Iterator[Check
         ("deflection of a tip", "tip_deflection", "m", 8e-2),
     ):
         if key in found:
-            yield from curves(f"{name}: {what}", *found[key], bound, bound, unit)
+            yield from curve_checks(f"{name}: {what}", *found[key], bound, bound, unit)
 
 
 @case(
@@ -95,14 +95,14 @@ def _checked(name: str, found: dict[str, tuple[Array, Array]]) -> Iterator[Check
 )
 def _exudyn_real_parts() -> list[Check]:
     robot = model.preset("machine-hexapod").robot
-    plain = damped(robot, command="servo", loop=LOOP)
-    held, loop, everything = (_curves(x) for x in (damped(robot), plain, rubbing(plain)))
+    plain = with_dampers(robot, command="servo", loop=LOOP)
+    held, loop, everything = (_curves(x) for x in (with_dampers(robot), plain, with_joint_friction(plain)))
     del everything["tip_deflection"]  # by their moment: its friction acts on the cylinder, as cables have no frame
-    without, rubbed = (_curves(x, flexible=False)["com_deviation"] for x in (plain, rubbing(plain)))
+    without, rubbed = (_curves(x, flexible=False)["com_deviation"] for x in (plain, with_joint_friction(plain)))
     theirs, ours = (y - x for x, y in zip(without, rubbed, strict=True))
     return [
         *_checked("held", held),
         *_checked("loop", loop),
         *_checked("everything", everything),
-        *curves("what friction changes of the path, pistons rigid", theirs, ours, 0.04, 0.04, "m"),
+        *curve_checks("what friction changes of the path, pistons rigid", theirs, ours, 0.04, 0.04, "m"),
     ]

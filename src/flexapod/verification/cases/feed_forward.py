@@ -1,4 +1,4 @@
-"""Commands ahead of time: shapers, least times, zeros and inverses, loaded paths."""
+"""Feedforward commands: shapers, least times, zeros and inverses, loaded paths."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from flexapod.analysis.actuator import simulate_actuator
 from flexapod.analysis.simulation import simulate
 from flexapod.commissioning.feedforward import compensate
 from flexapod.commissioning.feedforward.actuator_inversion import inverse, tip_inversion
-from flexapod.commissioning.feedforward.bang_bang import switched
-from flexapod.commissioning.feedforward.modal_path import vibration_along
+from flexapod.commissioning.feedforward.bang_bang import bang_bang_input
+from flexapod.commissioning.feedforward.modal_path import path_vibration
 from flexapod.commissioning.feedforward.shapers import insensitivity, shaper
 from flexapod.common.arrays import Array
 from flexapod.control import StateSpace
@@ -48,7 +48,7 @@ def _shaper_impulses() -> Iterator[Check]:
         made = shaper(kind, 3.0, 0.1)
         names = [f"{kind} {k + 1}" for k in range(len(exact))]
         yield from checks(names, np.array(exact) / np.sum(exact), made.amplitudes, 1e-14)
-        yield Check(f"{kind}, left", 0.0, float(made.left(3.0, 0.1)), 1e-14, absolute=True)
+        yield Check(f"{kind}, left", 0.0, float(made.residual_share(3.0, 0.1)), 1e-14, absolute=True)
 
 
 def two_masses() -> StateSpace:
@@ -68,7 +68,7 @@ def two_masses() -> StateSpace:
 def _least_time() -> Iterator[Check]:
     printed = {False: (1.0027, 2.1089, 3.2152, 4.2179), True: (0.7124, 1.6563, 2.9330, 5.8660)}
     for robust, exact in printed.items():
-        found = switched(two_masses(), 1.0, robust=robust)
+        found = bang_bang_input(two_masses(), 1.0, robust=robust)
         names = [f"{'robust, ' * robust}{x}" for x in ("first", "second", "third", "end")]
         yield from checks(names, exact, [*found.times[:3], found.duration], 5.1e-5, "s", absolute=True)
 
@@ -141,7 +141,7 @@ def _loaded_path() -> Iterator[Check]:
     ahead = compensate(study.replace(motion=motion))
     for t in (0.0, 0.37, 1.0):
         wanted, told = (coordinates(x, np.array([t])).position[0] for x in (motion, ahead.motion))
-        off = _where(study.robot, told)[0] - _pose(study.robot, wanted)[0]
+        off = _weight_pose(study.robot, told)[0] - _pose(study.robot, wanted)[0]
         yield Check(f"t = {t:g} s", 0.0, float(np.linalg.norm(off)), 2e-11, "m", absolute=True)
 
 
@@ -149,17 +149,17 @@ def _pose(robot: model.Robot, x: Array) -> tuple[Array, Array]:
     return robot.home_position + x[:3], Rotation.from_euler("xyz", x[3:]).as_matrix()
 
 
-def _where(robot: model.Robot, x: Array) -> tuple[Array, Array]:
+def _weight_pose(robot: model.Robot, x: Array) -> tuple[Array, Array]:
     """Place and attitude of the weight on springs of the lengths that the rigid robot has at coordinates x."""
     p0, R0 = _pose(robot, x)
     piston, load = robot.legs[0].piston, robot.payload
     free = np.linalg.norm(p0 + robot.platform_joints @ R0.T - robot.base_joints, axis=1)
 
-    def turned(y: Array) -> tuple[Array, Array]:
+    def displaced_pose(y: Array) -> tuple[Array, Array]:
         return p0 + 1e-5 * y[:3], Rotation.from_rotvec(1e-5 * y[3:]).as_matrix() @ R0
 
     def balance(y: Array) -> Array:
-        p, R = turned(y)
+        p, R = displaced_pose(y)
         arms = robot.platform_joints @ R.T
         legs = p + arms - robot.base_joints
         long = np.linalg.norm(legs, axis=1)
@@ -167,11 +167,11 @@ def _where(robot: model.Robot, x: Array) -> tuple[Array, Array]:
         moment = np.cross(arms, push).sum(axis=0) + np.cross(R @ robot.com, weight)
         return np.concatenate([push.sum(axis=0) + weight, moment])
 
-    return turned(least_squares(balance, np.zeros(6), xtol=1e-15, ftol=1e-15, gtol=1e-15).x)
+    return displaced_pose(least_squares(balance, np.zeros(6), xtol=1e-15, ftol=1e-15, gtol=1e-15).x)
 
 
 def _heaving(profile: Profile, periods: float) -> tuple[model.Study, float]:
-    """A symmetric hexapod of soft springs that heaves by a micrometre; its frequency [rad/s], by hand."""
+    """Symmetric hexapod of soft springs that heaves by a micrometre; its frequency [rad/s] in closed form."""
     study = _springs(SOFT, com=[0, 0, 0])
     robot, piston = study.robot.replace(gravity=[0, 0, 0]), study.robot.legs[0].piston
     axes = robot.platform_joints + robot.home_position - robot.base_joints
@@ -192,11 +192,11 @@ def _heave_left() -> Iterator[Check]:
         s = 2 * np.pi * periods
         exact = 120 / s**5 * abs((12 - s**2) * np.sin(s / 2) - 6 * s * np.cos(s / 2))
         moving = study.motion.end_time
-        ours = vibration_along(study, moving, moving + 10 / w).after(moving) / 1e-6
+        ours = path_vibration(study, moving, moving + 10 / w).largest_after(moving) / 1e-6
         yield Check(f"quintic, {periods:g} periods", exact, ours, 2e-3)
     study, w = _heaving("trapezoid", 4.0)
     moving = study.motion.end_time
-    left = vibration_along(study, moving, moving + 10 / w).after(moving) / 1e-6
+    left = path_vibration(study, moving, moving + 10 / w).largest_after(moving) / 1e-6
     yield Check("ramps of a period", 0.0, left, 1e-4, absolute=True)
 
 

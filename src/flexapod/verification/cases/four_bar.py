@@ -8,7 +8,7 @@ from flexapod.common.arrays import Array
 from flexapod.mechanics.symbolic.vocabulary import SX, cos, dot, sin, time_derivative, vertcat, zeros
 from flexapod.solve.time.recording import Recording
 from flexapod.verification.case import Check, case
-from flexapod.verification.mechanism import Mechanism, extrapolated, run_mechanism, still
+from flexapod.verification.mechanism import Mechanism, extrapolate_second_order, rest_motion, run_mechanism
 
 LENGTH, MASS, GRAVITY, SPEED = 1.0, 1.0, 9.81, 1.0  # m, kg, m/s^2, m/s
 DURATION, STEPS = 10.0, 40_000
@@ -51,7 +51,7 @@ def run(steps: int) -> list[Recording]:
     windows = Mechanism(
         branch=_branch,
         hub=_hub,
-        drive=still,
+        drive=rest_motion,
         shapes=0,
         parameters=np.array([[-1.0], [1.0]]),
         file=__file__,
@@ -77,5 +77,5 @@ def end_state(steps: int) -> Array:
     "error of order four, 1e-10",
 )
 def _four_bar() -> list[Check]:
-    ours = extrapolated(end_state(STEPS), end_state(2 * STEPS)).tolist()
+    ours = extrapolate_second_order(end_state(STEPS), end_state(2 * STEPS)).tolist()
     return [Check(name, a, b, 2e-9, unit) for name, a, b, unit in zip(NAMES, END, ours, UNITS, strict=True)]

@@ -15,9 +15,9 @@ from flexapod.verification import dynamic_stiffness
 from flexapod.verification.case import Case, Check, case, checks
 from flexapod.verification.dynamic_stiffness import (
     legs_and_body,
-    missing_polynomials,
-    missing_sines,
-    missing_twist,
+    polynomial_truncation,
+    sine_truncation,
+    twist_truncation,
     wave_number,
 )
 from flexapod.verification.robots import (
@@ -27,7 +27,7 @@ from flexapod.verification.robots import (
     table,
     tricept,
     tripod,
-    unlike_legs,
+    with_unequal_legs,
     without_cylinders,
     without_gravity,
 )
@@ -43,13 +43,13 @@ FEWEST = {"assumed-modes": 2, "beam-fem": 8, "finite-segment": 8}  # shapes that
 
 
 def _bound(legs: list[dynamic_stiffness.UniformLeg], frequency: Array, fidelity: str, shapes: int) -> Array:
-    """What the shapes leave out of the frequencies, relative."""
-    rest = missing_sines(legs, frequency, AXIAL) + ROUNDING
+    """Bound on the relative error of frequencies [Hz] by the shapes that are left out."""
+    rest = sine_truncation(legs, frequency, AXIAL) + ROUNDING
     if fidelity == "beam-fem":
         return 1.2 * (wave_number(legs, frequency) / (shapes / 2)) ** 4 / 1440 + rest
     if fidelity == "finite-segment":
         return (wave_number(legs, frequency) / shapes) ** 2 / 24 + rest
-    return missing_polynomials(legs, frequency, shapes) + rest
+    return polynomial_truncation(legs, frequency, shapes) + rest
 
 
 @case(
@@ -67,7 +67,7 @@ def _locked_robot() -> list[Check]:
     for name, body, pose, ladder in (
         ("preset", robot, HOME, LADDER),
         ("no cylinders", without_cylinders(robot), HOME, LADDER),
-        ("unlike legs, rolled", unlike_legs(robot), ROLLED, (ASSUMED,)),
+        ("unlike legs, rolled", with_unequal_legs(robot), ROLLED, (ASSUMED,)),
     ):
         legs, payload = legs_and_body(body, pose)
         exact = dynamic_stiffness.robot_frequencies(legs, payload, max(SHOWN))
@@ -90,8 +90,8 @@ def _lowest(make: Callable[[], Robot]) -> list[Check]:
     legs, body = legs_and_body(robot, HOME)
     exact = dynamic_stiffness.robot_frequencies(legs, body, COUNT)
     ours = modes(robot, modes=LATERAL, axial_modes=AXIAL).frequency.values
-    bound = missing_polynomials(legs, exact, LATERAL) + missing_sines(legs, exact, AXIAL)
-    bound += missing_twist(legs, exact) + SPREAD
+    bound = polynomial_truncation(legs, exact, LATERAL) + sine_truncation(legs, exact, AXIAL)
+    bound += twist_truncation(legs, exact) + SPREAD
     return checks([f"frequency {i + 1}" for i in range(COUNT)], exact, ours[:COUNT], bound, "Hz")
 
 

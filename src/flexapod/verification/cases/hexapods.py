@@ -10,7 +10,7 @@ from flexapod import model
 from flexapod.common.arrays import Array
 from flexapod.kinematics.forward import all_postures
 from flexapod.kinematics.inverse import leg_lengths
-from flexapod.kinematics.jacobian import characteristic_length, length_jacobian, scaled, stiffness
+from flexapod.kinematics.jacobian import characteristic_length, dimensionless_jacobian, length_jacobian, stiffness
 from flexapod.kinematics.trajectory import rotation_matrix
 from flexapod.verification.case import Check, case, checks
 
@@ -32,12 +32,12 @@ def joints(edge: float) -> tuple[Array, Array]:
     return lower @ axes.T, upper @ axes.T
 
 
-def at_the_centre(edge: float) -> Array:
+def centre_stiffness(edge: float) -> Array:
     """Stiffness (6, 6) at the centre in units of that of a leg: diagonal."""
     return np.diag([2, 2, 2, edge**2 / 2, edge**2 / 2, 2 * edge**2])
 
 
-def above_the_centre() -> Array:
+def offset_stiffness() -> Array:
     """Stiffness (6, 6) at a point 70 mm above the centre of the cube of 100 mm times root 3."""
     table = np.diag([2.0, 2.0, 2.0, 0.0, 0.0, 0.0])
     for i, j, value in COUPLED:
@@ -55,7 +55,7 @@ def _cubic_hexapod() -> Iterator[Check]:
         edge = np.sqrt(3) * size * 1e-3
         ours = stiffness(length_jacobian(*joints(edge), np.zeros(3), np.eye(3)), 1.0)
         names = [f"edge sqrt(3) {size} mm, {name}" for name in NAMES]
-        yield from checks(names, np.diag(at_the_centre(edge)), np.diag(ours), 1e-13)
+        yield from checks(names, np.diag(centre_stiffness(edge)), np.diag(ours), 1e-13)
         off = float(np.abs(ours - np.diag(np.diag(ours))).max())
         yield Check(f"edge sqrt(3) {size} mm, coupling", 0, off, 1e-14, absolute=True)
     ours = stiffness(length_jacobian(*joints(np.sqrt(3) * 0.1), np.zeros(3), np.eye(3), [0, 0, ABOVE]), 1.0)
@@ -130,7 +130,9 @@ TURNS = (17.0, 60.0, 133.0)  # deg, of similar hexagons in their plane
 
 def _smallest(base: Array, platform: Array, position: Array, rotation: Array) -> float:
     """Largest smallest singular value of the scaled Jacobian over poses."""
-    jacobian = scaled(length_jacobian(base, platform, position, rotation), characteristic_length(platform))
+    jacobian = dimensionless_jacobian(
+        length_jacobian(base, platform, position, rotation), characteristic_length(platform)
+    )
     return float(np.linalg.svd(jacobian, compute_uv=False)[..., -1].max())
 
 
@@ -158,7 +160,9 @@ def _singularities() -> list[Check]:
     regular = model.platform_circle(0.3, np.deg2rad(30.0))
     turned = [rotation_matrix(np.array([0, 0, np.deg2rad(turn)])) for turn in TURNS]
     below = base(10.0)
-    fourth = np.linalg.svd(scaled(length_jacobian(below, 0.6 * below, ABOVE_BASE, np.eye(3)), 0.3))[1][3]
+    fourth = np.linalg.svd(dimensionless_jacobian(length_jacobian(below, 0.6 * below, ABOVE_BASE, np.eye(3)), 0.3))[1][
+        3
+    ]
     similar = {
         f"similar hexagons, one turned by {turn:g} deg": _smallest(below, 0.6 * below @ R.T, position, rotation)
         for turn, R in zip(TURNS, turned, strict=True)

@@ -1,4 +1,4 @@
-"""What the time integration loses and keeps."""
+"""Accuracy of the time integration: numerical damping, residual amplitudes, balances of energy and momentum."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def _marched(study: model.ActuatorStudy, *amplitudes: Array) -> Record:
 
 
 def _released(**settings: float) -> Record:
-    """What follows from an amplitude of 1e-3 of the first mode at rest."""
+    """Record of one mode released at rest from an amplitude of 1e-3."""
     study = model.ActuatorStudy(actuator=BEAM, simulation=model.Simulation(basis="clamped-free", modes=1, **settings))  # type: ignore[arg-type]
     return _marched(study, np.array([1e-3]), np.zeros(1))
 
@@ -97,7 +97,7 @@ def _closed(profile: str, s: float) -> float:
     return float(120 / s**5 * abs((12 - s**2) * np.sin(s / 2) - 6 * s * np.cos(s / 2)))
 
 
-def residual(profile: str, s: float) -> float:
+def residual_amplitude(profile: str, s: float) -> float:
     """Amplitude of the first mode after the turn, over that of the base it stands on; s = omega T."""
     omega = ROOTS[0] ** 2
     duration = s / omega
@@ -124,7 +124,7 @@ def residual(profile: str, s: float) -> float:
 def _residual_vibration() -> list[Check]:
     rows = [*TABLE, *((profile, s, _closed(profile, s)) for profile, _, _ in TABLE for s in (5.0, 25.0))]
     return [
-        Check(f"{profile}, omega T = {s:g}", value, residual(profile, s), 5e-8, absolute=True)
+        Check(f"{profile}, omega T = {s:g}", value, residual_amplitude(profile, s), 5e-8, absolute=True)
         for profile, s, value in rows
     ]
 
@@ -139,13 +139,13 @@ def _robot() -> model.Study:
 
 
 def _balance() -> list[Check]:
-    """Drift of the energy balance of the preset, which drives do work on, damping takes from, a wrench shakes."""
+    """Order and drift of the preset's energy balance, with drives, damping and an oscillating wrench."""
     shake = model.SineWrench(amplitude=np.array([60.0, -40, 30, 5, 4, -3]), frequency=3.0, phase=0.4)
     runs = [simulate(_robot(), load=shake, step=step, output_step=2e-3, duration=1.2) for step in HALVED]
-    return balance("paper-robot, ", runs, 1e-4)
+    return balance_checks("paper-robot, ", runs, 1e-4)
 
 
-def balance(of: str, runs: Sequence[xr.Dataset], drifting: float) -> list[Check]:
+def balance_checks(of: str, runs: Sequence[xr.Dataset], drifting: float) -> list[Check]:
     """Order of the energy balance of two runs, the second with half the steps, and how far it drifts."""
     drift = []
     for data in runs:

@@ -1,7 +1,4 @@
-"""Linear models of robots: published plants and closed forms of what drives, floors and torques do.
-
-Files for other programs, read and run by these.
-"""
+"""Linear models of robots: published plants, closed forms of drives, floors and torques, and MJCF in MuJoCo."""
 
 from __future__ import annotations
 
@@ -19,7 +16,7 @@ from flexapod.output.exchange.mjcf import mjcf
 from flexapod.verification.case import Check, case, checks
 from flexapod.verification.engines import mujoco_forces
 from flexapod.verification.engines.engine import MUJOCO
-from flexapod.verification.engines.mujoco_rest import AtRest
+from flexapod.verification.engines.mujoco_rest import MujocoStatics
 
 SIMSCAPE = "T. Dehaeze, stewart-simscape (MIT), commit 32330b9"
 SPRING, DAMPER = 2e7, 20.0  # N/m, N s/m, of a strut
@@ -203,7 +200,7 @@ def _export_mjcf_stiffness() -> Iterator[Check]:
     for name in ROBOTS:
         study = _study(name)
         ours = stiffness(study, load=np.zeros(6)).stiffness.values
-        theirs = np.linalg.inv(AtRest(str(mjcf(study).files[""])).compliance(np.diag(np.linalg.inv(ours))))
+        theirs = np.linalg.inv(MujocoStatics(str(mjcf(study).files[""])).compliance(np.diag(np.linalg.inv(ours))))
         scale = np.sqrt(np.diag(ours))
         gap = float(np.abs((theirs - ours) / np.outer(scale, scale)).max())
         yield Check(f"{name}", 0.0, gap, 1e-3, absolute=True)

@@ -1,4 +1,4 @@
-"""Machines as built and warm, shaken, and what their budgets say."""
+"""Machines as built, at operating temperature and base-excited, and their error budgets."""
 
 from __future__ import annotations
 

@@ -22,11 +22,11 @@ from flexapod.model.leg.piston import Piston, Strut
 from flexapod.model.study.payload import Payload
 from flexapod.solve.statics.ideal_robot import rigid_forces
 from flexapod.verification.case import Check, case, checks
-from flexapod.verification.cases.integration import balance
+from flexapod.verification.cases.integration import balance_checks
 from flexapod.verification.robots import (
     LOWER,
     UPPER,
-    built,
+    build_robot,
     eight_legs,
     hexapod,
     leg,
@@ -116,7 +116,7 @@ def fast_path() -> Poses:
 )
 def _orsino() -> Iterator[Check]:
     for kind, printed in PRINTED.items():
-        ours = rigid_forces(planar_robot(kind), fast_path(), np.zeros(6)).drive_force[0]
+        ours = rigid_forces(kinematics.RigidPoses(planar_robot(kind), fast_path()), np.zeros(6)).drive_force[0]
         yield from checks([f"{kind}, drive {i + 1}" for i in range(3)], printed, ours, 5.1e-6, "N", absolute=True)
 
 
@@ -158,12 +158,12 @@ def _accelerated_carriages() -> Iterator[Check]:
     robot = sliders()
     motion = AxisMotion(type="heave", amplitude=0.05, duration=0.2, profile="quintic")
     path = poses(robot, motion, np.array([0.03, 0.08, 0.15]))
-    moving = rigid_forces(robot, path, WRENCH)
+    moving = rigid_forces(kinematics.RigidPoses(robot, path), WRENCH)
     s = np.array([0.03, 0.08, 0.15]) / 0.2
     acceleration = 0.05 / 0.2**2 * 60 * s * (1 - s) * (1 - 2 * s)
     for i, a in enumerate(acceleration):
         heavy = robot.replace(gravity=robot.gravity - np.array([0, 0, a]))
-        still = rigid_forces(heavy, Poses.at_rest(path.position[i], path.rotation[i]), WRENCH)
+        still = rigid_forces(kinematics.RigidPoses(heavy, Poses.at_rest(path.position[i], path.rotation[i])), WRENCH)
         for kind in ("drive_force", "joint_force"):
             ours, exact = getattr(moving, kind)[i], getattr(still, kind)[0]
             gap = float(np.abs(ours - exact).max() / np.abs(exact).max())
@@ -177,7 +177,7 @@ def _cranks(radius: float, feet: Array) -> Robot:
     axes = np.cross(ring(1.0, LOWER), [0.0, 0.0, 1.0])
     ways = [Carriage(kind="crank", axis=axis, arm=arm, home=0.0) for axis, arm in zip(axes, arms, strict=True)]
     legs = [leg("RUS", carriage=way, strut=rod(LENGTH)) for way in ways]
-    return built("6-RUS", feet - arms, ring(0.15, UPPER), 0.6, legs)
+    return build_robot("6-RUS", feet - arms, ring(0.15, UPPER), 0.6, legs)
 
 
 @case(
@@ -189,12 +189,12 @@ def _cranks(radius: float, feet: Array) -> Robot:
 def _long_cranks() -> list[Check]:
     robot = sliders(mass=0.0)  # that of a balanced crank has no weight
     path = _displaced(robot)
-    exact = rigid_forces(robot, path, WRENCH).drive_force[0]
+    exact = rigid_forces(kinematics.RigidPoses(robot, path), WRENCH).drive_force[0]
     radii = (1e2, 1e3, 1e4)
     ours = []
     for radius in radii:
         long = _cranks(radius, robot.home_bases)
-        ours.append(rigid_forces(long, path, WRENCH).drive_force[0] / radius)
+        ours.append(rigid_forces(kinematics.RigidPoses(long, path), WRENCH).drive_force[0] / radius)
     errors = np.abs(np.array(ours) - exact).max(axis=1)
     limit = (10 * ours[2] - ours[1]) / 9
     names = [f"leg {i + 1}, extrapolated" for i in range(6)]
@@ -221,7 +221,7 @@ def _tricept_guide() -> list[Check]:
     robot = robot.replace(legs=(*robot.legs[:3], bare))
     motion = model.CombinedMotion(amplitudes={"heave": 0.03, "roll": 0.2, "pitch": -0.1}, duration=0.5)
     path = kinematics.poses(robot, motion, np.array([0.0, 0.1, 0.2, 0.4]))
-    forces = rigid_forces(robot, path, WRENCH)
+    forces = rigid_forces(kinematics.RigidPoses(robot, path), WRENCH)
     axes = kinematics.leg_axes(robot, path, kinematics.inverse_kinematics(robot, path))[:, 3]
     force = forces.joint_force[:, 3]
     size = float(np.abs(forces.joint_force).max())
@@ -248,4 +248,4 @@ def _tricept_energy() -> list[Check]:
         initial=model.Initial(start="straight"),
     )  # fmt: skip
     runs = [simulate(study, modes=1, step=step, output_step=2e-3, duration=0.12) for step in STEPS]
-    return balance("", runs, 2e-4)
+    return balance_checks("", runs, 2e-4)

@@ -12,7 +12,7 @@ from flexapod.analysis.kinematics import inverse_dynamics
 from flexapod.verification.case import Check, case, checks
 from flexapod.verification.engines import mujoco_forces
 from flexapod.verification.engines.engine import MUJOCO
-from flexapod.verification.robots import unlike_legs
+from flexapod.verification.robots import with_unequal_legs
 
 PIVOT = (0.02, 0.01, 0.1)
 DURATION, INSTANTS = 0.2, 40
@@ -52,7 +52,7 @@ def robots() -> dict[str, model.Robot]:
     return {
         "preset": robot,
         "axial inertias, light payload": robot.replace(legs=turning, payload=light),
-        "unlike legs": unlike_legs(robot),
+        "unlike legs": with_unequal_legs(robot),
     }
 
 

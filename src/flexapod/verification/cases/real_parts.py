@@ -11,7 +11,7 @@ from flexapod.analysis.checks.screws import buckling_thrust
 from flexapod.analysis.elastic_parts import parts
 from flexapod.analysis.static import modes
 from flexapod.common.arrays import Array
-from flexapod.mechanics.elements.friction import rubbing
+from flexapod.mechanics.elements.friction import bristle_friction
 from flexapod.mechanics.elements.springs import springs_along
 from flexapod.mechanics.symbolic.functions import Interpreted, NamedFunction
 from flexapod.mechanics.symbolic.vocabulary import constant, substitute, symbol, zeros
@@ -26,7 +26,7 @@ UM = 1e6  # N/m of an N/um
 
 
 def machine(**changes: Any) -> Robot:
-    """The preset machine-hexapod as it is drawn, with parts of its legs changed."""
+    """Preset machine-hexapod without heat, with parts of its legs changed."""
     robot = model.preset("machine-hexapod").robot.replace(heat=None)
     return robot.replace(legs=tuple(leg.replace(**changes) for leg in robot.legs))
 
@@ -135,7 +135,7 @@ def _stick_slip() -> list[Check]:
 
     table = constant(np.array([1.0, 0.0, 1e-5, 0.5, 1e3, 0.4, np.sqrt(1e5) / 1e5, 0.0]))
     v, z, h = symbol("v"), symbol("z"), symbol("h")
-    found = rubbing(table, zeros(1), v, v, z, h, falling=False)
+    found = bristle_friction(table, zeros(1), v, v, z, h, falling=False)
     parts = [(name, substitute(getattr(found, name), (h,), (zeros(1),))) for name in ("force", "rate")]
     friction = Interpreted(NamedFunction("friction", [("v", v), ("z", z)], parts))
 

@@ -7,7 +7,7 @@ import numpy as np
 from flexapod.common.arrays import Array
 from flexapod.mechanics.symbolic.vocabulary import SX, bilinear, constant, cos, dot, quadratic, sin, vertcat, zeros
 from flexapod.verification.case import Check, case
-from flexapod.verification.mechanism import Mechanism, extrapolated, run_mechanism
+from flexapod.verification.mechanism import Mechanism, extrapolate_second_order, run_mechanism
 
 CRANK, ROD, SIDE = 0.15, 0.30, 0.008  # m; the rod is square
 DENSITY, E = 7870.0, 2e11
@@ -109,5 +109,5 @@ def end_state(steps: int) -> Array:
     "closure, ours is not",
 )
 def _slider_crank() -> list[Check]:
-    ours = extrapolated(end_state(STEPS), end_state(2 * STEPS))[-1].tolist()
+    ours = extrapolate_second_order(end_state(STEPS), end_state(2 * STEPS))[-1].tolist()
     return [Check(*row) for row in zip(NAMES, END, ours, TOLERANCES, UNITS, strict=True)]

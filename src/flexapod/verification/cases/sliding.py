@@ -34,7 +34,7 @@ def _quintic(t: Array, stroke: float) -> tuple[Array, Array, Array]:
     return s(t), s.deriv(1)(t), s.deriv(2)(t)
 
 
-def expected(t: Array) -> tuple[Array, Array]:
+def rigid_beam_loads(t: Array) -> tuple[Array, Array]:
     """Torque [N m] and force [N] of the rigid beam."""
     turned, rate, push = _quintic(t, RIGID_TURN)
     fed, speed, pull = _quintic(t, RIGID_FEED)
@@ -65,7 +65,7 @@ def _sliding_forces() -> list[Check]:
     motion = model.ActuatorMotion(rotation=_law(RIGID_TURN), extension=_law(RIGID_FEED))
     data = simulate_actuator(beam, motion, fidelity="rigid", step=0.01, output_step=0.1, duration=1.0)
     at = data.sel(time=list(INSTANTS), method="nearest")
-    torque, force = expected(np.array(INSTANTS))
+    torque, force = rigid_beam_loads(np.array(INSTANTS))
     return [
         *checks([f"torque at {t:g} s" for t in INSTANTS], torque, at.torque, 1e-10, "N m"),
         *checks([f"force at {t:g} s" for t in INSTANTS], force, at.force, 1e-10, "N"),

@@ -9,7 +9,7 @@ import numpy as np
 from flexapod.common.arrays import Array
 from flexapod.model import Rectangle
 from flexapod.solve.fem.frequencies import frequencies
-from flexapod.solve.fem.hexahedra import extruded
+from flexapod.solve.fem.hexahedra import extrude_section
 from flexapod.solve.fem.reduction import reduced_beam
 from flexapod.solve.fem.section_mesh import section_mesh
 from flexapod.verification.case import Check, case, checks
@@ -27,7 +27,7 @@ LAYERS, BELOW = 12, 9
     "printed digits",
 )
 def _axial_free() -> list[Check]:
-    mesh = extruded(section_mesh(ROUND, 0.02, "hex20"), LENGTH, LAYERS)
+    mesh = extrude_section(section_mesh(ROUND, 0.02, "hex20"), LENGTH, LAYERS)
     found = frequencies(mesh, E=STEEL.E, density=STEEL.density, count=BELOW + 1)
     exact = float(np.sqrt(STEEL.E / STEEL.density) / (4 * LENGTH))
     # The leading error of a quadratic element is (k l)^4 / 720 of a frequency, k = pi / 2 L.
@@ -76,8 +76,8 @@ def timoshenko(gyration: float, kappa: float, ends: str, near: tuple[float, ...]
     return np.array([brentq(left, 0.98 * W, 1.03 * W, xtol=1e-9) for W in near])
 
 
-def solid(gyration: float, ends: str, intervals: int, count: int = 3) -> Array:
-    """The same of a narrow solid, at whose ends section averages are held."""
+def solid_beam_frequencies(gyration: float, ends: str, intervals: int, count: int = 3) -> Array:
+    """Dimensionless frequencies of a narrow solid beam, at whose ends section averages are held."""
     from scipy.linalg import eigh
 
     height = gyration * np.sqrt(12)
@@ -103,7 +103,7 @@ def solid(gyration: float, ends: str, intervals: int, count: int = 3) -> Array:
 def _timoshenko() -> Iterator[Check]:
     for gyration, ends, waves in TABLE:
         n = INTERVALS[gyration]
-        coarse, fine = solid(gyration, ends, n // 2), solid(gyration, ends, n)
+        coarse, fine = solid_beam_frequencies(gyration, ends, n // 2), solid_beam_frequencies(gyration, ends, n)
         shear = timoshenko(gyration, PLANE_KAPPA, ends, waves) / waves - 1
         bound = shear + np.abs(coarse - fine) / waves / 3
         yield from checks([f"{ends}, r / L = {gyration:g}, mode {i}" for i in (1, 2, 3)], waves, fine, bound)

@@ -8,7 +8,7 @@ from flexapod.common.arrays import Array
 from flexapod.mechanics.symbolic.vocabulary import SX, cos, dot, sin, sqrt, time_derivative, vertcat, zeros
 from flexapod.solve.time.recording import Recording
 from flexapod.verification.case import Check, case, checks
-from flexapod.verification.mechanism import Mechanism, extrapolated, run_mechanism
+from flexapod.verification.mechanism import Mechanism, extrapolate_second_order, run_mechanism
 
 MASS = (0.04325, 0.00365, 0.02373, 0.00706, 0.07050, 0.00706, 0.05498)  # kg, bodies 1 to 7
 INERTIA = (2.194e-6, 4.410e-7, 5.255e-6, 5.667e-7, 1.169e-5, 5.667e-7, 1.912e-5)  # kg m^2
@@ -108,4 +108,4 @@ def end_state(steps: int) -> Array:
     "1e-10 N m beside the torque of 0.033 N m, which over as many steps adds up to 1e-9",
 )
 def _squeezer() -> list[Check]:
-    return checks(NAMES, END, extrapolated(end_state(STEPS), end_state(2 * STEPS)), 5e-9, "rad")
+    return checks(NAMES, END, extrapolate_second_order(end_state(STEPS), end_state(2 * STEPS)), 5e-9, "rad")

@@ -1,4 +1,4 @@
-"""Stiffness in closed form: hinged, loaded and welded legs, and one that is too long."""
+"""Stiffness in closed form: hinged, loaded and clamped legs, and one that is too long."""
 
 from __future__ import annotations
 
@@ -160,7 +160,7 @@ def _thrust_on_legs() -> Iterator[Check]:
 
 
 def _lever(arm: Array) -> Array:
-    """What shift and turn do a way `arm` further on."""
+    """Matrix (6, 6) from shift and turn of a point to those of the point `arm` further on."""
     A = np.eye(6)
     A[:3, 3:] = np.cross(np.eye(3), arm).T
     return A

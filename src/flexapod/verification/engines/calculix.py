@@ -11,8 +11,8 @@ import numpy as np
 
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError
-from flexapod.common.files import scratch
-from flexapod.common.processes import call
+from flexapod.common.files import temporary_folder
+from flexapod.common.processes import run_program
 from flexapod.verification.engines.engine import CALCULIX
 
 TIME_LIMIT = 300.0
@@ -26,7 +26,7 @@ _BLOCK = re.compile(r"^ displacements \(vx,vy,vz\) for set (\S+) and time +(\S+)
 
 @dataclass(frozen=True, kw_only=True)
 class CalculixRun:
-    """What a run left: `printed`, its table of results (``.dat``), and `output`, what it said on the way."""
+    """Output of a run: `printed`, its table of results (``.dat``), and `output`, its text on the way."""
 
     printed: str
     output: str
@@ -96,9 +96,9 @@ def run(deck: str, *, time_limit: float = TIME_LIMIT) -> CalculixRun:
     program = shutil.which(CALCULIX.program)
     if program is None:
         raise ComputationError("CalculiX (ccx) is not installed", next_step=f"Install it: {CALCULIX.install}")
-    with scratch() as folder:
+    with temporary_folder() as folder:
         (folder / f"{_JOB}.inp").write_text(deck, encoding="ascii")
-        output, code = call([program, "-i", _JOB], folder, time_limit, _ONE_THREAD)
+        output, code = run_program([program, "-i", _JOB], folder, time_limit, _ONE_THREAD)
         table = folder / f"{_JOB}.dat"
         printed = table.read_text(encoding="ascii", errors="replace") if table.exists() else ""
     if code is None:

@@ -16,8 +16,8 @@ class Engine:
     program: str = ""
     module: str = ""
 
-    def found(self) -> bool:
-        """Whether it can be called from here; nothing is started or imported."""
+    def is_available(self) -> bool:
+        """Test whether the engine can be called from here; nothing is started or imported."""
         return bool(shutil.which(self.program)) if self.program else find_spec(self.module) is not None
 
 

@@ -17,7 +17,7 @@ from flexapod.common.errors import InputError
 from flexapod.model import ActuatorStudy
 from flexapod.verification.engines.exudyn_builder import CARRIAGE_MASS, Builder, CableChain, Link
 from flexapod.verification.engines.exudyn_integration import Integration
-from flexapod.verification.engines.exudyn_process import TIME_LIMIT, ask
+from flexapod.verification.engines.exudyn_process import TIME_LIMIT, solve_in_process
 
 _SMALL = 1e-9  # m/s^2, rad/s^2
 _HUB = 1.0  # kg, kg m^2: of no consequence, its motion is prescribed
@@ -122,7 +122,7 @@ def simulate_actuator(
         elements=elements,
         axial_stiffness=stiff if axial_stiffness is None else axial_stiffness,
     )
-    return ask(solve, problem, time_limit=time_limit)
+    return solve_in_process(solve, problem, time_limit=time_limit)
 
 
 def solve(problem: ActuatorProblem) -> ActuatorResult:
@@ -140,12 +140,12 @@ def solve(problem: ActuatorProblem) -> ActuatorResult:
     chain = _beam(builder, problem, places)
     behind = -places[0]
     clamped = not behind  # at its end, as nothing of it is in the hub
-    builder.joint(builder.on_link(tree, 1), builder.on_body(chain.cables[0]), [1, 1, 0, 0, 0, int(clamped)])
+    builder.joint(builder.link_marker(tree, 1), builder.body_marker(chain.cables[0]), [1, 1, 0, 0, 0, int(clamped)])
     if not clamped:
-        builder.ring(builder.on_link(tree, 0, [actuator.hub_radius, 0.0, 0.0]), chain, behind)
+        builder.ring(builder.link_marker(tree, 0, [actuator.hub_radius, 0.0, 0.0]), chain, behind)
     for number, law in enumerate((rotation, extension)):
-        builder.hold(builder.coordinate(tree.node, number), law.position)
-    tip = builder.watch("node", chain.nodes[-1], "Position")
+        builder.prescribe_coordinate(builder.coordinate_marker(tree.node, number), law.position)
+    tip = builder.add_sensor("node", chain.nodes[-1], "Position")
     seconds = builder.solve(equilibrium=False)
     x, y, _ = builder.records([tip])[:, 0].T
     c, s = np.cos(actuator.angle + rotation.position), np.sin(actuator.angle + rotation.position)

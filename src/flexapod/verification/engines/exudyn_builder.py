@@ -1,12 +1,10 @@
-"""The one way to a system in Exudyn: bodies, trees, chains of cables, joints, springs, friction, sensors, solution.
+"""Builder of systems in Exudyn: bodies, trees, chains of cables, joints, springs, friction, sensors, solution.
 
-What builds a mechanism calls these methods one by one. A place is Exudyn's number of a marker there. Exudyn itself is
-loaded by the first `Builder`: make it in a process of its own (`exudyn_process`).
-
-LuGre's friction beside Exudyn, which asks it as a user function of a connector.
-
-The bristles of a step follow the mean of the rates at its ends, exactly for a rate that is constant; rates at its end
-are Newton's, so that the friction of a step is part of what it solves for.
+Models call its methods one by one. A place is Exudyn's number of a marker there. Exudyn itself is loaded by the
+first `Builder`: make it in a process of its own (`exudyn_process`). LuGre's friction is computed beside Exudyn,
+which asks for it as a user function of a connector. The bristles of a step follow the mean of the rates at its
+ends, exactly for a rate that is constant; rates at its end are Newton's, so that the friction of a step is part
+of what it solves for.
 """
 
 from __future__ import annotations
@@ -48,15 +46,15 @@ class Bristles:
         self.step, self.bent, self.rate = step, np.zeros(count), np.zeros(count)
 
     def force(self, rate: Array, load: float = 0.0) -> Array:
-        """Against the sliding at a rate (n,) at the step's end."""
+        """Friction force at a rate (n,) at the step's end, against the sliding."""
         speed = float(np.linalg.norm(rate))
         sliding, z = self.sliding + self.arm * load, self._bent(rate)
         slip = rate - speed * z / self._limit(speed)
         time = self.time / (1 + self.time * speed / (4 * self.presliding))
         return sliding / self.presliding * (z + time * slip) + self.viscous * rate
 
-    def keep(self, rate: Array) -> None:
-        """A step has ended with this rate."""
+    def advance(self, rate: Array) -> None:
+        """Store bristles and rate at the end of a step."""
         self.bent, self.rate = self._bent(rate), rate.copy()
 
     def _bent(self, rate: Array) -> Array:
@@ -124,7 +122,7 @@ class Builder:
         self.container: Any = self.exu.SystemContainer()  # owns the system
         self.mbs: Any = self.container.AddSystem()
         node = self.mbs.AddNode(self.items.NodePointGround())
-        self.ground: int = self.coordinate(node, 0)
+        self.ground: int = self.coordinate_marker(node, 0)
 
     def body(self, mass: float, inertia: Array, place: Array, turn: Array, gravity: Array) -> int:
         """A rigid body that nothing holds: inertia (3, 3) about its centre of mass, which is there; quaternion (4,)."""
@@ -139,7 +137,7 @@ class Builder:
         """The coordinate of a mass that moves along a line."""
         node = self.mbs.AddNode(self.items.Node1D(referenceCoordinates=[0.0]))
         self.mbs.AddObject(self.items.ObjectMass1D(physicsMass=mass, nodeNumber=node))
-        return self.coordinate(node, 0)
+        return self.coordinate_marker(node, 0)
 
     def tree(
         self,
@@ -216,22 +214,22 @@ class Builder:
         marker = self.mbs.AddMarker(self.items.MarkerBodyMass(bodyNumber=body))
         self.mbs.AddLoad(self.items.LoadMassProportional(markerNumber=marker, loadVector=gravity))
 
-    def coordinate(self, node: int, number: int) -> int:
-        """Of a coordinate of a node."""
+    def coordinate_marker(self, node: int, number: int) -> int:
+        """Add a marker of a coordinate of a node; return its number."""
         return self.mbs.AddMarker(self.items.MarkerNodeCoordinate(nodeNumber=node, coordinate=number))
 
-    def on_link(self, tree: Tree, link: int, place: Sequence[float] | Array = (0.0, 0.0, 0.0)) -> int:
-        """On a link of a tree, in its axes [m]."""
+    def link_marker(self, tree: Tree, link: int, place: Sequence[float] | Array = (0.0, 0.0, 0.0)) -> int:
+        """Add a marker at a place on a link of a tree, in its axes [m]; return its number."""
         items = self.items
         marker = items.MarkerKinematicTreeRigid(objectNumber=tree.body, linkNumber=link, localPosition=list(place))
         return self.mbs.AddMarker(marker)
 
-    def on_body(self, body: int, place: Sequence[float] | Array = (0.0, 0.0, 0.0)) -> int:
-        """On a body or a cable, in its axes [m]."""
+    def body_marker(self, body: int, place: Sequence[float] | Array = (0.0, 0.0, 0.0)) -> int:
+        """Add a marker at a place on a body or a cable, in its axes [m]; return its number."""
         return self.mbs.AddMarker(self.items.MarkerBodyRigid(bodyNumber=body, localPosition=list(place)))
 
-    def on_node(self, node: int) -> int:
-        """Of a node."""
+    def node_marker(self, node: int) -> int:
+        """Add a marker of a node; return its number."""
         return self.mbs.AddMarker(self.items.MarkerNodePosition(nodeNumber=node))
 
     def ball(self, first: int, second: int) -> None:
@@ -259,7 +257,7 @@ class Builder:
         held = {"constrainRotations": [0, 0, 0], "constrainTranslations": [1, 1, 1]}
         self.mbs.AddObject(self.items.ObjectJointSliding(**ends, **held))
 
-    def hold(self, marker: int, displacement: Array) -> int:
+    def prescribe_coordinate(self, marker: int, displacement: Array) -> int:
         """Let a coordinate follow `displacement` (T,) at the instants of the integration; number of the connector."""
 
         def offset(_mbs: object, t: float, _number: int, _offset: float) -> float:
@@ -295,8 +293,8 @@ class Builder:
         six = {name: np.diag([*values, 0.0, 0.0, 0.0]) for name, values in numbers.items()}
         return self.mbs.AddObject(self.items.ObjectConnectorRigidBodySpringDamper(markerNumbers=[first, second], **six))
 
-    def rub(self, marker: int, numbers: Numbers, load: Load = lambda: 0.0) -> None:
-        """Friction against the rate of a coordinate; `load` [N] that presses."""
+    def coordinate_friction(self, marker: int, numbers: Numbers, load: Load = lambda: 0.0) -> None:
+        """Add friction against the rate of a coordinate; `load` [N] presses the contact."""
         bristles = Bristles(numbers, self.step)
 
         def force(_mbs: object, _t: float, _number: int, _u: float, v: float, *_given: float) -> float:
@@ -304,10 +302,10 @@ class Builder:
 
         markers, connector = [self.ground, marker], self.items.ObjectConnectorCoordinateSpringDamper
         number = self.mbs.AddObject(connector(markerNumbers=markers, springForceUserFunction=force))
-        self._follow(number, "Velocity", bristles.keep)
+        self._follow(number, "Velocity", bristles.advance)
 
-    def rub_ball(self, first: int, second: int, numbers: Numbers, load: Load) -> None:
-        """Friction against the turning of two bodies in a ball, in the axes of the first."""
+    def ball_friction(self, first: int, second: int, numbers: Numbers, load: Load) -> None:
+        """Add friction against the rotation of two bodies in a ball joint, in the axes of the first."""
         bristles = Bristles(numbers, self.step, 3)
 
         def moment(_mbs: object, _t: float, _number: int, _u: Array, _turn: Array, _v: Array, w: Array, *_given: Array):  # type: ignore[no-untyped-def]
@@ -315,10 +313,10 @@ class Builder:
 
         markers, connector = [first, second], self.items.ObjectConnectorRigidBodySpringDamper
         number = self.mbs.AddObject(connector(markerNumbers=markers, springForceTorqueUserFunction=moment))
-        self._follow(number, "AngularVelocityLocal", bristles.keep)
+        self._follow(number, "AngularVelocityLocal", bristles.advance)
 
-    def pressing(self, connector: int | None) -> Load:
-        """The force of a connector as the last step left it [N]; of a rigid joint, None, none is told."""
+    def normal_force(self, connector: int | None) -> Load:
+        """Force of a connector after the last step [N], as a function; zero of a rigid joint, None."""
         now = [0.0]
         if connector is not None:
             self._follow(connector, "ForceLocal", lambda force: now.__setitem__(0, float(np.linalg.norm(force))))
@@ -329,7 +327,7 @@ class Builder:
         variable = getattr(self.exu.OutputVariableType, output)
         self.before_step.append(lambda: action(np.atleast_1d(self.mbs.GetObjectOutput(number, variable))))
 
-    def watch(self, what: str, number: int, output: str) -> int:
+    def add_sensor(self, what: str, number: int, output: str) -> int:
         """Sensor of a "node", "body", "object" or "marker"."""
         sensor = getattr(self.items, f"Sensor{what.capitalize()}")
         variable = getattr(self.exu.OutputVariableType, output)
@@ -337,7 +335,7 @@ class Builder:
         return self.mbs.AddSensor(sensor(**where, outputVariableType=variable, storeInternal=True, writeToFile=False))
 
     def records(self, sensors: Sequence[int]) -> Array:
-        """What sensors of one kind recorded, (T, sensors, components)."""
+        """Records of sensors of one kind, (T, sensors, components)."""
         rows = [self.mbs.GetSensorStoredData(sensor)[-(self.integration.steps + 1) :, 1:] for sensor in sensors]
         return np.stack(rows, axis=1)
 
@@ -355,7 +353,7 @@ class Builder:
 
     @property
     def step(self) -> float:
-        """Of the integration [s]."""
+        """Step of the integration [s]."""
         return self.integration.duration / self.integration.steps
 
     def _prepared(self, _mbs: object, _t: float) -> bool:

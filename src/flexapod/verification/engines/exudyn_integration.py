@@ -1,4 +1,4 @@
-"""How Exudyn integrates: settings that its models share, without importing it."""
+"""Settings of Exudyn's integration that its models share, without importing it."""
 
 from __future__ import annotations
 
@@ -53,6 +53,6 @@ class Integration:
         return np.linspace(0.0, self.duration, self.steps + 1)
 
 
-def extrapolated(coarse: Array, fine: Array) -> Array:
+def extrapolate_first_order(coarse: Array, fine: Array) -> Array:
     """Limit of a result whose error is of first order, from a mesh and one twice as fine (Richardson)."""
     return 2 * fine - coarse

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TypeVar
 
 from flexapod.common.errors import ComputationError, FlexapodError
-from flexapod.common.files import scratch
-from flexapod.common.processes import call
+from flexapod.common.files import temporary_folder
+from flexapod.common.processes import run_program
 from flexapod.verification.engines.engine import EXUDYN
 
 TIME_LIMIT = 300.0
@@ -26,8 +26,8 @@ _TELLING = re.compile(r"fail|singular|error", re.IGNORECASE)
 _LAST = 3  # telling lines of its output in a message
 
 
-def ask(solve: Callable[[Problem], Answer], problem: Problem, *, time_limit: float = TIME_LIMIT) -> Answer:
-    """What ``solve(problem)`` returns, computed in a process of its own.
+def solve_in_process(solve: Callable[[Problem], Answer], problem: Problem, *, time_limit: float = TIME_LIMIT) -> Answer:
+    """Compute ``solve(problem)`` in a process of its own and return the result.
 
     Parameters
     ----------
@@ -45,15 +45,15 @@ def ask(solve: Callable[[Problem], Answer], problem: Problem, *, time_limit: flo
     FlexapodError
         Raised by the solver itself.
     """
-    if not EXUDYN.found():
+    if not EXUDYN.is_available():
         raise ComputationError("Exudyn is not installed", next_step=f"Install it: {EXUDYN.install}")
-    with scratch() as folder:
+    with temporary_folder() as folder:
         given, found = folder / "problem", folder / "result"
         given.write_bytes(pickle.dumps((solve, problem)))
         # -P: no file of the folder that the user works in takes the place of a module.
         command = [sys.executable, "-P", "-m", "flexapod.verification.engines.exudyn_process", str(given), str(found)]
         modules = {"PYTHONPATH": os.pathsep.join(map(os.path.abspath, _paths()))}
-        said, code = call(command, folder, time_limit, modules)
+        said, code = run_program(command, folder, time_limit, modules)
         if code is None:
             raise ComputationError(
                 f"Exudyn did not end within {time_limit:g} s and was stopped. {_said(said)}",
@@ -90,7 +90,7 @@ def _said(output: str) -> str:
 
 
 def _paths() -> list[str]:
-    """Where modules are looked for, besides the usual places: names that hold in another folder, too."""
+    """Folders of ``PYTHONPATH``, in which modules are looked for besides the usual places."""
     return [path for path in os.environ.get("PYTHONPATH", "").split(os.pathsep) if path]
 
 

@@ -16,8 +16,8 @@ from flexapod.mechanics.elements.springs import springs_along
 from flexapod.model import Joint, Leg, Motion, Robot
 from flexapod.verification.engines.exudyn_builder import Builder
 from flexapod.verification.engines.exudyn_integration import Integration
-from flexapod.verification.engines.exudyn_legs import SoftEnd, add_leg, turns
-from flexapod.verification.engines.exudyn_process import TIME_LIMIT, ask
+from flexapod.verification.engines.exudyn_legs import EndSprings, add_leg, turn_count
+from flexapod.verification.engines.exudyn_process import TIME_LIMIT, solve_in_process
 
 #: s; longer ones ring more where the jerk jumps, shorter ones carry Newton's tolerance into the forces.
 STEP = 2.5e-4
@@ -93,7 +93,7 @@ def _refused(key: str, allowed: str, **more: Any) -> InputError:
 
 
 def _lacking(leg: Leg) -> Iterator[tuple[str, object, str]]:
-    """What the model of a leg's joints, springs and drive does not have: key, whether it is there, what is allowed."""
+    """Features of a leg that the model lacks: key, whether the leg has it, what is allowed."""
     screw, straight = leg.screw, "a piston clamped in the mouth of a rigid cylinder"
     yield from ((element.at, True, "legs without it") for element in leg.elements)
     yield "guide", leg.guide is not None, straight
@@ -197,7 +197,7 @@ def simulate_robot(
         Exudyn is not installed, does not end in time, crashes, or does not converge.
     """
     problem = RobotProblem(robot=robot, motion=motion, integration=integration, elements=elements, guide=guide)
-    return ask(solve, problem, time_limit=time_limit)
+    return solve_in_process(solve, problem, time_limit=time_limit)
 
 
 def solve(problem: RobotProblem, builders: type[Builder] = Builder) -> RobotResult:
@@ -209,7 +209,7 @@ def solve(problem: RobotProblem, builders: type[Builder] = Builder) -> RobotResu
     body = builder.body(load.mass, load.inertia, start, quaternion(robot.home_rotation), robot.gravity)
     mesh = {"elements": problem.elements, "guide": problem.guide}
     legs = [add_leg(builder, robot, i, lengths[:, i], body, **mesh) for i in range(robot.count)]
-    centre = builder.watch("body", body, "Displacement")
+    centre = builder.add_sensor("body", body, "Displacement")
     seconds = builder.solve(equilibrium=True)
     rigid_centre, _, _ = path.point(load.com)
     coordinates = [builder.records([leg.coordinates])[:, 0] for leg in legs]
@@ -227,11 +227,11 @@ def _tip_deflection(robot: Robot, coordinates: list[Array], tips: Array) -> Arra
     limbs = kinematics.rigid_limbs(robot)
     beta = np.tile(limbs.home[:, kinematics.COORDINATES.index("beta")], (len(tips), 1))
     for i, leg in enumerate(robot.legs):
-        if turns(leg) == 2:
+        if turn_count(leg) == 2:
             beta[:, i] = coordinates[i][:, 1]
     axes = kinematics.leg_rotations(limbs.frames, np.column_stack([q[:, 0] for q in coordinates]), beta)
     found = np.einsum("tnij,tni->tnj", axes, tips - robot.base_joints)[..., :2]
     for i, leg in enumerate(robot.legs):
-        if 0 in SoftEnd.of(leg, "base").slides:
-            found[:, i] -= coordinates[i][:, turns(leg) : turns(leg) + 2]
+        if 0 in EndSprings.from_leg(leg, "base").compliant_directions:
+            found[:, i] -= coordinates[i][:, turn_count(leg) : turn_count(leg) + 2]
     return found

@@ -1,6 +1,6 @@
-"""Inverse dynamics of the rigid robot by MuJoCo: trees without closures, and the multipliers that close them.
+"""Inverse dynamics of the rigid robot by MuJoCo, from its model as MJCF, the text format of MuJoCo.
 
-The rigid robot as MJCF, the text format of MuJoCo: legs and payload as open chains, cut at the platform's joints.
+Legs and payload are open chains, cut at the platform's joints; multipliers close them.
 """
 
 from __future__ import annotations
@@ -123,7 +123,7 @@ def inverse_dynamics(
 
 def mujoco_module() -> ModuleType:
     """MuJoCo; ComputationError where it is not installed."""
-    if not MUJOCO.found():
+    if not MUJOCO.is_available():
         raise ComputationError("MuJoCo is not installed", next_step=f"Install it: {MUJOCO.install}")
     import mujoco
 

@@ -1,4 +1,4 @@
-"""A model in MuJoCo at rest: equilibria of its springs, drives and loops, and how its tool gives way."""
+"""Model in MuJoCo at rest: equilibria of its springs, drives and loops, and the compliance of its tool."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ ROUNDING = 1e-14  # m, rad: a last step of Newton's
 MOST_ITERATIONS = 40
 
 
-class AtRest:
+class MujocoStatics:
     """A model from MJCF text with a body `payload`, a site `tool` on it and a keyframe, where it starts.
 
     All is MuJoCo's: `mj_forward` says which accelerations are left, with loops as soft as the file makes them.
@@ -32,7 +32,7 @@ class AtRest:
         self.mujoco.mj_resetDataKeyframe(self.model, self.data, 0)
         self.payload, self.home = self.model.body("payload").id, self.data.qpos.copy()
 
-    def left(self, q: Array, wrench: Array) -> Array:
+    def residual_forces(self, q: Array, wrench: Array) -> Array:
         """Forces on all coordinates (n,) that are not in balance at rest, with a wrench (6,) at the tool."""
         model, data = self.model, self.data
         data.qpos[:], data.qvel[:], data.qacc_warmstart[:] = q, 0.0, 0.0
@@ -44,16 +44,16 @@ class AtRest:
         self.mujoco.mj_mulM(model, data, found, data.qacc)
         return found
 
-    def slopes(self, q: Array) -> Array:
-        """Of those forces by the coordinates, (n, n), by central differences."""
+    def force_gradient(self, q: Array) -> Array:
+        """Gradient of the residual forces by the coordinates, (n, n), by central differences."""
         still, size = np.zeros(6), self.model.nv
-        rows = [self.left(self._moved(q, sign * STEP * x), still) for x in np.eye(size) for sign in (1, -1)]
+        rows = [self.residual_forces(self._moved(q, sign * STEP * x), still) for x in np.eye(size) for sign in (1, -1)]
         return np.array([(a - b) / (2 * STEP) for a, b in zip(rows[::2], rows[1::2], strict=True)]).T
 
-    def rest(self, q: Array, wrench: Array, slopes: Array) -> Array:
+    def equilibrium(self, q: Array, wrench: Array, slopes: Array) -> Array:
         """Coordinates at which all is in balance, by Newton from `q`."""
         for _ in range(MOST_ITERATIONS):
-            step = np.asarray(np.linalg.solve(slopes, -self.left(q, wrench)), dtype=float)
+            step = np.asarray(np.linalg.solve(slopes, -self.residual_forces(q, wrench)), dtype=float)
             q = self._moved(q, step)
             if np.abs(step).max() < ROUNDING:
                 break
@@ -64,11 +64,11 @@ class AtRest:
 
         Displacement and turn along and about world axes; forces are such that the tool moves by a micrometre.
         """
-        middle = self.rest(self.home, np.zeros(6), self.slopes(self.home))
-        slopes, columns = self.slopes(middle), []
+        middle = self.equilibrium(self.home, np.zeros(6), self.force_gradient(self.home))
+        slopes, columns = self.force_gradient(middle), []
         for k in np.flatnonzero(expected):
             force = SMALL / expected[k] * np.eye(6)[k]
-            (p, R), (o, S) = (self._tool(self.rest(middle, sign * force, slopes)) for sign in (1, -1))
+            (p, R), (o, S) = (self._tool(self.equilibrium(middle, sign * force, slopes)) for sign in (1, -1))
             turn = (R @ S.T - S @ R.T) / 2
             columns.append(np.r_[p - o, turn[2, 1], turn[0, 2], turn[1, 0]] / (2 * force[k]))
         return np.array(columns).T

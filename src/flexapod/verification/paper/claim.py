@@ -14,11 +14,11 @@ from flexapod.analysis.results.attributes import motion_end, robot_study
 from flexapod.common.errors import InputError
 from flexapod.common.quantities import number, text
 
-HOLDS, IN_PART, NOT = "holds", "holds in part", "does not hold"  # of numbers, by `judged`
+HOLDS, IN_PART, NOT = "holds", "holds in part", "does not hold"  # of numbers, by `choose_verdict`
 HERE = "holds here"  # of numbers that are those of one example
-REACHES, MISSES, BREAKS = "reaches that size", "does not give it", "robot gives way"  # of variants, by `size`
+REACHES, MISSES, BREAKS = "reaches that size", "does not give it", "robot gives way"  # of variants, by `size_verdict`
 DONE, USELESS = "done here", "brings nothing here"  # of what the paper asks for next
-OPEN = "cannot be compared"  # of the text: the paper does not give what the preset marks as ours, `left_open`
+OPEN = "cannot be compared"  # of the text: the paper does not give what the preset marks as ours, `is_unspecified`
 MISPRINT = "misprint"  # of the text: a printed formula or word that cannot be meant, in the last table of chapter T9
 INCOMPLETE = "incomplete"  # of the text: a term that the derived formula has and the printed one has not
 
@@ -41,7 +41,7 @@ SIZE = 0.5  # "about 5 mm": from half to one and a half times the printed value 
 
 @dataclass(frozen=True, kw_only=True)
 class Claim:
-    """What the paper says and where, what we get, the verdict, and its reason, which explains the `expected` one.
+    """Claim of the paper and where, what we get, the verdict, and its reason, which explains the `expected` one.
 
     `whose` it is, a key of `WHOSE`: the paper's own, a variant of ours, or what the paper asks for next.
     """
@@ -59,39 +59,41 @@ class Claim:
             object.__setattr__(self, "reason", f"Not explained: these results were expected to give '{expected}'.")
 
 
-def judged(holds: bool | np.bool_, in_part: bool | np.bool_ = False, best: str = HOLDS, worst: str = NOT) -> str:
+def choose_verdict(
+    holds: bool | np.bool_, in_part: bool | np.bool_ = False, best: str = HOLDS, worst: str = NOT
+) -> str:
     """Verdict of the first rule that is true of the numbers: `best`, holds in part, or `worst`."""
     return best if holds else IN_PART if in_part else worst
 
 
-def up(value: float, digits: int = 2) -> float:
+def round_up(value: float, digits: int = 2) -> float:
     """A positive number rounded up to some digits: what another one is at most, or is within."""
     unit = 10.0 ** (math.floor(math.log10(value)) + 1 - digits) if value > 0 else 1.0
     return math.ceil(value / unit * (1 - EDGE)) * unit
 
 
-def near(ours: float, paper: float) -> bool:
-    """Whether a value is of the size of the paper's: from half to one and a half times as large."""
+def is_similar(ours: float, paper: float) -> bool:
+    """Test whether a value is of the size of the paper's: from half to one and a half times as large."""
     return abs(ours / paper - 1) <= SIZE
 
 
 def printed_deviation(y: float, z: float) -> bool:
-    """Whether largest deviations [m] are of the size that the paper prints, both of them."""
-    return near(y, PAPER_DEVIATION["y"]) and near(z, PAPER_DEVIATION["z"])
+    """Test whether largest deviations [m] are both of the size that the paper prints."""
+    return is_similar(y, PAPER_DEVIATION["y"]) and is_similar(z, PAPER_DEVIATION["z"])
 
 
-def size(*peaks: Sequence[float] | np.ndarray) -> str:
+def size_verdict(*peaks: Sequence[float] | np.ndarray) -> str:
     """Verdict on largest deviations along x, y, z [m] of one or several robots: whether one is of the printed size."""
-    return judged(any(printed_deviation(y, z) for _, y, z in peaks), best=REACHES, worst=MISSES)
+    return choose_verdict(any(printed_deviation(y, z) for _, y, z in peaks), best=REACHES, worst=MISSES)
 
 
-def left_open(preset: str, *keys: str) -> bool:
-    """Whether a preset marks one of these values as ours, because the paper does not give it."""
+def is_unspecified(preset: str, *keys: str) -> bool:
+    """Test whether a preset marks one of these values as ours, because the paper does not give it."""
     return not {value.key for value in model.open_values(preset)}.isdisjoint(keys)
 
 
-def times(ours: float, paper: float) -> str:
-    """How many times smaller or larger than the paper's a value is, in words."""
+def ratio_words(ours: float, paper: float) -> str:
+    """Ratio of a value to the paper's as text: how many times smaller or larger it is."""
     if ours <= 0 or paper <= 0:
         return "not comparable"
     return f"{number(paper / ours, 2)} times smaller" if ours < paper else f"{number(ours / paper, 2)} times larger"
@@ -102,35 +104,35 @@ def roll_error(arm: float) -> float:
     return math.hypot(*PAPER_DEVIATION.values()) / arm
 
 
-def by_axis(values: np.ndarray, digits: int = 3) -> str:
-    """Lengths along x, y, z in words."""
+def axis_words(values: np.ndarray, digits: int = 3) -> str:
+    """Lengths along x, y, z as text."""
     return ", ".join(f"{axis} {text(float(value), 'm', digits)}" for axis, value in zip("xyz", values, strict=True))
 
 
-def in_y_and_z(deviation: Sequence[float] | np.ndarray) -> str:
-    """Lengths along y and z, of x, y, z, in words."""
+def transverse_words(deviation: Sequence[float] | np.ndarray) -> str:
+    """Lengths along y and z as text, of those along x, y, z."""
     _, y, z = (text(float(value), "m") for value in deviation)
     return f"y {y}, z {z}"
 
 
-def largest(data: Dataset) -> np.ndarray:
+def largest_deviation(data: Dataset) -> np.ndarray:
     """Largest deviation of the centre of mass along x, y, z [m]."""
     return np.abs(data.com_deviation.values).max(axis=0)
 
 
-def peaks(data: Dataset, digits: int = 3) -> str:
-    """The same in words."""
-    return by_axis(largest(data), digits)
+def deviation_words(data: Dataset, digits: int = 3) -> str:
+    """Largest deviation of the centre of mass along x, y, z as text."""
+    return axis_words(largest_deviation(data), digits)
 
 
-def after_motion(data: Dataset, name: str) -> float:
-    """Vibration that is left after the motion: largest peak to peak of a variable along one direction [its unit]."""
+def residual_vibration(data: Dataset, name: str) -> float:
+    """Residual vibration after the motion: largest peak to peak of a variable along one direction [its unit]."""
     rest = data[name].where(data.time >= (motion_end(data) or 0.0), drop=True)
     return float((rest.max("time") - rest.min("time")).max())
 
 
 def force_gaps(rigid_legs: Dataset) -> tuple[float, float]:
-    """How far our drive forces are from those of Newton and Euler [N]: away from the ends of the roll, and anywhere."""
+    """Largest difference of our drive forces to Newton-Euler's [N], away from the ends of the roll, and anywhere."""
     gap = np.abs(rigid_legs.actuator_force - rigid_legs.actuator_force_rigid).max("leg")
     end = motion_end(rigid_legs) or np.inf
     near_ends = (rigid_legs.time < AWAY) | (np.abs(rigid_legs.time - end) < AWAY)

@@ -43,28 +43,28 @@ def claims(result: PaperStudy) -> tuple[Claim, ...]:
     return tuple(claim for row in ROWS for claim in row.claims(result))
 
 
-def by_whose(table: Sequence[Claim]) -> dict[str, list[Claim]]:
+def group_by_owner(table: Sequence[Claim]) -> dict[str, list[Claim]]:
     """The claims by the words for whose they are, in their order; without those of which there are none."""
     found = {words: [claim for claim in table if claim.whose == whose] for whose, words in WHOSE.items()}
     return {words: some for words, some in found.items() if some}
 
 
-def counted(table: Sequence[Claim]) -> str:
-    """How many claims there are, and of each verdict, in words."""
+def verdict_summary(table: Sequence[Claim]) -> str:
+    """Number of claims, and of those of each verdict, as text."""
     verdicts = Counter(claim.verdict for claim in table)
     each = ", ".join(f"{verdict} {count}" for verdict, count in verdicts.most_common())
     return f"{len(table)} rows: {each}."
 
 
-def markdown(table: Sequence[Claim]) -> str:
+def claims_markdown(table: Sequence[Claim]) -> str:
     """The claims as Markdown: a title, a count and a table for each of whose they are."""
-    return "\n".join(_chapter(words, some) for words, some in by_whose(table).items())
+    return "\n".join(_chapter(words, some) for words, some in group_by_owner(table).items())
 
 
 def _chapter(words: str, table: Sequence[Claim]) -> str:
     rows = [(c.where, c.says, c.ours, f"**{c.verdict}**", c.reason) for c in table]
     lines = [_line(CLAIM_HEAD), _line(("---",) * len(CLAIM_HEAD)), *(_line(row) for row in rows)]
-    return "\n".join([f"### {words}", "", counted(table), "", *lines]) + "\n"
+    return "\n".join([f"### {words}", "", verdict_summary(table), "", *lines]) + "\n"
 
 
 def _line(cells: Sequence[str]) -> str:

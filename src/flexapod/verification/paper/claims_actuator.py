@@ -20,12 +20,12 @@ from flexapod.verification.paper.claim import (
     NOT,
     OPEN,
     WIDTH,
-    judged,
-    left_open,
-    up,
+    choose_verdict,
+    is_unspecified,
+    round_up,
 )
 from flexapod.verification.paper.energies import TIP_MASS
-from flexapod.verification.paper.rows import Said, row
+from flexapod.verification.paper.rows import Finding, row
 from flexapod.verification.paper.study import ACTUATOR_MODES, PaperStudy
 
 ALUMINIUM = (70e9, 2700.0)  # E [Pa], density [kg/m^3]; its alloys lie within 5 %, steel at three times as much
@@ -47,22 +47,22 @@ def _actuator(data: Dataset) -> model.Actuator:
 
 
 @row("Eq. 2", f"Shapes normalised by the mass per length; {COPY} beta^4 = omega^4 rho / EI", expected=NOT)
-def _shapes(_: PaperStudy) -> Said:
+def _shapes(_: PaperStudy) -> Finding:
     eps = np.array([shape.eps for shape in clamped_free(3)])
     alpha = (np.sin(eps) + np.sinh(eps)) / (np.cos(eps) + np.cosh(eps))
     norms = ", ".join(f"{norm:.4f}" for norm in alpha**2)
-    return Said(
+    return Finding(
         ours=f"The integral of rho Y^2 is alpha^2 = {norms} for three shapes; normalised, it would be 1",
-        verdict=judged(np.abs(alpha**2 - 1).max() < ROUNDED),
+        verdict=choose_verdict(np.abs(alpha**2 - 1).max() < ROUNDED),
         reason="In any reading a factor 1 / alpha is missing; results do not depend on the norm unless it is taken as "
         "said. The fourth power of omega may be the copy's: beta^4 = rho omega^2 / EI is meant.",
     )
 
 
 @row("Eqs. 4-8", "Energies of the sliding, turning beam, as printed", "printed-lines")
-def _misprints(lines: Dataset) -> Said:
+def _misprints(lines: Dataset) -> Finding:
     cost, size = _costs(lines)
-    return Said(
+    return Finding(
         ours="Derived anew: one kinetic and one potential energy, differentiated. One line as printed, the others as "
         f"derived, and the tip is off by: Eq. 5 {cost['5, dots lost (copy)']}, with its dots {cost['5, with dots']}; "
         f"Eq. 8 {cost['8, linear']}, with a half and a square {cost['8, with half and square']}, of "
@@ -81,9 +81,9 @@ def _misprints(lines: Dataset) -> Said:
     "The kinetic energy is that of Eqs. 4 and 5, the potential one that of Eqs. 6 to 8",
     "printed-lines",
 )
-def _omissions(lines: Dataset) -> Said:
+def _omissions(lines: Dataset) -> Finding:
     cost, size = _costs(lines)
-    return Said(
+    return Finding(
         ours=f"Without these terms, all else as derived, the tip is off by: Eq. 5 {cost['5, with dots and factor 2']} "
         f"of {size['5, with dots and factor 2']}; upright Eq. 7 {cost['7, nothing elastic']}, Eqs. 9-10 "
         f"{cost['9-10, centrifugal only']} of {size['7, nothing elastic']}",
@@ -94,28 +94,29 @@ def _omissions(lines: Dataset) -> Said:
 
 
 def _costs(lines: Dataset) -> tuple[dict[str, str], dict[str, str]]:
-    """By printed line in words: how far the tip is off with it, and how far the tip goes as derived."""
+    """Errors of the tip by printed line, and largest deflections of the tip as derived, as text."""
     names = [str(line) for line in lines.line.values]
     errors, sizes = ([text(float(x), "m") for x in lines[name].values] for name in ("tip_error", "largest"))
     return dict(zip(names, errors, strict=True)), dict(zip(names, sizes, strict=True))
 
 
 @row("Table 2", "15.24 x 0.95 cm^2, 4.02 kg/m, EI = 756.65 N m^2", f"actuator-{ACTUATOR_MODES[0]}", expected=HOLDS)
-def _table2(data: Dataset) -> Said:
+def _table2(data: Dataset) -> Finding:
     actuator = _actuator(data)
     modulus, density = actuator.EI / (WIDTH * HEIGHT**3 / 12), actuator.rhoA / (WIDTH * HEIGHT)
     off = max(abs(modulus / ALUMINIUM[0] - 1), abs(density / ALUMINIUM[1] - 1))
-    return Said(
+    return Finding(
         ours=f"E = {modulus / 1e9:.1f} GPa, density {density:.0f} kg/m^3",
-        verdict=judged(off < ALLOYS),
+        verdict=choose_verdict(off < ALLOYS),
         reason="The figures belong to one aluminium beam that bends about its weak axis: within "
-        f"{up(100 * off):.2g} % of {ALUMINIUM[0] / 1e9:.0f} GPa and {ALUMINIUM[1]:.0f} kg/m^3. The paper states no E.",
+        f"{round_up(100 * off):.2g} % of {ALUMINIUM[0] / 1e9:.0f} GPa and {ALUMINIUM[1]:.0f} kg/m^3. "
+        "The paper states no E.",
     )
 
 
 @row("Fig. 2", "CAD model: the beam a deformable solid, the hub a rigid shell, no friction between them")
-def _figure2(_: PaperStudy) -> Said:
-    return Said(
+def _figure2(_: PaperStudy) -> Finding:
+    return Finding(
         ours="Hexahedra that slide through a plane in which their sections stay straight; drawn as actuator-solid",
         verdict=OPEN,
         reason=f"Length and play of the hub and the kind of contact are not printed. Ours guides without play.{FIGURE}",
@@ -123,7 +124,7 @@ def _figure2(_: PaperStudy) -> Said:
 
 
 @row("Fig. 3", "Refined from 5 cm to 5 mm; with 5 mm cubic elements the response is converged", expected=IN_PART)
-def _figure3(result: PaperStudy) -> Said:
+def _figure3(result: PaperStudy) -> Finding:
     peak, off = _differences(result, *(f"actuator-solid-{name}" for pair in LINEAR.values() for name in pair))
     _, best = _differences(result, "actuator-solid-quadratic")
     first = {name: float(result[name].frequency[0]) for name in (*off, *best)}
@@ -135,11 +136,11 @@ def _figure3(result: PaperStudy) -> Said:
         gaps[kind] = 100 * (first[fine] / true - 1)
         words.append(f"{kind} {first[coarse]:.3g} and {first[fine]:.3g} Hz, the tip off by {text(off[fine], 'm', 2)}")
     converged = best["actuator-solid-quadratic"] < CONVERGED * peak
-    return Said(
+    return Finding(
         ours=f"First frequency of linear hexahedra of 50 and of 5 mm instead of {true:.3g} Hz, largest error of the "
         f"latter in 10 s: {'; '.join(words)}. Quadratic ones of 5 mm: "
         f"{text(best['actuator-solid-quadratic'], 'm', 2)}",
-        verdict=judged(all(good.values()), any(good.values()) or converged),
+        verdict=choose_verdict(all(good.values()), any(good.values()) or converged),
         reason="It depends on the element, which the paper does not name. With full integration linear ones lock in "
         f"bending: two across the depth are {gaps['full integration']:.2g} % too fast. With reduced integration, "
         f"the usual default, two layers feel three quarters of the bending: {-gaps['reduced integration']:.2g} % "
@@ -148,14 +149,14 @@ def _figure3(result: PaperStudy) -> Said:
 
 
 @row("Fig. 4", "Assumed modes and finite elements agree closely", expected=HOLDS)
-def _figure4(result: PaperStudy) -> Said:
+def _figure4(result: PaperStudy) -> Finding:
     peak, off = _differences(result, "actuator-beam", "actuator-solid-quadratic")
     worst = max(off.values()) / peak
-    return Said(
+    return Finding(
         ours=f"Over 10 s and a largest deflection of {text(peak, 'm')} the beam elements differ by at most "
-        f"{text(up(off['actuator-beam']), 'm', 2)}, solid elements by "
-        f"{text(up(off['actuator-solid-quadratic']), 'm', 2)}",
-        verdict=judged(worst < CLOSE, worst < CONVERGED),
+        f"{text(round_up(off['actuator-beam']), 'm', 2)}, solid elements by "
+        f"{text(round_up(off['actuator-solid-quadratic']), 'm', 2)}",
+        verdict=choose_verdict(worst < CLOSE, worst < CONVERGED),
         reason="Same motion, start and guide in all three: 8 shapes, 12 cubic beam elements on the free length, "
         f"quadratic hexahedra of 5 mm without lateral contraction, as in a beam.{FIGURE}",
     )
@@ -170,19 +171,19 @@ def _differences(result: PaperStudy, *names: str) -> tuple[float, dict[str, floa
 
 
 @row("Figs. 3-4, printed curves", "Tip vibration at 0.1 m/s and 0.785 rad/s", expected=OPEN)
-def _printed(result: PaperStudy) -> Said:
+def _printed(result: PaperStudy) -> Finding:
     finest = result.actuator[ACTUATOR_MODES[-1]].tip_deflection
     peak = float(np.abs(finest).max())
     off = {k: float(np.abs(d.tip_deflection - finest).max()) for k, d in result.actuator.items()}
-    open_here = left_open("paper-actuator", "actuator.free_length", "actuator.tip_mass", "actuator.gravity")
+    open_here = is_unspecified("paper-actuator", "actuator.free_length", "actuator.tip_mass", "actuator.gravity")
     free = result["actuator-free"]
     swing = float(np.abs(free.tip_deflection).max())
-    return Said(
+    return Finding(
         ours=f"Prescribed rates: largest deflection {text(peak, 'm')}; 3 shapes are within "
-        f"{text(up(off[3]), 'm', 2)} of {ACTUATOR_MODES[-1]}. Set free with these rates: "
+        f"{text(round_up(off[3]), 'm', 2)} of {ACTUATOR_MODES[-1]}. Set free with these rates: "
         f"{text(swing, 'm')} in {float(free.time[-1]):.3g} s, at the end of which {float(free.length[-1]):.3g} m "
         "are outside",
-        verdict=OPEN if open_here else judged(off[3] < 0.01 * peak, off[3] < 0.1 * peak),
+        verdict=OPEN if open_here else choose_verdict(off[3] < 0.01 * peak, off[3] < 0.1 * peak),
         reason="Free length at the start, tip mass, hub, plane of motion, and whether the velocities are held or only "
         "given at the start (a hub without friction suggests it), are not printed, so the curves cannot be laid "
         f"over each other. Ours is level and starts at {_actuator(free).free_length:g} m; 1 shape would be off "

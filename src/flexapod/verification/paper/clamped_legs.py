@@ -1,6 +1,7 @@
-"""The paper's robot with ball joints that carry moments: equilibria along the roll, legs welded to the platform.
+"""Paper's robot with ball joints that carry moments: equilibria along the roll, legs clamped to the platform.
 
-Where robots with welded ball joints reach the paper's three figures: over the roll and the place of the payload.
+Map and figure show where, over the roll and the place of the payload, such robots reach the paper's three
+figures.
 """
 
 from __future__ import annotations
@@ -19,12 +20,12 @@ from flexapod.analysis.results.time_history import Share
 from flexapod.common.arrays import Array
 from flexapod.common.quantities import number
 from flexapod.mechanics.leg.layout import Shapes
-from flexapod.output.figures.style import COLUMN, SMALL, figure, ink, styled
+from flexapod.output.figures.style import COLUMN, SMALL, figure, house_style, readable_color
 from flexapod.output.scene.style import AXIS_COLORS
 from flexapod.solve.system import State
 from flexapod.verification.paper.claim import PAPER_DEVIATION
 from flexapod.verification.paper.readings import robot_preset
-from flexapod.verification.paper.trials import opened, resting, system_of
+from flexapod.verification.paper.trials import extend_strokes, locked_equilibrium, system_of
 
 #: Robots of the map: preset and how many legs are welded to the platform.
 READINGS = {
@@ -49,8 +50,8 @@ COLUMNS = {
 }
 
 
-def welded(study: model.Study, count: int = 6) -> model.Study:
-    """The same robot with the first ``count`` legs fixed to the platform in place of their ball joints."""
+def with_clamped_legs(study: model.Study, count: int = 6) -> model.Study:
+    """Study with the first ``count`` legs clamped to the platform in place of their ball joints."""
     robot = study.robot
     legs = tuple(leg.replace(chain="UPF" if i < count else "UPS") for i, leg in enumerate(robot.legs))
     kind = "6-UPF" if count == 6 else f"{count}-UPF+{6 - count}-UPS"
@@ -58,12 +59,12 @@ def welded(study: model.Study, count: int = 6) -> model.Study:
 
 
 def _walk(study: model.Study, rolls: Sequence[float]) -> Iterator[dict[str, object]]:
-    """What the equilibrium at each roll [deg] is, from home on; ends where none continues the one before."""
+    """Values of the equilibrium at each roll [deg], from home on; ends where none continues the one before."""
     system, state = system_of(study), None
     for roll in rolls:
         R = kinematics.rotation_matrix(np.array([[np.deg2rad(roll), 0.0, 0.0]]))[0]
         path = kinematics.Poses.at_rest(kinematics.home_pose(study.robot).position[0], R)
-        found = resting(study, system, path, state)
+        found = locked_equilibrium(study, system, path, state)
         if not found.found:
             return
         state = found.state
@@ -97,8 +98,8 @@ def _stress(robot: model.Robot, bent: Array, thrust: Array) -> float:
     return float(max(stress))
 
 
-def welded_map(report: Share, arms: Sequence[float] = ARMS, rolls: Sequence[float] = ROLLS) -> Dataset:
-    """Deviation of welded robots over the roll, the place of the centre of mass, and the readings of the circles.
+def clamped_legs_map(report: Share, arms: Sequence[float] = ARMS, rolls: Sequence[float] = ROLLS) -> Dataset:
+    """Deviation with clamped legs over the roll, the place of the centre of mass, and the circles' readings.
 
     Returns
     -------
@@ -111,7 +112,9 @@ def welded_map(report: Share, arms: Sequence[float] = ARMS, rolls: Sequence[floa
     values = {name: np.full((*shape, 3) if name == "deviation" else shape, np.nan) for name in COLUMNS}
     for i, (preset, count) in enumerate(READINGS.values()):
         for j, arm in enumerate(arms):
-            study = model.override(welded(with_arm(opened(robot_preset(preset)), arm), count), modes=SHAPES)
+            study = model.override(
+                with_clamped_legs(with_arm(extend_strokes(robot_preset(preset)), arm), count), modes=SHAPES
+            )
             for k, row in enumerate(_walk(study, rolls)):
                 for name, value in row.items():
                     values[name][i, j, k] = value
@@ -133,7 +136,7 @@ def welded_map(report: Share, arms: Sequence[float] = ARMS, rolls: Sequence[floa
 
 
 def with_arm(study: model.Study, arm: float) -> model.Study:
-    """The same robot with its centre of mass and tool ``arm`` [m] beside the platform's centre, where they are in y."""
+    """Study with centre of mass and tool ``arm`` [m] beside the platform's centre, in y."""
     beside = [0.0, arm, 0.0]
     payload = study.robot.payload.replace(com=beside, tool=beside)
     return study.replace(robot=study.robot.replace(payload=payload))
@@ -154,14 +157,14 @@ _TITLES = {
 }
 
 
-@styled
-def welded_figure(found: xr.Dataset) -> Figure:
+@house_style
+def clamped_legs_figure(found: xr.Dataset) -> Figure:
     """Curves of the roll and the arm d on which a robot deviates by a printed figure, a panel a reading.
 
     Parameters
     ----------
     found : xarray.Dataset
-        From `welded.welded_map`.
+        From `with_clamped_legs.welded_map`.
     """
     names = [str(name) for name in found.reading.values]
     fig = figure(2 * COLUMN, 7.0)
@@ -195,7 +198,7 @@ def _curves(axes: Axes, found: xr.Dataset) -> None:
         axes.plot([], [], color=color, linestyle=style, label=label)
     if missing:
         axes.annotate("\n".join(missing), (0.03, 0.97), xycoords="axes fraction", va="top", fontsize=SMALL,
-                      color=ink("#333333"), backgroundcolor="#F7F7F7")  # fmt: skip
+                      color=readable_color("#333333"), backgroundcolor="#F7F7F7")  # fmt: skip
     steep = float(roll[np.argmax((found.slope.values > SLOPE).any(axis=0))])
     axes.axvspan(steep, roll[-1], color="#999999", alpha=0.12, linewidth=0)
     axes.plot([], [], color="#999999", alpha=0.4, linewidth=6, label=f"slopes of the legs above {SLOPE:g}")
@@ -205,5 +208,5 @@ def _curves(axes: Axes, found: xr.Dataset) -> None:
         at = np.interp(value, stress.values, roll, right=np.nan)
         if np.isfinite(at):
             axes.annotate(f"{1e-9 * value:.0f} GPa", (at, 0.02), xycoords=("data", "axes fraction"), rotation=90,
-                          ha="right", va="bottom", fontsize=SMALL, color=ink("#8C564B"))  # fmt: skip
+                          ha="right", va="bottom", fontsize=SMALL, color=readable_color("#8C564B"))  # fmt: skip
             axes.axvline(at, color="#8C564B", linewidth=0.8, linestyle=":")

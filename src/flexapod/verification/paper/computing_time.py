@@ -1,4 +1,4 @@
-"""What the inverse dynamics of a rigid leg costs by Newton and Euler and by Lagrange, in floating-point operations.
+"""Floating-point operations of the inverse dynamics of a rigid leg, by Newton and Euler and by Lagrange.
 
 Both from angles, length, their rates and accelerations, with the same parameters. What comes after is the same for
 both: six balances of the payload, and six equations for the forces along the legs.
@@ -16,7 +16,7 @@ from flexapod.analysis.results.attributes import attributes
 from flexapod.common.arrays import Array
 from flexapod.kinematics import dynamics
 from flexapod.kinematics.inverse import JointTurn
-from flexapod.kinematics.rotations import matrix_vector
+from flexapod.kinematics.rotations import rotate_vector
 from flexapod.mechanics import shapes as bases
 from flexapod.mechanics.leg.layout import LEG_PARAMETERS, Shapes
 from flexapod.mechanics.leg.leg import leg
@@ -28,52 +28,52 @@ from flexapod.mechanics.symbolic.vocabulary import symbol, symbols
 FORMULATIONS = ("Newton-Euler", "Lagrange")
 
 
-class Counted:
+class CountedNumber:
     """A number that counts in `tally` what is computed with it; NumPy's arithmetic of object arrays asks it."""
 
     def __init__(self, value: float, tally: list[int]) -> None:
         self.value: float = value
         self.tally: list[int] = tally
 
-    def _done(self, value: float) -> Counted:
+    def _done(self, value: float) -> CountedNumber:
         self.tally[0] += 1
-        return Counted(value, self.tally)
+        return CountedNumber(value, self.tally)
 
-    def __add__(self, other: Counted | float) -> Counted:
+    def __add__(self, other: CountedNumber | float) -> CountedNumber:
         return self._done(self.value + _plain(other))
 
-    def __radd__(self, other: Counted | float) -> Counted:
+    def __radd__(self, other: CountedNumber | float) -> CountedNumber:
         return self + other
 
-    def __sub__(self, other: Counted | float) -> Counted:
+    def __sub__(self, other: CountedNumber | float) -> CountedNumber:
         return self._done(self.value - _plain(other))
 
-    def __mul__(self, other: Counted | float) -> Counted:
+    def __mul__(self, other: CountedNumber | float) -> CountedNumber:
         return self._done(self.value * _plain(other))
 
-    def __rmul__(self, other: Counted | float) -> Counted:
+    def __rmul__(self, other: CountedNumber | float) -> CountedNumber:
         return self * other
 
-    def __truediv__(self, other: Counted | float) -> Counted:
+    def __truediv__(self, other: CountedNumber | float) -> CountedNumber:
         return self._done(self.value / _plain(other))
 
-    def __pow__(self, power: int) -> Counted:
+    def __pow__(self, power: int) -> CountedNumber:
         return self._done(self.value**power)
 
-    def __neg__(self) -> Counted:
-        return Counted(-self.value, self.tally)
+    def __neg__(self) -> CountedNumber:
+        return CountedNumber(-self.value, self.tally)
 
-    def cos(self) -> Counted:
+    def cos(self) -> CountedNumber:
         """Cosine, for NumPy."""
         return self._done(float(np.cos(self.value)))
 
-    def sin(self) -> Counted:
+    def sin(self) -> CountedNumber:
         """Sine, for NumPy."""
         return self._done(float(np.sin(self.value)))
 
 
-def _plain(number: Counted | float) -> float:
-    return number.value if isinstance(number, Counted) else number
+def _plain(number: CountedNumber | float) -> float:
+    return number.value if isinstance(number, CountedNumber) else number
 
 
 def inverse_dynamics_cost(study: model.Study) -> Dataset:
@@ -95,24 +95,24 @@ def _newton_euler_leg(numbers: Callable[..., Array]) -> tuple[Array, ...]:
     """Forces across and along one leg in one pose from given numbers, by Eqs. (T2.26)-(T2.34)."""
     names = ("length", "rate", "accel", "alpha_dot", "beta_dot", "alpha_ddot", "beta_ddot")
     bodies = dynamics.LegBodies(**{name: numbers(1, 1) for name in dynamics.LegBodies.__dataclass_fields__})
-    turn = JointTurn.of(numbers(1, 1), numbers(1, 1))
+    turn = JointTurn.from_angles(numbers(1, 1), numbers(1, 1))
     legs = dynamics.LegArrays(turn=turn, **{name: numbers(1, 1) for name in names})
     home, gravity, along = numbers(3, 3, 1, 1), numbers(3), numbers(1, 1)
-    leg_gravity = turn.into_leg(matrix_vector(home, gravity))
+    leg_gravity = turn.into_leg(rotate_vector(home, gravity))
     motion = dynamics.leg_motion(bodies, legs)
-    across, _ = dynamics.across_the_leg(bodies, legs, motion, leg_gravity)
-    return (*across[:2], dynamics.along_the_leg(bodies, motion, leg_gravity, along))
+    across, _ = dynamics.transverse_forces(bodies, legs, motion, leg_gravity)
+    return (*across[:2], dynamics.axial_drive_force(bodies, motion, leg_gravity, along))
 
 
 def _numbers(shape: tuple[int, ...], tally: list[int]) -> Array:
     found = np.empty(shape, dtype=object)
     for index in np.ndindex(*shape):
-        found[index] = Counted(1.0, tally)
+        found[index] = CountedNumber(1.0, tally)
     return found
 
 
 def lagrange_leg() -> NamedFunction:
-    """The same leg by Lagrange's equations, differentiated symbolically, Eqs. (T3.1)-(T3.2): M v_dot + h of 3 rows."""
+    """Leg by Lagrange's equations, differentiated symbolically, Eqs. (T3.1)-(T3.2): M v_dot + h of 3 rows."""
     none = bases.lateral_basis("clamped-free", 0)
     shapes = Shapes(beam=LegBeam(a=none, b=none, axial=bases.axial_basis(0)), chain=LegChain())
     p_vector, p = symbols(LEG_PARAMETERS, "p")

@@ -1,6 +1,7 @@
-"""The robot by several programs: drive forces and path of the payload, one laid over the other (Figs. 8 and 9).
+"""Figures that compare the robot by several programs, and variants of it.
 
-What the deviation depends on: the joints' half-angle, and a start with a jump in rate.
+Drive forces and path of the payload are laid one over the other (Figs. 8 and 9). The deviation is shown over
+the joints' half-angle, with lighter pistons, and from a start with a jump in rate.
 """
 
 from __future__ import annotations
@@ -19,7 +20,17 @@ from flexapod.common.errors import InputError
 from flexapod.common.quantities import Scale, scale, text
 from flexapod.output.figures.legs import force_panels
 from flexapod.output.figures.payload import MOST_SWINGS, vibration_line
-from flexapod.output.figures.style import COLUMN, NOTE, PAGE, SMALL, figure, ink, mark_end, needs, styled
+from flexapod.output.figures.style import (
+    COLUMN,
+    NOTE,
+    PAGE,
+    SMALL,
+    figure,
+    house_style,
+    mark_end,
+    readable_color,
+    require_variables,
+)
 from flexapod.output.scene.style import AXIS_COLORS, FLEXIBLE, LEG_COLORS, RIGID
 from flexapod.verification.paper.claim import PAPER_DEVIATION
 
@@ -32,8 +43,8 @@ _LINES: tuple[dict[str, Any], ...] = (
 )
 
 
-@styled
-@needs("actuator_force_rigid", "actuator_force")
+@house_style
+@require_variables("actuator_force_rigid", "actuator_force")
 def engine_forces(results: Mapping[str, xr.Dataset]) -> Figure:
     """Drive forces of the six legs by Newton-Euler and by several models, with their differences below (Fig. 8).
 
@@ -69,8 +80,8 @@ def engine_forces(results: Mapping[str, xr.Dataset]) -> Figure:
     return fig
 
 
-@styled
-@needs("com_position", "com_position_rigid", "com_deviation")
+@house_style
+@require_variables("com_position", "com_position_rigid", "com_deviation")
 def engine_path(results: Mapping[str, xr.Dataset], axes: Sequence[str] = ("y", "z")) -> Figure:
     """Path of the centre of mass, its deviation from the rigid one, and the models' differences, each to its own scale.
 
@@ -178,7 +189,7 @@ START = 0.2  # s after a start with a jump, shown by itself
 _MARKS = {"x": "^", "y": "o", "z": "s"}
 
 
-@styled
+@house_style
 def half_angles(sweeps: Mapping[str, xr.Dataset]) -> Figure:
     """Largest deviation, largest drive force and lowest frequency against the half-angle of the joint pairs.
 
@@ -226,7 +237,7 @@ def _peaks(axes: Axes, sweep: xr.Dataset) -> None:
             textcoords="offset points",
             va="bottom" if name == "z" else "top",
             fontsize=SMALL,
-            color=ink(AXIS_COLORS[name]),
+            color=readable_color(AXIS_COLORS[name]),
         )
     axes.annotate("architecture singularity", (30, 0.03), xycoords=("data", "axes fraction"), xytext=(-3, 0),
                   textcoords="offset points", rotation=90, ha="right", fontsize=SMALL, color="#C44E52")  # fmt: skip
@@ -247,7 +258,7 @@ def _lost(axes: Axes, sweep: xr.Dataset) -> None:
             axes.annotate(label, (angle, 0.03), xytext=(-7, 0), ha="right", fontsize=SMALL, color="#C44E52", **place)
 
 
-@styled
+@house_style
 def light_pistons(light: xr.Dataset) -> Figure:
     """Deviation, and vibration after the roll, against the mass of a piston, hollow ones and thinner ones.
 
@@ -287,7 +298,7 @@ def light_pistons(light: xr.Dataset) -> Figure:
     return fig
 
 
-@styled
+@house_style
 def start_jump(smooth: xr.Dataset, jump: xr.Dataset) -> Figure:
     """Deviation with a smooth start against a start whose rate jumps, on one scale, an axis a row, its start beside it.
 

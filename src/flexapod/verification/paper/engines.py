@@ -21,7 +21,7 @@ from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.common.quantities import scale, text
 from flexapod.verification.engines.engine import EXUDYN
-from flexapod.verification.engines.exudyn_integration import Integration, extrapolated
+from flexapod.verification.engines.exudyn_integration import Integration, extrapolate_first_order
 from flexapod.verification.engines.exudyn_robot import MESHES, STEP, RobotResult, simulate_robot
 
 NO_GUIDE = 0.0  # m; of rigid pistons
@@ -43,7 +43,7 @@ def check_engine() -> None:
     InputError
         Exudyn is not installed.
     """
-    if not EXUDYN.found():
+    if not EXUDYN.is_available():
         raise InputError(
             "Exudyn, which it asks, is not installed",
             key="--engines",
@@ -52,12 +52,12 @@ def check_engine() -> None:
 
 
 def without_damping(study: model.Study) -> model.Study:
-    """The same study with undamped pistons: Exudyn's cables have no modal damping."""
+    """Study with undamped pistons: Exudyn's cables have no modal damping."""
     legs = tuple(leg.replace(damping=0.0) for leg in study.robot.legs)
     return study.replace(robot=study.robot.replace(legs=legs))
 
 
-def undamped(study: model.Study, report: Share) -> Dataset:
+def run_undamped(study: model.Study, report: Share) -> Dataset:
     """Our run to compare with: flexible pistons without damping, at the step and the instants of Exudyn's."""
     return _ours(without_damping(study), None, report)
 
@@ -68,7 +68,7 @@ def rigid_same_step(study: model.Study, report: Share) -> Dataset:
 
 
 def _ours(study: model.Study, fidelity: str | None, report: Share) -> Dataset:
-    """What is compared of our run: eight thousand instants of everything would fill 50 MB."""
+    """Compared variables of our run: eight thousand instants of everything would fill 50 MB."""
     data = simulate(
         study, fidelity=fidelity, step=STEP, output_step=STEP, progress=lambda reached, end: report(reached / end)
     )
@@ -116,7 +116,7 @@ def exudyn_flexible(study: model.Study, report: Share) -> Dataset:
         before += USUAL[elements]
     coarse, fine = meshes
     names = ("com_deviation", "actuator_force", "tip_deflection")
-    values = {name: extrapolated(getattr(coarse, name), getattr(fine, name)) for name in names}
+    values = {name: extrapolate_first_order(getattr(coarse, name), getattr(fine, name)) for name in names}
     changes = {name: np.abs(values[name] - getattr(fine, name)) for name in names}
     refinement = {f"refinement_{name}": float(change.max()) for name, change in changes.items()}
     refinement["refinement_com_deviation"] = changes["com_deviation"].max(axis=0).tolist()
@@ -133,7 +133,7 @@ def _solved(study: model.Study, elements: int, guide: float, tolerance: float, r
 
 @contextmanager
 def _by_the_clock(report: Share, usual: float) -> Iterator[None]:
-    """Progress while a program computes that tells nothing: rises to 0.76 in the `usual` seconds, never to 1.
+    """Report progress of a program that reports none: rises to 0.76 in the `usual` seconds, never to 1.
 
     `report` is called from a second thread; the computation stays in this one, where Ctrl-C ends its process.
     """
@@ -163,7 +163,7 @@ def _settings(tolerance: float) -> dict[str, object]:
 
 
 def _dataset(study: model.Study, instants: Array, values: Mapping[str, Array], attrs: Mapping[str, object]) -> Dataset:
-    """Their results with our rigid path and rigid forces at the same instants."""
+    """Results of Exudyn with our rigid path and rigid forces at the same instants."""
     path = kinematics.poses(study.robot, study.motion, instants)
     centre, _, _ = path.point(study.robot.payload.com)
     forces = kinematics.inverse_dynamics(study.robot, path).actuator_force
@@ -195,7 +195,7 @@ class Agreement:
 
 
 def agreements(parts: Mapping[str, Dataset]) -> list[Agreement]:
-    """How well Exudyn and we agree, of those parts of the paper's study that are there."""
+    """Agreement between Exudyn and us, of those parts of the paper's study that are there."""
     rows: list[Agreement] = []
     if {"robot-rigid-same-step", "robot-exudyn-rigid"} <= set(parts):
         rows += _rigid_agreements(parts["robot-rigid-same-step"], parts["robot-exudyn-rigid"])

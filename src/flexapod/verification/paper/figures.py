@@ -1,6 +1,6 @@
-"""The figures of the paper's study, in the order of the paper.
+"""Figures of the paper's study in the order of the paper, with the actuator and the leg as solids (Fig. 2).
 
-The actuator as a solid in a rigid hub, and the leg of the robot that it stands for (Fig. 2 of the paper).
+The actuator is drawn in a rigid hub, beside the leg of the robot that it stands for.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from flexapod.analysis.results.time_history import Report
 from flexapod.common.quantities import number, text
 from flexapod.output import figures
 from flexapod.output.figures.robot3d import CYLINDER, PLATFORM
-from flexapod.output.figures.style import NOTE, PAGE, figure, styled
-from flexapod.output.report.figures import Drawn, store
+from flexapod.output.figures.style import NOTE, PAGE, figure, house_style
+from flexapod.output.report.figures import StoredFigure, store_figure
 from flexapod.output.scene.style import LEG_COLORS
 from flexapod.verification.paper import clamped_legs, engine_figures, outlook_figures, printed_figures
 from flexapod.verification.paper.claim import HEIGHT, PAPER_DEVIATION, WIDTH, force_gaps
@@ -34,14 +34,14 @@ OUTLOOK = "What the paper asks for next"
 ENGINE = "Independent engine"
 
 
-def paper_figures(result: PaperStudy, folder: Path, progress: Report | None = None) -> dict[str, list[Drawn]]:
+def paper_figures(result: PaperStudy, folder: Path, progress: Report | None = None) -> dict[str, list[StoredFigure]]:
     """Draw all figures of the paper's study, by group."""
     plans = [*_actuator(result), *_robot(result), *_outlook(result), *_variants(result), *_engine(result)]
-    drawn: dict[str, list[Drawn]] = {}
+    drawn: dict[str, list[StoredFigure]] = {}
     for i, (group, name, title, make) in enumerate(plans):
         if progress is not None:
             progress(f"figure {i + 1} of {len(plans)}", i / len(plans))
-        drawn.setdefault(group, []).append(store(make(), title, folder / name))
+        drawn.setdefault(group, []).append(store_figure(make(), title, folder / name))
     if progress is not None:
         progress("report", 1.0)
     return drawn
@@ -145,7 +145,7 @@ def _robot(result: PaperStudy) -> Iterator[_Plan]:
 
 
 def _outlook(result: PaperStudy) -> Iterator[_Plan]:
-    """Of sections 4.3 and 4.4."""
+    """Plans of the figures of sections 4.3 and 4.4."""
     title = (
         "Section 4.4, compensation: commands ahead of time that make up for more and more of what is known beforehand"
     )
@@ -172,7 +172,7 @@ def _variants(result: PaperStudy) -> Iterator[_Plan]:
         "Ball joints that carry moments, at rest: roll and place of the centre of mass at which each of the three "
         "printed figures is reached. Stresses are those of d = 373 mm; steel yields at 0.6 GPa"
     )
-    yield (VARIANTS, "welded", title, lambda: clamped_legs.welded_figure(result["welded"]))
+    yield (VARIANTS, "welded", title, lambda: clamped_legs.clamped_legs_figure(result["welded"]))
     title = "A 3-RPS of the same pistons under the same roll, by cause: bending is all of it"
     yield (VARIANTS, "tripod-by-cause", title, lambda: figures.deviation_by_cause(result["tripod"]))
     title = "The 3-RPS at the end of the roll; pale: at home"
@@ -182,7 +182,7 @@ def _variants(result: PaperStudy) -> Iterator[_Plan]:
 
 
 def _engine(result: PaperStudy) -> Iterator[_Plan]:
-    """Of those parts that the engine was asked for and computed."""
+    """Plans of the figures of those parts that the engine was asked for and computed."""
     model, engine = "multibody model", "Exudyn"
     if "robot-exudyn-rigid" in result.parts:
         rigid = {model: result["robot-rigid-same-step"], engine: result["robot-exudyn-rigid"]}
@@ -215,7 +215,7 @@ SHELL = 0.04  # distance of the shell from what is in it, as drawn [m]
 EDGE = "#4A4F57"
 
 
-@styled
+@house_style
 def actuator_solid(actuator: model.Actuator, leg: model.Leg, home: float) -> Figure:
     """A: the beam as hexahedra that slide through a rigid shell. B: a leg of the robot, piston in cylinder, to scale.
 
@@ -257,7 +257,7 @@ def _beam(axes: Any, actuator: model.Actuator) -> None:
 def _box(
     axes: Any, along: np.ndarray, across: np.ndarray, up: np.ndarray, color: str, alpha: float, edges: str
 ) -> None:
-    """What is seen of a box from the front, above and the right: its faces, cut at the given places."""
+    """Draw the visible faces of a box, seen from the front, above and the right, cut at the given places."""
 
     def face(corners: list[tuple[float, float, float]]) -> None:
         points = [np.array([x, z]) + y * SLANT for x, y, z in corners]

@@ -20,7 +20,7 @@ GIVEN = {
 
 @dataclass(frozen=True, kw_only=True)
 class Topic:
-    """What the paper names and how far that is here.
+    """Topic that the paper names, its status here, and the call that does it.
 
     `call`: an expression of Python in `fx` and the names of `GIVEN`, empty where there is none; `awaits`: a name of a
     call that would do what is missing, and is not there.
@@ -250,7 +250,7 @@ TOPICS = (
 )
 
 
-def markdown() -> str:
+def literature_markdown() -> str:
     """The list as a table in Markdown."""
     lines = [HEAD, ("---",) * len(HEAD)]
     lines += [(t.paper, f"**{t.status}**", t.here, f"`{t.call}`" if t.call else "") for t in TOPICS]

@@ -1,7 +1,7 @@
-"""What the paper names as limits of its study and as work to come, computed on its own robot.
+"""Limits of the paper's study and future work that it names, computed on its own robot.
 
-Commands ahead of time, a shaped roll, feedback of forces, friction of joints, tolerances and a floor that shakes. What
-the paper gives no numbers for is ours, here as constants.
+Feedforward commands, a shaped roll, feedback of forces, friction of joints, tolerances and floor vibration.
+Values that the paper does not give are ours, here as constants.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from flexapod.analysis.results.time_history import Share
 from flexapod.analysis.simulation import simulate
 from flexapod.commissioning.feedforward import compensate, shape
 from flexapod.control.controllers import IFF
-from flexapod.verification.paper.claim import after_motion, axis_motion
+from flexapod.verification.paper.claim import axis_motion, residual_vibration
 from flexapod.verification.paper.readings import robot_preset, with_legs
 
 #: Words for commands that make up for more and more, and the orders of `compensate` that do.
@@ -67,7 +67,7 @@ def _stacked(
 
 
 def commands_ahead(report: Share) -> Dataset:
-    """How far the payload misses its path with commands that make up for more and more of what is known beforehand.
+    """Path error of the payload under feedforward commands that compensate more and more of what is known.
 
     Returns
     -------
@@ -91,7 +91,7 @@ def commands_ahead(report: Share) -> Dataset:
 
 
 def shaped_roll(report: Share) -> Dataset:
-    """What vibrates after the roll, as it is and shaped for the lowest modes.
+    """Vibration after the roll, as it is and shaped for the lowest modes.
 
     Returns
     -------
@@ -104,14 +104,14 @@ def shaped_roll(report: Share) -> Dataset:
     hold, own = axis_motion(study).hold, axis_motion(study).end_time
     time = np.arange(0.0, hold - 1e-9, study.simulation.output_step or 1e-3)
     for count in (0, *SHAPED_MODES):
-        changed = shape(study, SHAPER, modes=count) if count else study
-        data = simulate(changed)
+        quiet = shape(study, SHAPER, modes=count) if count else study
+        data = simulate(quiet)
         end = motion_end(data) or 0.0
         off = np.stack([np.interp(end + time, data.time, data.com_deviation[:, i]) for i in range(3)], axis=1)
         rows[f"shaped for {count} mode{'s' * (count > 1)}" if count else "as it is"] = off - off.mean(axis=0)
-        columns["payload_vibration"].append(after_motion(data, "com_deviation"))
-        columns["tip_vibration"].append(after_motion(data, "tip_deflection"))
-        columns["longer"].append(changed.motion.end_time - own)
+        columns["payload_vibration"].append(residual_vibration(data, "com_deviation"))
+        columns["tip_vibration"].append(residual_vibration(data, "tip_deflection"))
+        columns["longer"].append(quiet.motion.end_time - own)
         report(len(rows) / (1 + len(SHAPED_MODES)))
     values = {"vibration": _stacked(rows, "command", "time", "axis")} | {
         name: ("command", found, _SECOND if name == "longer" else _METRE) for name, found in columns.items()
@@ -121,16 +121,16 @@ def shaped_roll(report: Share) -> Dataset:
 
 
 def with_drives(study: model.Study) -> model.Study:
-    """The same robot, at rest, on drives that give way as much as its pistons: those that hold feel nothing."""
+    """Study at rest on drives as compliant as its pistons: prescribed ones feel nothing."""
 
-    def changed(leg: model.Leg) -> model.Leg:
+    def change_leg(leg: model.Leg) -> model.Leg:
         return leg.replace(drive=model.ServoDrive(stiffness=leg.piston.EA / leg.piston.length, damping=DRIVE_DAMPING))
 
-    return with_legs(study, changed).replace(motion=axis_motion(study).replace(amplitude=0.0))
+    return with_legs(study, change_leg).replace(motion=axis_motion(study).replace(amplitude=0.0))
 
 
 def _struck(study: model.Study) -> model.Study:
-    """The same robot under a blow from above on its payload."""
+    """Study with a blow from above on its payload."""
     share = np.linspace(0.0, 1.0, 21)
     time = np.concatenate([[0.0], BLOW_START + BLOW_TIME * share, [RING]])
     wrench = np.zeros((len(time), 6))
@@ -139,7 +139,7 @@ def _struck(study: model.Study) -> model.Study:
 
 
 def force_feedback(report: Share) -> Dataset:
-    """The robot struck once, with its drives left alone and with each giving way to the integral of its force.
+    """Ringing after a blow, compliance and modes, without and with integral force feedback of each drive.
 
     Returns
     -------
@@ -177,17 +177,17 @@ def force_feedback(report: Share) -> Dataset:
 
 
 def with_friction(study: model.Study) -> model.Study:
-    """The same robot with plain joints that rub at both ends of its legs."""
+    """Study with plain joints that have friction at both ends of its legs."""
 
-    def changed(leg: model.Leg) -> model.Leg:
+    def change_leg(leg: model.Leg) -> model.Leg:
         base, platform = (joint.replace(friction=FRICTION) for joint in (leg.base_joint, leg.platform_joint))
         return leg.replace(base_joint=base, platform_joint=platform)
 
-    return with_legs(study, changed)
+    return with_legs(study, change_leg)
 
 
 def joint_friction(report: Share) -> Dataset:
-    """The roll with ideal joints, with joints that rub, and with these under commands that do not know of friction.
+    """Roll with ideal joints, with friction in joints, and with friction and feedforward without knowledge of it.
 
     Returns
     -------
@@ -210,7 +210,7 @@ def joint_friction(report: Share) -> Dataset:
 
 
 def _as_made() -> model.Study:
-    """The robot with tolerances, joints that rub, on a floor that shakes."""
+    """Study with tolerances, friction in joints and a vibrating floor."""
     study = with_friction(_roll())
     return study.replace(
         robot=study.robot.replace(tolerances=TOLERANCES),
@@ -219,10 +219,10 @@ def _as_made() -> model.Study:
 
 
 def tolerances(_: Share) -> Dataset:
-    """Spread of the payload's place at home by tolerances, to first order and of drawn machines (`accuracy`)."""
+    """Spread of the payload's place at home by tolerances, to first order and of random draws (`accuracy`)."""
     return accuracy(_as_made(), draws=DRAWS, seed=1)
 
 
 def error_budget(_: Share) -> Dataset:
-    """Error budget at home of the robot with tolerances, friction and a floor that shakes (`budget`)."""
+    """Error budget at home of the robot with tolerances, friction and floor vibration (`budget`)."""
     return budget(_as_made())

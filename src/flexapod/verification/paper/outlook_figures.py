@@ -1,4 +1,4 @@
-"""Figures of what the paper asks for next: commands ahead, a shaped roll, force feedback, joints that rub."""
+"""Figures of what the paper asks for next: feedforward commands, a shaped roll, force feedback, friction."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from flexapod.analysis.results.attributes import robot_study
 from flexapod.common.quantities import scale
-from flexapod.output.figures.style import COLUMN, PAGE, figure, mark_end, styled
+from flexapod.output.figures.style import COLUMN, PAGE, figure, house_style, mark_end
 from flexapod.output.scene.style import LEG_COLORS
 from flexapod.verification.paper.claim import axis_motion
 
@@ -33,9 +33,9 @@ def _time_axis(axes: Axes, title: str, label: str) -> None:
     axes.set(title=title, xlabel="time [s]", ylabel=label)
 
 
-@styled
+@house_style
 def commands_ahead(ahead: xr.Dataset) -> Figure:
-    """Distance of the payload from its path, in powers of ten, with commands that make up for more and more.
+    """Path error of the payload, in powers of ten, with commands that compensate more and more.
 
     Of each twentieth of a second the largest: what swings within it is solid ink otherwise.
 
@@ -59,7 +59,7 @@ def commands_ahead(ahead: xr.Dataset) -> Figure:
     return fig
 
 
-@styled
+@house_style
 def shaped_roll(shaped: xr.Dataset, shown: float = 0.25) -> Figure:
     """Vibration of the payload that the roll leaves, a panel for each number of modes it is shaped for.
 
@@ -86,7 +86,7 @@ def shaped_roll(shaped: xr.Dataset, shown: float = 0.25) -> Figure:
     return fig
 
 
-@styled
+@house_style
 def force_feedback(loops: xr.Dataset) -> Figure:
     """Compliance of the payload over frequency, and its ringing after a blow, without and with force feedback.
 
@@ -109,9 +109,9 @@ def force_feedback(loops: xr.Dataset) -> Figure:
     return fig
 
 
-@styled
+@house_style
 def joint_friction(rubbing: xr.Dataset) -> Figure:
-    """Distance of the payload from its path with ideal joints and with joints that rub.
+    """Path error of the payload with ideal joints and with friction in joints.
 
     Parameters
     ----------

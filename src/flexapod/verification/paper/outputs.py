@@ -10,8 +10,8 @@ from xarray import Dataset
 from flexapod.analysis.results.time_history import Report
 from flexapod.analysis.store import save, save_csv
 from flexapod.common.errors import InputError
-from flexapod.common.files import replacing, write_text
-from flexapod.verification.paper.claims import claims, markdown
+from flexapod.common.files import replace_file, write_text
+from flexapod.verification.paper.claims import claims, claims_markdown
 from flexapod.verification.paper.engines import check_engine
 from flexapod.verification.paper.figures import paper_figures
 from flexapod.verification.paper.report import paper_page
@@ -60,7 +60,7 @@ def replicate(
     )
     groups = paper_figures(result, folder / "figures", _from(0.75, progress)) if figures else {}
     table = claims(result)
-    write_text(folder / "claims.md", markdown(table))
+    write_text(folder / "claims.md", claims_markdown(table))
     write_text(folder / "report.html", paper_page(result, table, groups))
     return result
 
@@ -93,7 +93,7 @@ def _store(data: Dataset, stem: Path) -> None:
 
 def _save_rows(data: Dataset, path: Path) -> None:
     """A CSV file of a part without time: variable, labels, value and unit, a value a row."""
-    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+    with replace_file(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file)
         rows.writerow(["variable", "labels", "value", "unit"])
         for name, values in data.data_vars.items():

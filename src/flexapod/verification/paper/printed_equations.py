@@ -18,7 +18,16 @@ from flexapod.analysis.results.time_history import Share
 from flexapod.common.arrays import Array
 from flexapod.mechanics import shapes
 from flexapod.mechanics.shapes.beam_functions import clamped_free
-from flexapod.verification.paper.energies import SHAPES, TIP_MASS, Change, Point, along, beam_with, matrices, square
+from flexapod.verification.paper.energies import (
+    SHAPES,
+    TIP_MASS,
+    BeamState,
+    Change,
+    matrices,
+    modified_beam_kinetic,
+    quadratic_form,
+    weighted_sum,
+)
 from flexapod.verification.paper.readings import actuator_preset
 
 GRAVITY = 9.81  # m/s^2, in the cases that are upright
@@ -27,72 +36,76 @@ CHUNK = 1.0  # s of matrices at once
 
 
 def roots(count: int) -> Array:
-    """epsilon_i of Eq. 3."""
+    """Roots epsilon_i of Eq. 3."""
     return np.array([shape.eps for shape in clamped_free(count)])
 
 
-def _norm_as_said(p: Point) -> dict[str, Any]:
+def _norm_as_said(p: BeamState) -> dict[str, Any]:
     """Kinetic and strain energy with Y_i that are not normalised, taken as if they were: squares of Y_i count 1."""
     eps = roots(p.basis.count)
     alpha = (np.sin(eps) + np.sinh(eps)) / (np.cos(eps) + np.cosh(eps))
     mass, k, squares = p.basis.mass.copy(), p.basis.count, np.outer(alpha, alpha)
     mass[:k, :k] /= squares
-    bent = 0.5 * p.EI / p.length**3 * square(p.a, p.basis.stiffness / squares)
-    return {"4": beam_with(p, mass, sliding=1.0), "6": bent}
+    bent = 0.5 * p.EI / p.length**3 * quadratic_form(p.a, p.basis.stiffness / squares)
+    return {"4": modified_beam_kinetic(p, mass, sliding=1.0), "6": bent}
 
 
-def _frequencies_as_printed(p: Point) -> Any:
+def _frequencies_as_printed(p: BeamState) -> Any:
     """Strain energy 1/2 rho L sum omega_i^2 a_i^2 with omega^4 = beta^4 EI / rho, in numbers of SI."""
     omega_by_length = roots(p.basis.count) * (p.EI / p.rho) ** 0.25
-    return 0.5 * p.rho / p.length * square(p.a, np.diag(omega_by_length**2))
+    return 0.5 * p.rho / p.length * quadratic_form(p.a, np.diag(omega_by_length**2))
 
 
-def _nothing(p: Point) -> Any:
+def _nothing(p: BeamState) -> Any:
     return 0.0 * p.tip
 
 
 @dataclass(frozen=True)
-class Printed:
-    """A printed line: what it changes in the energies, by equation, and whether the case is upright in gravity."""
+class PrintedLine:
+    """Printed line: what it changes in the energies, by equation, and whether the case is vertical in gravity."""
 
     name: str
     change: Change
     upright: bool = False
 
 
-def _tip_with(p: Point, square: Any, coupled: Any) -> dict[str, Any]:
+def _tip_with(p: BeamState, square: Any, coupled: Any) -> dict[str, Any]:
     """Eq. 5 with another u'^2 and another coupling."""
     return {"5": 0.5 * TIP_MASS * (p.tip**2 * p.angle_dot**2 + square + coupled)}
 
 
 #: Lines of the paper in its order; `copy` in a name: as our copy has it, which may have lost dots or a power.
 LINES = (
-    Printed("2, norm", _norm_as_said),
-    Printed("2, power (copy)", lambda p: {"6": _frequencies_as_printed(p)}),
-    Printed("4, without sliding", lambda p: {"4": beam_with(p, p.basis.mass, sliding=0.0)}),
-    Printed("5, dots lost (copy)", lambda p: _tip_with(p, p.tip**2, TIP_MASS * p.length * p.angle_dot * p.tip)),
-    Printed("5, with dots", lambda p: _tip_with(p, p.tip_dot**2, TIP_MASS * p.length * p.angle_dot * p.tip_dot)),
-    Printed("5, with dots and factor 2", lambda p: _tip_with(p, p.tip_dot**2, 2 * p.length * p.angle_dot * p.tip_dot)),
-    Printed("7, nothing elastic", lambda p: {"7": _nothing(p)}, upright=True),
-    Printed("8, linear", lambda p: {"8, tip": TIP_MASS * p.angle_dot**2 * p.length * along(p.basis.tip_slope, p.a)}),
-    Printed(
-        "8, with half and square",
-        lambda p: {"8, tip": 0.5 * TIP_MASS * p.angle_dot**2 * along(p.basis.tip_slope, p.a) ** 2},
+    PrintedLine("2, norm", _norm_as_said),
+    PrintedLine("2, power (copy)", lambda p: {"6": _frequencies_as_printed(p)}),
+    PrintedLine("4, without sliding", lambda p: {"4": modified_beam_kinetic(p, p.basis.mass, sliding=0.0)}),
+    PrintedLine("5, dots lost (copy)", lambda p: _tip_with(p, p.tip**2, TIP_MASS * p.length * p.angle_dot * p.tip)),
+    PrintedLine("5, with dots", lambda p: _tip_with(p, p.tip_dot**2, TIP_MASS * p.length * p.angle_dot * p.tip_dot)),
+    PrintedLine(
+        "5, with dots and factor 2", lambda p: _tip_with(p, p.tip_dot**2, 2 * p.length * p.angle_dot * p.tip_dot)
     ),
-    Printed("9-10, centrifugal only", lambda p: {"9-10": _nothing(p)}, upright=True),
+    PrintedLine("7, nothing elastic", lambda p: {"7": _nothing(p)}, upright=True),
+    PrintedLine(
+        "8, linear", lambda p: {"8, tip": TIP_MASS * p.angle_dot**2 * p.length * weighted_sum(p.basis.tip_slope, p.a)}
+    ),
+    PrintedLine(
+        "8, with half and square",
+        lambda p: {"8, tip": 0.5 * TIP_MASS * p.angle_dot**2 * weighted_sum(p.basis.tip_slope, p.a) ** 2},
+    ),
+    PrintedLine("9-10, centrifugal only", lambda p: {"9-10": _nothing(p)}, upright=True),
 )
 
 
-def _none(_: Point) -> dict[str, Any]:
+def _none(_: BeamState) -> dict[str, Any]:
     return {}
 
 
-def tip_paths(cases: Sequence[tuple[Printed | None, bool]]) -> Array:
+def tip_paths(cases: Sequence[tuple[PrintedLine | None, bool]]) -> Array:
     """Deflection of the tip [m], (case, time), at every `OUTPUT`.
 
     Parameters
     ----------
-    cases : sequence of (Printed or None, bool)
+    cases : sequence of (PrintedLine or None, bool)
         The line that is as printed, none where all are as derived, and whether gravity acts in the plane of motion.
     """
     study, basis = actuator_preset(), shapes.lateral_basis("clamped-free", SHAPES)
@@ -136,7 +149,7 @@ def _runge_kutta(system: Array, push: Array, x: Array) -> Array:
 
 
 def printed_lines(_: Share) -> Dataset:
-    """What each printed line costs the tip.
+    """Error of the tip by each printed line.
 
     Returns
     -------

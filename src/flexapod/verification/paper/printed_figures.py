@@ -22,10 +22,10 @@ from flexapod.output.figures.style import (
     SMALL,
     TEXT,
     figure,
-    ink,
+    house_style,
     mark_end,
-    needs,
-    styled,
+    readable_color,
+    require_variables,
 )
 from flexapod.output.scene.robot_scene import mode_scene
 from flexapod.output.scene.style import AXIS_COLORS, FLEXIBLE, LEG_COLORS, RIGID
@@ -34,7 +34,7 @@ from flexapod.verification.paper.claim import force_gaps
 BENT = 0.18  # of the length of a leg: how far its mode is drawn off the line of its joints
 
 
-@styled
+@house_style
 def actuator_symbols() -> Figure:
     """The actuator as in Fig. 1 of the paper, not to scale, with the symbols of chapter T9 of the theory.
 
@@ -96,8 +96,8 @@ def _dimension(axes: Any, start: np.ndarray, end: np.ndarray, words: str, side: 
     axes.annotate(words, middle, fontsize=TEXT, va="center", ha="left" if side else "center")
 
 
-@styled
-@needs("tip_deflection", "length", "angle_rate")
+@house_style
+@require_variables("tip_deflection", "length", "angle_rate")
 def actuator_free(results: Mapping[str, xr.Dataset]) -> Figure:
     """The single actuator under several readings of its motion: tip, length outside the hub, rate of the hub.
 
@@ -126,8 +126,8 @@ def actuator_free(results: Mapping[str, xr.Dataset]) -> Figure:
     return fig
 
 
-@styled
-@needs("actuator_force_rigid", "actuator_force")
+@house_style
+@require_variables("actuator_force_rigid", "actuator_force")
 def forces_rigid(data: xr.Dataset) -> Figure:
     """Drive forces leg by leg with a word at the spikes of the difference.
 
@@ -142,12 +142,12 @@ def forces_rigid(data: xr.Dataset) -> Figure:
         if not axes.get_title(loc="left"):
             most = text(rounded_up(away), "N", 2)
             axes.annotate(f"elsewhere at\nmost {most}", (0.78, 0.97), xycoords="axes fraction", va="top",
-                          ha="center", fontsize=SMALL, color=ink("#333333"))  # fmt: skip
+                          ha="center", fontsize=SMALL, color=readable_color("#333333"))  # fmt: skip
     return fig
 
 
-@styled
-@needs("actuator_force_rigid", "actuator_force")
+@house_style
+@require_variables("actuator_force_rigid", "actuator_force")
 def forces_overlaid(data: xr.Dataset) -> Figure:
     """Drive forces of all legs in one panel, Newton-Euler below the multibody model (Fig. 8 of the paper).
 
@@ -171,8 +171,8 @@ def forces_overlaid(data: xr.Dataset) -> Figure:
     return fig
 
 
-@styled
-@needs("com_deviation", "com_position", "com_position_rigid")
+@house_style
+@require_variables("com_deviation", "com_position", "com_position_rigid")
 def path_bands(data: xr.Dataset, printed: Mapping[str, float]) -> Figure:
     """Path of the centre of mass with a band of the printed deviation, and the deviation on the scale of the print.
 
@@ -199,7 +199,9 @@ def path_bands(data: xr.Dataset, printed: Mapping[str, float]) -> Figure:
         below.set_ylim(-1.25e3 * band, 1.25e3 * band)
         largest = float(np.abs(gap).max()) / 1e3
         words = f"largest {text(largest, 'm')}:\nthe print is {number(band / largest, 2)} times that"
-        below.annotate(words, (0.03, 0.85), xycoords="axes fraction", va="top", fontsize=NOTE, color=ink("#333333"))
+        below.annotate(
+            words, (0.03, 0.85), xycoords="axes fraction", va="top", fontsize=NOTE, color=readable_color("#333333")
+        )
         below.set_title(f"Flexible minus rigid, {axis.upper()}")
         below.set_xlabel("time [s]")
         mark_end(above, end, "motion ends")
@@ -210,8 +212,8 @@ def path_bands(data: xr.Dataset, printed: Mapping[str, float]) -> Figure:
     return fig
 
 
-@styled
-@needs("leg_shape", "frequency")
+@house_style
+@require_variables("leg_shape", "frequency")
 def piston_mode(modes: xr.Dataset, mode: int) -> Figure:
     """One leg alone in a mode, the one that bends most, seen across its bending (Fig. 10 B of the paper).
 

@@ -10,7 +10,7 @@ from flexapod import model
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.verification.paper.claim import ELASTIC_LENGTH, HEIGHT, axis_motion
-from flexapod.verification.paper.trials import opened
+from flexapod.verification.paper.trials import extend_strokes
 
 MODULI = (20.0, 4.0, 3.5, 3.1)  # GPa; of 200 a digit lost, then towards and past the load under which legs buckle
 CUBE = "com-cube"
@@ -37,7 +37,7 @@ def readings() -> dict[str, model.Study]:
         **{f"modulus-{E:g}": with_modulus(study, 1e9 * E) for E in MODULI},
         "com-on-top": _with_com(study, float(np.linalg.norm(payload.com))),
         CUBE: _with_com(study, edge / 2),
-        "inertia-of-platform": _with_payload(study, payload.replace(inertia=_nearest_body(about_platform(payload)))),
+        "inertia-of-platform": _with_payload(study, payload.replace(inertia=_nearest_body(inertia_about_com(payload)))),
         **{name: _travelling(*reading) for name, reading in TRAVELS.items()},
     }
 
@@ -47,7 +47,7 @@ def cube_edge(payload: model.Payload) -> float:
     return float(np.sqrt(6 * payload.inertia.max() / payload.mass))
 
 
-def about_platform(payload: model.Payload) -> Array:
+def inertia_about_com(payload: model.Payload) -> Array:
     """Inertia (3, 3) about the centre of mass, were the given one about the platform's centre [kg m^2]."""
     d = payload.com
     return payload.inertia - payload.mass * (d @ d * np.eye(3) - np.outer(d, d))
@@ -57,12 +57,12 @@ def with_whole_piston(study: model.Study, length: float) -> model.Study:
     """Pistons of this whole length [m], guided at home as before; cylinders are uniform rods up to their mouths."""
     home = study.robot.home_lengths[0]
 
-    def changed(leg: model.Leg) -> model.Leg:
+    def change_leg(leg: model.Leg) -> model.Leg:
         mouth = home - (length - GUIDED)
         rod = leg.cylinder.replace(mouth=mouth, com=mouth / 2, inertia=leg.cylinder.mass * mouth**2 / 12)
         return leg.replace(piston=leg.piston.replace(length=length), cylinder=rod, stroke=None)
 
-    return with_legs(study, changed)
+    return with_legs(study, change_leg)
 
 
 def with_modulus(study: model.Study, E: float) -> model.Study:
@@ -81,11 +81,11 @@ def _travelling(preset: str, turn: float, both_sides: bool) -> model.Study:
     study = robot_preset(preset)
     motion, roll = axis_motion(study), float(np.deg2rad(turn))
     if not both_sides:
-        return opened(study.replace(motion=motion.replace(amplitude=roll)))
+        return extend_strokes(study.replace(motion=motion.replace(amplitude=roll)))
     time = motion.duration
     points = (model.Waypoint(time=time, roll=-roll), model.Waypoint(time=3 * time, roll=roll))
     way = model.WaypointMotion(points=points, hold=motion.hold)
-    return opened(study.replace(motion=way, simulation=study.simulation.replace(duration=way.end_time)))
+    return extend_strokes(study.replace(motion=way, simulation=study.simulation.replace(duration=way.end_time)))
 
 
 def _nearest_body(inertia: Array) -> Array:
@@ -106,7 +106,7 @@ def _with_payload(study: model.Study, payload: model.Payload) -> model.Study:
 
 
 def with_legs(study: model.Study, change: Callable[[model.Leg], model.Leg]) -> model.Study:
-    """The same robot with every leg changed."""
+    """Study with every leg changed."""
     return study.replace(robot=study.robot.replace(legs=tuple(change(leg) for leg in study.robot.legs)))
 
 
@@ -150,4 +150,4 @@ def tripod() -> model.Study:
     legs = tuple(leg.replace(chain="RPS", base_joint=hinge) for leg, hinge in zip(robot.legs, hinges, strict=False))
     base, platform = (np.linalg.norm(joints, axis=1)[0] for joints in (robot.base_joints, robot.platform_joints))
     three = robot.replace(type="3-RPS", base_joints=base * out, platform_joints=platform * out, legs=legs)
-    return opened(study.replace(robot=three, motion=motion.replace(independent=("heave", "roll", "pitch"))))
+    return extend_strokes(study.replace(robot=three, motion=motion.replace(independent=("heave", "roll", "pitch"))))

@@ -12,10 +12,10 @@ from flexapod.analysis.results.attributes import robot_study
 from flexapod.analysis.results.summary import summary
 from flexapod.common.citations import CITATIONS
 from flexapod.common.quantities import number, scale, text
-from flexapod.output.report.figures import Drawn
+from flexapod.output.report.figures import StoredFigure
 from flexapod.output.report.replay import replay
 from flexapod.output.report.report import (
-    by_axis,
+    deviation_section,
     figures_section,
     repeat_section,
     replay_section,
@@ -45,7 +45,7 @@ from flexapod.verification.paper.claim import (
     axis_motion,
     roll_and_arm,
 )
-from flexapod.verification.paper.claims import CLAIM_HEAD, by_whose, counted
+from flexapod.verification.paper.claims import CLAIM_HEAD, group_by_owner, verdict_summary
 from flexapod.verification.paper.engines import agreements
 from flexapod.verification.paper.figures import ENGINE
 from flexapod.verification.paper.study import PaperStudy
@@ -63,7 +63,7 @@ _SHOWN = {
 }
 
 
-def paper_page(result: PaperStudy, claims: Sequence[Claim], groups: Mapping[str, Sequence[Drawn]]) -> str:
+def paper_page(result: PaperStudy, claims: Sequence[Claim], groups: Mapping[str, Sequence[StoredFigure]]) -> str:
     """The page: deviation and cause, claims, figures, open values, studies, solver."""
     paper = CITATIONS["nourian-akbarzadeh"]
     robot = result["robot"]
@@ -76,7 +76,7 @@ def paper_page(result: PaperStudy, claims: Sequence[Claim], groups: Mapping[str,
         "The paper prints about 5 mm in Y and 10 mm in Z. With its values, ideal joints and rigid drives the "
         f"deviation is micrometres. {_backed_out(robot)} The paper: {paper.authors} ({paper.year}), {paper.title}.",
         html.contents(links),
-        by_axis(robot),
+        deviation_section(robot),
         _claims(claims),
         _replay(robot, result["modes"], [drawn for group in groups.values() for drawn in group]),
         *(
@@ -99,7 +99,7 @@ def paper_page(result: PaperStudy, claims: Sequence[Claim], groups: Mapping[str,
 
 
 def _backed_out(robot: Dataset) -> str:
-    """What of the presets was taken from the paper's results, and what was not."""
+    """Statement of what in the presets was taken from the paper's results, and what was not."""
     roll, arm = roll_and_arm(robot)
     other = float(np.rad2deg(axis_motion(model.preset("paper-robot-radii")).target[3]))
     return (
@@ -109,7 +109,7 @@ def _backed_out(robot: Dataset) -> str:
     )
 
 
-def _replay(data: Dataset, modes: Dataset, figures: Sequence[Drawn]) -> Html:
+def _replay(data: Dataset, modes: Dataset, figures: Sequence[StoredFigure]) -> Html:
     """The robot in motion and in its modes at the largest roll; on paper the figure of its end."""
     study = robot_study(data)
     still = next((figure for figure in figures if figure.name == "robot-end"), None)
@@ -125,7 +125,7 @@ def _modes(modes: Dataset) -> Html:
 
 
 def _asked(result: PaperStudy) -> bool:
-    """Whether an independent engine was to compute."""
+    """Test whether an independent engine was to compute."""
     return bool(result.failures) or "robot-exudyn" in result.parts
 
 
@@ -133,8 +133,8 @@ def _command(result: PaperStudy) -> str:
     return f"flexapod replicate {'--engines ' if _asked(result) else ''}--out DIR"
 
 
-def _engine(result: PaperStudy, figures: Sequence[Drawn]) -> Html:
-    """What the engine is, how well it agrees with us, its figures, and how to repeat."""
+def _engine(result: PaperStudy, figures: Sequence[StoredFigure]) -> Html:
+    """Section on the engine: what it is, its agreement with us, its figures, and how to repeat it."""
     rows = []
     for row in agreements(result.parts):
         unit = scale([row.ours, row.theirs], row.unit)
@@ -191,7 +191,9 @@ def _claims(claims: Sequence[Claim]) -> Html:
         "copy may have lost is said to stand "
         f"'{COPY}', what is so in any reading is said to be, and rows on figures say that these were not seen."
     )
-    tables = [Chapter(title, [counted(some), _claim_table(some)]) for title, some in by_whose(claims).items()]
+    tables = [
+        Chapter(title, [verdict_summary(some), _claim_table(some)]) for title, some in group_by_owner(claims).items()
+    ]
     return html.section("claims", "Claims", [Text(words, "soft"), *tables])
 
 

@@ -11,8 +11,8 @@ from flexapod.verification.paper.study import PaperStudy
 
 
 @dataclass(frozen=True, kw_only=True)
-class Said:
-    """What we get, the verdict, its reason; `where`, `says`: in place of the row's, where the numbers are in them."""
+class Finding:
+    """Result of ours, the verdict, its reason; `where`, `says`: in place of the row's, where they hold numbers."""
 
     ours: str
     verdict: str
@@ -21,12 +21,12 @@ class Said:
     says: str = ""
 
 
-Numbers = Callable[..., Said | Sequence[Said]]
+Numbers = Callable[..., Finding | Sequence[Finding]]
 
 
 @dataclass(frozen=True, kw_only=True)
 class ClaimRow:
-    """`numbers` of the named parts, of the whole study if there are none, for what the paper `says` somewhere."""
+    """Row of the table: what the paper `says`, and the `numbers` of the named parts or of the whole study."""
 
     whose: str
     where: str
@@ -36,7 +36,7 @@ class ClaimRow:
     numbers: Numbers
 
     def claims(self, study: PaperStudy) -> list[Claim]:
-        """One, or one for each that the numbers tell apart."""
+        """Claims of the row: one, or one for each that the numbers tell apart."""
         found = self.numbers(*(study[name] for name in self.parts)) if self.parts else self.numbers(study)
         return [
             Claim(
@@ -48,7 +48,7 @@ class ClaimRow:
                 reason=said.reason,
                 expected=self.expected,
             )
-            for said in ([found] if isinstance(found, Said) else found)
+            for said in ([found] if isinstance(found, Finding) else found)
         ]
 
 

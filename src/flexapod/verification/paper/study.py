@@ -18,9 +18,15 @@ from flexapod.analysis.static import modes
 from flexapod.common.arguments import flag
 from flexapod.common.errors import ComputationError
 from flexapod.verification.paper.claim import axis_motion
-from flexapod.verification.paper.clamped_legs import welded_map
+from flexapod.verification.paper.clamped_legs import clamped_legs_map
 from flexapod.verification.paper.computing_time import inverse_dynamics_cost
-from flexapod.verification.paper.engines import check_engine, exudyn_flexible, exudyn_rigid, rigid_same_step, undamped
+from flexapod.verification.paper.engines import (
+    check_engine,
+    exudyn_flexible,
+    exudyn_rigid,
+    rigid_same_step,
+    run_undamped,
+)
 from flexapod.verification.paper.outlook import (
     commands_ahead,
     error_budget,
@@ -175,7 +181,7 @@ STEPS: tuple[StudyPart, ...] = (
     StudyPart("readings", "other readings of the paper", 4, lambda report: trials(readings(), report)),
     StudyPart("tripod", "a tripod of the same pistons", 1, _robot(tripod, step=TRIAL_STEP)),
     StudyPart("light", "lighter pistons", 1, light_pistons),
-    StudyPart("welded", "ball joints that carry moments", 8, welded_map),
+    StudyPart("welded", "ball joints that carry moments", 8, clamped_legs_map),
     StudyPart("ahead", "commands ahead of time", 4, commands_ahead),
     StudyPart("shaped", "a shaped roll", 2, shaped_roll),
     StudyPart("feedback", "force feedback", 2, force_feedback),
@@ -188,7 +194,7 @@ STEPS: tuple[StudyPart, ...] = (
 #: What an independent engine computes, with our runs at its step.
 ENGINE_STEPS: tuple[StudyPart, ...] = (
     StudyPart("robot-rigid-same-step", "rigid legs, step of the engine", 0.3, _of_preset(rigid_same_step)),
-    StudyPart("robot-undamped", "flexible legs without damping", 1, _of_preset(undamped)),
+    StudyPart("robot-undamped", "flexible legs without damping", 1, _of_preset(run_undamped)),
     StudyPart("robot-exudyn-rigid", "Exudyn, rigid legs", 2, _of_preset(exudyn_rigid)),
     StudyPart("robot-exudyn", "Exudyn, flexible legs", 25, _of_preset(exudyn_flexible)),
 )

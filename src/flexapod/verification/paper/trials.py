@@ -22,13 +22,13 @@ from flexapod.solve.robot_system import robot_system
 from flexapod.solve.statics.equilibrium import Equilibrium, equilibrium
 from flexapod.solve.statics.static_loads import rest_commands, rest_load
 from flexapod.solve.system import State, System
-from flexapod.verification.paper.claim import largest
+from flexapod.verification.paper.claim import largest_deviation
 
 TRIAL_STEP = 5e-4  # s; peaks change by less than 1 % from 1 ms to 0.25 ms
 
 
-def opened(study: model.Study) -> model.Study:
-    """The same robot with mouths and strokes moved just so far that no piston leaves its cylinder on the path."""
+def extend_strokes(study: model.Study) -> model.Study:
+    """Study with mouths and strokes moved just so far that no piston leaves its cylinder on the path."""
     robot = study.robot
     path = kinematics.poses(robot, study.motion, path_instants(study))
     lengths = kinematics.leg_lengths(robot.base_joints, robot.platform_joints, path.position, path.rotation)
@@ -63,7 +63,7 @@ def _stretch_stiffness(data: Dataset) -> float:
 
 #: Numbers of a trial by name: unit, and what each is of a result.
 NUMBERS: dict[str, tuple[str, Callable[[Dataset], Any]]] = {
-    "deviation_peak": ("m", largest),
+    "deviation_peak": ("m", largest_deviation),
     "tip_peak": ("m", lambda data: float(np.abs(data.tip_deflection).max())),
     "force_peak": ("N", lambda data: float(np.abs(data.actuator_force).max())),
     "load_share": ("1", load_share),
@@ -78,17 +78,17 @@ def system_of(study: model.Study) -> System:
     return robot_system(study.robot, study.simulation, per_loss(study.robot, study.simulation))
 
 
-def resting(study: model.Study, system: System, path: kinematics.Poses, state: State | None) -> Equilibrium:
+def locked_equilibrium(study: model.Study, system: System, path: kinematics.Poses, state: State | None) -> Equilibrium:
     """Equilibrium with the drives locked at a rigid pose, sought from a state; None: from the rigid pose."""
-    robot = study.robot
-    start = rigid_state(system, robot, path) if state is None else state
-    acts = rest_load(system, robot, path, study.load)
-    command = rest_commands(system, robot, rigid_rest(system, robot, path).q)
+    at = kinematics.RigidPoses(study.robot, path)
+    start = rigid_state(system, at) if state is None else state
+    acts = rest_load(system, at, study.load)
+    command = rest_commands(system, study.robot, rigid_rest(system, at).q)
     return equilibrium(system, start, command[0], acts.force[0], acts.wrench)
 
 
 def trial(study: model.Study) -> dict[str, object]:
-    """Largest values of a simulation by name, as in `NUMBERS`; `verdict` says in words why they are not to be trusted.
+    """Largest values of a simulation by name, as in `NUMBERS`; `verdict` states why they are not to be trusted.
 
     The verdict is empty where they are. Where nothing could be computed all values are NaN.
     """

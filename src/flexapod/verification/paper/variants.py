@@ -1,6 +1,7 @@
-"""What the deviation of the paper's robot depends on: half-angles, a jump of the velocity, how far it gets at rest.
+"""Variants of the paper's robot: half-angles, a jump of the velocity, equilibria at rest, lighter pistons.
 
-Lighter pistons in the paper's robot, hollow ones and thinner ones: what its payload and their tips vibrate by.
+They show what the deviation depends on. Lighter pistons are hollow or thinner; the vibration of payload and
+tips is computed.
 """
 
 from __future__ import annotations
@@ -23,9 +24,9 @@ from flexapod.common.errors import ComputationError
 from flexapod.kinematics.rotations import quaternion, rotation_vector
 from flexapod.solve.statics.equilibrium import Equilibrium
 from flexapod.solve.system import State, System
-from flexapod.verification.paper.claim import after_motion, axis_motion, largest, roll_error
+from flexapod.verification.paper.claim import axis_motion, largest_deviation, residual_vibration, roll_error
 from flexapod.verification.paper.readings import robot_preset, with_legs
-from flexapod.verification.paper.trials import TRIAL_STEP, opened, resting, system_of, table, trial
+from flexapod.verification.paper.trials import TRIAL_STEP, extend_strokes, locked_equilibrium, system_of, table, trial
 
 POSES = 11  # every tenth of the motion: sag and frequency change steadily along it, their extremes are at its ends
 FINEST = 2.0**-8 / (POSES - 1)  # share of the motion to which the end of the equilibrium is found: 0.01 deg of 30 deg
@@ -33,7 +34,7 @@ NEXT = 0.01  # m; two equilibria further apart than this are not taken for neigh
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rest:
+class EquilibriumPath:
     """The resting robot along a motion.
 
     `sag` (3,) [m]: largest on the way; `frequency` [Hz]: lowest at `POSES` poses, as far as Newton's method finds the
@@ -58,7 +59,7 @@ def singular_turn(study: model.Study) -> float | None:
     return float(np.rad2deg(np.linalg.norm(rotation_vector(quaternion(path.rotation[int(changes[0])])))))
 
 
-def at_rest(study: model.Study) -> Rest:
+def equilibrium_path(study: model.Study) -> EquilibriumPath:
     """Sag, frequency and end of the static equilibrium along the motion of a study.
 
     The equilibrium is followed from home, each from the one before, in steps that are halved where it is not found or
@@ -67,14 +68,14 @@ def at_rest(study: model.Study) -> Rest:
     target = axis_motion(study).target
     reached, sag = _followed(study)
     if reached < 1:
-        return Rest(sag=sag, frequency=np.nan, end=reached * float(np.rad2deg(np.abs(target[3:]).max())))
+        return EquilibriumPath(sag=sag, frequency=np.nan, end=reached * float(np.rad2deg(np.abs(target[3:]).max())))
     frequency = np.nan
     for share in np.linspace(0.0, 1.0, POSES):
         try:
             frequency = np.fmin(frequency, float(modes(study, share * target).frequency[0]))
         except ComputationError:  # the equilibrium is too far from the rigid pose for Newton's method to start there
             break
-    return Rest(sag=sag, frequency=float(frequency), end=None)
+    return EquilibriumPath(sag=sag, frequency=float(frequency), end=None)
 
 
 def _followed(study: model.Study) -> tuple[float, Array]:
@@ -97,7 +98,7 @@ def _followed(study: model.Study) -> tuple[float, Array]:
 def _near(study: model.Study, system: System, share: float, state: State | None) -> tuple[Equilibrium, Array]:
     """Equilibrium at a share of the motion, sought from a state (None: the rigid pose); its sag (3,) [m]."""
     path = as_pose(study.robot, share * axis_motion(study).target)
-    found = resting(study, system, path, state)
+    found = locked_equilibrium(study, system, path, state)
     return found, found.state.pose[:3] - path.point(study.robot.payload.com)[0][0]
 
 
@@ -109,7 +110,7 @@ SERVO_STIFFNESS = (3e5, 1e7)  # N/m; so soft that the payload sags by the size t
 
 
 def with_half_angle(study: model.Study, angle: float) -> model.Study:
-    """The same robot with other half-angles of its joint pairs, base and platform alike.
+    """Study with other half-angles of its joint pairs, base and platform alike.
 
     Strokes are opened, and the mouths of the cylinders moved just so far that no piston leaves its cylinder.
 
@@ -123,7 +124,7 @@ def with_half_angle(study: model.Study, angle: float) -> model.Study:
     robot, half = study.robot, np.deg2rad(angle)
     base = model.base_circle(float(np.linalg.norm(robot.base_joints[0])), half)
     platform = model.platform_circle(float(np.linalg.norm(robot.platform_joints[0])), half)
-    return opened(study.replace(robot=robot.replace(base_joints=base, platform_joints=platform)))
+    return extend_strokes(study.replace(robot=robot.replace(base_joints=base, platform_joints=platform)))
 
 
 def jump_motion(study: model.Study) -> model.Motion:
@@ -151,15 +152,15 @@ def half_angle_sweep(study: model.Study, angles: Sequence[float], report: Share)
 
 
 def _at_half_angle(study: model.Study) -> dict[str, object]:
-    rest, singular = at_rest(study), singular_turn(study)
+    rest, singular = equilibrium_path(study), singular_turn(study)
     lost = {"verdict": words} if (words := _lost(rest, singular)) else {}
     nothing = {"deviation_peak": np.full(3, np.nan), "force_peak": np.nan, "load_share": np.nan}
     tried = nothing if singular is not None else trial(study)  # no path to simulate where it is singular
     return {**tried, "sag": rest.sag, "lowest_frequency": rest.frequency, **lost}
 
 
-def _lost(rest: Rest, singular: float | None) -> str:
-    """Why the robot cannot go its path at rest, in words; empty if it can. What is before a colon labels figures."""
+def _lost(rest: EquilibriumPath, singular: float | None) -> str:
+    """Reason why the robot cannot go its path at rest; empty if it can. Text before a colon labels figures."""
     if singular is None:
         return "" if rest.end is None else f"no equilibrium: the one at home ends at {rest.end:.1f} deg of roll"
     words = f"singular path: the rigid robot passes through a singular pose at {singular:.1f} deg of roll"
@@ -182,11 +183,11 @@ def assumptions(study: model.Study, report: Share) -> Dataset:
     durations, drives, sags = [], [], []
     for duration in DURATIONS:
         motion = axis_motion(study).replace(duration=duration)
-        durations.append(largest(simulate(study, motion, step=TRIAL_STEP, duration=duration + 1.0)))
+        durations.append(largest_deviation(simulate(study, motion, step=TRIAL_STEP, duration=duration + 1.0)))
         report(len(durations) / whole)
     for stiffness in SERVO_STIFFNESS:
         data = simulate(_with_servo(study, stiffness), step=TRIAL_STEP)
-        drives.append(largest(data))
+        drives.append(largest_deviation(data))
         sags.append(np.abs(data.com_deviation.values[0]))
         report((len(durations) + len(drives)) / whole)
     metre = {"units": "m"}
@@ -241,7 +242,7 @@ COLUMNS = {
 
 
 def with_section(study: model.Study, outer: float, inner: float) -> model.Study:
-    """The same robot with round pistons of other diameters [m], of the same material and length."""
+    """Study with round pistons of other diameters [m], of the same material and length."""
     section = {"diameter": outer, "inner_diameter": inner or None}
     return with_legs(study, lambda leg: leg.replace(piston=leg.piston.replace(**section)))
 
@@ -262,17 +263,17 @@ def light_pistons(report: Share) -> Dataset:
         data, piston = simulate(changed), changed.robot.legs[0].piston
         values = (
             piston.rhoA * piston.length,
-            *(after_motion(data, name) for name in ("com_deviation", "tip_deflection")),
+            *(residual_vibration(data, name) for name in ("com_deviation", "tip_deflection")),
             float(modes(changed).frequency[0]),
-            largest(data),
+            largest_deviation(data),
         )
         rows.append(dict(zip(COLUMNS, values, strict=True)))
         report(len(rows) / len(PISTONS))
-    found = table(rows, ("piston", [words(*pair) for pair in PISTONS], {}), COLUMNS, attributes(study))
+    found = table(rows, ("piston", [piston_words(*pair) for pair in PISTONS], {}), COLUMNS, attributes(study))
     widths = zip(("outer", "inner"), np.transpose(PISTONS), strict=True)
     return found.assign_coords({name: ("piston", column) for name, column in widths})
 
 
-def words(outer: float, inner: float) -> str:
+def piston_words(outer: float, inner: float) -> str:
     """A piston by its diameters [mm]."""
     return f"{outer:g} mm, {inner:g} mm hollow" if inner else f"{outer:g} mm"

@@ -12,7 +12,7 @@ from flexapod.analysis.results.attributes import robot_of
 from flexapod.analysis.simulation import simulate
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
-from flexapod.output.scene.geometry import RobotMotion, as_computed
+from flexapod.output.scene.geometry import RobotMotion, computed_study
 from flexapod.output.scene.skeleton import STATIONS, Scene, Skeleton
 from flexapod.solve.sections import leg_values
 from flexapod.solve.shapes import leg_shapes
@@ -25,7 +25,7 @@ THICK = 0.02  # of the robot's size: radius of a drawn piston without a section
 
 
 @dataclass(frozen=True, kw_only=True)
-class DrawnRobot:
+class RobotAnimation:
     """A robot at T instants, n legs; lengths [m], world axes.
 
     Cylinder i has its origin in its base joint and its z along its axis: `base` (T, n, 3), `axes` (T, n, 3, 3). The
@@ -52,7 +52,7 @@ class DrawnRobot:
     changing: bool
 
 
-def motion_of(study: model.Study, data: Dataset | None) -> Dataset:
+def motion_result(study: model.Study, data: Dataset | None) -> Dataset:
     """A result of the study, which is simulated where none is given; refuses what is no motion of its robot."""
     if data is None:
         return simulate(study)
@@ -67,19 +67,19 @@ def motion_of(study: model.Study, data: Dataset | None) -> Dataset:
     return data
 
 
-def drawn_robot(study: model.Study, data: Dataset | None, scale: float) -> DrawnRobot:
-    """The robot of `motion_of` a study, deflections `scale` times larger."""
-    data = motion_of(study, data)
+def robot_animation(study: model.Study, data: Dataset | None, scale: float) -> RobotAnimation:
+    """The robot of `motion_result` a study, deflections `scale` times larger."""
+    data = motion_result(study, data)
     motion = RobotMotion(study, data)
-    scenes = [motion.at(t, scale).flexible for t in motion.time]
+    scenes = [motion.instant_at(t, scale).flexible for t in motion.time]
     base, tip = (np.array([getattr(x, name) for x in scenes]) for name in ("base", "platform"))
     mouth = np.array([leg.cylinder.mouth for leg in study.robot.legs])
     moved = scale * data.tip_deflection.values
     length = np.linalg.norm(tip - base, axis=-1)
     along = np.sqrt(length**2 - (moved**2).sum(axis=-1))
-    seen = as_computed(study, data)
+    seen = computed_study(study, data)
     weights, shapes, changing = _bending(seen, data, scale, moved, along - mouth)
-    return DrawnRobot(
+    return RobotAnimation(
         skeleton=motion.skeleton,
         time=motion.time,
         centre=np.array([x.centre for x in scenes]),

@@ -22,7 +22,7 @@ def stored_tables(study: Study | ActuatorStudy) -> dict[str, Stored]:
 
 
 def files_of(study: Study | ActuatorStudy) -> NamedFiles:
-    """What the text of a study may name: tables that it has and that are in no file, and files in its folder."""
+    """Files that the text of a study may name: tables that it has and that are in no file, and files in its folder."""
     tables = {key: table for key, table in stored_tables(study).items() if study.holds_tables or not table.name}
     return NamedFiles(Path(study.path).parent if study.path else Path(), stored=tables)
 
@@ -30,7 +30,7 @@ def files_of(study: Study | ActuatorStudy) -> NamedFiles:
 def _inside(table: Table, place: Place) -> Iterator[tuple[str, Stored]]:
     """The table of a file of this one, and those of the tables in it."""
     named = next((column.name for column in columns_of(type(table)).values() if column.file), None)
-    if named is not None and (content := table.tabled(place)):
+    if named is not None and (content := table.file_content(place)):
         yield f"{place.key}.{named}", Stored(getattr(table, named) or "", content)
     for name, value in vars(table).items():
         if isinstance(table, Robot) and name == "legs":
