@@ -199,9 +199,9 @@ def test_sigterm_keeps_what_was_computed(study, folder):
     code = (
         "import os, signal, sys\nfrom flexapod.analysis.results import time_history as record\n"
         "from flexapod.app.cli import cli\n"
-        "kept = record.kept\ncount = []\n"
+        "kept = record.recorded_arrays\ncount = []\n"
         "def some(*a):\n    count.append(1)\n    len(count) == 3 and os.kill(os.getpid(), signal.SIGTERM)\n"
-        "    return kept(*a)\nrecord.kept = some\nsys.argv = ['flexapod', 'run', sys.argv[1]]\ncli.main()"
+        "    return kept(*a)\nrecord.recorded_arrays = some\nsys.argv = ['flexapod', 'run', sys.argv[1]]\ncli.main()"
     )
     done = subprocess.run([sys.executable, "-c", code, str(file)], capture_output=True, text=True, timeout=300)
     assert done.returncode == 143

@@ -112,6 +112,15 @@ def test_compliances_of_mounts_and_legs_add_up_at_the_tool():
     np.testing.assert_allclose(ours / size, legs / size, atol=1e-12)
 
 
+def test_the_sag_of_a_mount_is_weight_over_stiffness():
+    # Rigid legs without mass; turning is stiff enough to add less than a millionth of what the spring sinks.
+    mount = BASE.replace(stiffness=np.diag([2e6, 3e6, 5e6, 1e13, 1e13, 1e13]))
+    robot = light(machine(), base_mount=mount).replace(gravity=[0, 0, -9.81])
+    weight = (robot.payload.mass + mount.mass) * np.array([0, 0, -9.81])
+    found = fx.modes(robot, fidelity="rigid").com_sag.values
+    np.testing.assert_allclose(found, weight / np.diag(mount.stiffness)[:3], rtol=1e-6, atol=1e-10)
+
+
 @pytest.mark.parametrize("name", ["base_mount", "platform_mount"])
 def test_endlessly_stiff_mounts_are_rigid_frames(name):
     # Legs of 4e8 N/m a metre away from a spring of 1e15 N m/rad, the largest that a study takes: 4e-7 each.

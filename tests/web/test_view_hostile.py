@@ -310,7 +310,7 @@ file = library.fopen(sys.argv[2].encode(), b"w")
 library.malloc_info(0, file)
 library.fclose(file)
 here.wait(300)
-resources.collect()
+resources.release_memory()
 view.stop()
 """
 

@@ -37,7 +37,7 @@ OURS: tuple[type[Physics], ...] = (
 def kinds_of(legs: Sequence[Leg]) -> tuple[type[Physics], ...]:
     """Kinds of elements that legs may have: the built-in ones, then those with tables of their own, by name."""
     tables = {type(element) for leg in legs for element in leg.elements}
-    return (*OURS, *sorted(tables, key=lambda kind: kind.at))
+    return (*OURS, *sorted(tables - {*OURS}, key=lambda kind: kind.at))
 
 
 def elements_of(robot: Robot, simulation: Simulation) -> tuple[Slot, ...]:

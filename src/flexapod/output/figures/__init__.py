@@ -10,7 +10,6 @@ from flexapod.output.figures.budget import budget
 from flexapod.output.figures.convergence import convergence, ladder
 from flexapod.output.figures.elements import sliding_mesh, solid_comparison, solid_meshes
 from flexapod.output.figures.legs import actuator_forces, by_leg, leg_lengths, tip_deflections
-from flexapod.output.figures.linear import vibration
 from flexapod.output.figures.maps import workspace_map
 from flexapod.output.figures.payload import com_path, deviation_by_cause, energies, motion_law
 from flexapod.output.figures.style import save
@@ -19,7 +18,7 @@ from flexapod.output.figures.sweep import sweep
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from flexapod.output.figures.linear import bode, cumulative, transmissibility
+    from flexapod.output.figures.linear import bode, cumulative, transmissibility, vibration
     from flexapod.output.figures.poles import pole_map, root_locus
     from flexapod.output.figures.robot3d import modes_3d, robot_3d
 
@@ -57,7 +56,7 @@ __all__ = [
 #: Figures of the paper's study: they live with it and keep their names here. And those in space, which take axes of
 #: their own from matplotlib, and those of linear systems, which few ask for.
 _LATER = {
-    "flexapod.output.figures.linear": ("bode", "cumulative", "transmissibility"),
+    "flexapod.output.figures.linear": ("bode", "cumulative", "transmissibility", "vibration"),
     "flexapod.output.figures.poles": ("pole_map", "root_locus"),
     "flexapod.output.figures.robot3d": ("modes_3d", "robot_3d"),
     "flexapod.verification.paper.engine_figures": ("engine_forces", "engine_path", "half_angles", "start_jump"),
