@@ -84,7 +84,7 @@ def solved(system, x, **more):
 
 
 def constraints(dense, system):
-    return np.vstack([dense.G, np.eye(system.size)[system.fixed]])
+    return np.vstack([dense.G, np.eye(system.size)[system.fixed_mask]])
 
 
 @pytest.mark.parametrize("name", ROBOTS)

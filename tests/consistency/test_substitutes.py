@@ -55,7 +55,7 @@ def names(locked):
 def dense_frequencies(system, state, wrench):
     """By a null space of all constraints that knows nothing of legs [Hz]."""
     dense = system.matrices(state, wrench)
-    constraints = np.vstack([dense.G, np.eye(system.size)[system.fixed]])
+    constraints = np.vstack([dense.G, np.eye(system.size)[system.fixed_mask]])
     scale = 1 / np.sqrt(np.maximum(np.diag(dense.M), 1e-12))
     N = scale[:, None] * null_space(constraints * scale)
     K = N.T @ (dense.K + dense.K.T) / 2 @ N

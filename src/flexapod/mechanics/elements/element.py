@@ -324,7 +324,7 @@ class Element(Physics, Table):
         return tuple(one for one in leg.elements if type(one) is cls)
 
 
-__getattr__ = lazy_attributes(__name__, {}, {"Moving": "MovingLeg", "Standing": "LegContext"})
+__getattr__: Callable[[str], object] = lazy_attributes(__name__, {}, {"Moving": "MovingLeg", "Standing": "LegContext"})
 
 #: Hooks by the names of the release before, and now: both the overrides and the calls answer for one release.
 FORMER_HOOKS = {
@@ -353,7 +353,8 @@ def _former_hook(former: str, hook: str) -> Any:
         own = holder if isinstance(holder, type) else type(holder)
         above = own.__mro__[: own.__mro__.index(Element)]
         overridden = any(isinstance(vars(c).get(former), classmethod | FunctionType) for c in above)
-        return getattr(super(Element, holder) if overridden else holder, hook)(*args)
+        found: Any = super(Element, holder) if overridden else holder  # type: ignore[arg-type]
+        return getattr(found, hook)(*args)
 
     return classmethod(forward) if isinstance(vars(Physics)[hook], classmethod) else forward
 

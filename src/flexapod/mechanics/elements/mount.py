@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 #: Mass of a plate in motion, over that of the payload, at least: between springs nothing else says how it moves
 LIGHT = 1e-6
 
-__getattr__ = lazy_attributes(__name__, {}, {"world": "ground_frame"})
+__getattr__: Callable[[str], object] = lazy_attributes(__name__, {}, {"world": "ground_frame"})
 
 
 class MovedBase(Physics):

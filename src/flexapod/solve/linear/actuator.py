@@ -34,9 +34,9 @@ class ActuatorPlant:
     """
 
     def __init__(self, actuator: Actuator, simulation: Simulation, rate: float) -> None:
-        self.actuator = actuator.replace(gravity=0.0) if rate else actuator
-        self.shapes = actuator_shapes(self.actuator, simulation, rate)
-        self.rate = rate
+        self.actuator: Actuator = actuator.replace(gravity=0.0) if rate else actuator
+        self.shapes: Shapes = actuator_shapes(self.actuator, simulation, rate)
+        self.rate: float = rate
 
     @cached_property
     def matrices(self) -> tuple[Array, Array, Array, Array]:
