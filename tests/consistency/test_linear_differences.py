@@ -43,7 +43,7 @@ def slopes(plant):
 
     def slid(step):
         """Displaced, and the bristles of what sticks bent by as much as it would have slid."""
-        moved = system.moved(x, step)
+        moved = system.displace(x, step)
         if not b or plant.locked.simulation.friction == "sliding":
             return moved
         way = system.friction(replace(x, v=step)).state[:, b:]

@@ -135,7 +135,7 @@ CASES = {
     "IFF.parallel_stiffness": (1e4, "10 kN/m", "10 kN", lambda x: closed(IFF(20.0, parallel_stiffness=x))),
     "PID.low_pass": (500.0, "0.5 kHz", "500 s", lambda x: closed(PID(1e3, derivative=10.0, low_pass=x))),
     "DVF.low_pass": (500.0, "0.5 kHz", "500 s", lambda x: closed(control.DVF(10.0, low_pass=x))),
-    "Fused.corner": (5.0, "5 Hz", "5 s",
+    "SensorFusion.corner": (5.0, "5 Hz", "5 s",
         lambda x: closed(control.SensorFusion(control.gain(1.0), low="stroke", high="force-sensor:drive", corner=x))),
     "Tracker.frequency": (30.0, "30 Hz", "30 s", lambda x: control.Tracker(frequency=x).start()),
     "Tracker.lowest": (3.0, "3 Hz", "30 s", lambda x: tracked(lowest=x)),

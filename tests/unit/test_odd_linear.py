@@ -251,7 +251,7 @@ def test_what_is_refused_is_so_before_anything_is_computed(robot, call, key, mon
         raise AssertionError("computed first")
 
     for name in (
-        "solve.modal.at_poses.lock",
+        "solve.modal.elastic_robot.lock",
         "analysis.simulation.run_simulation",
         "analysis.checks.checks.check_path",
     ):

@@ -82,8 +82,7 @@ def budget(
         raise InputError("has a platform that is fixed: its tool does not move", key="robot")
     elastic = ElasticRobot(study.robot, study.simulation, study.load)
     if motion:
-        path = RigidPath(study)
-        found = along_motion(path, elastic, progress)
+        found = along_motion(RigidPath(study), elastic, progress)
         remarks, times = found.remarks, {"worst_time": found.time, "peak_time": found.peaks}
         table, where = found.budget, f"at the pose of t = {found.time:.4g} s, the worst of the motion,"
     else:
@@ -93,9 +92,8 @@ def budget(
         table, whole, missing = budget_rows(study, locked)
         remarks += [*missing, *loop_remarks_at(locked)]
         table, where = Budget(rows=table, whole={"systematic": whole}), "at home" if pose is None else "at the pose"
-    return _budget_dataset(
-        study, table, times, {"where": where, "summary": "\n".join(sentences(table, where))}, remarks
-    )
+    words = {"where": where, "summary": "\n".join(sentences(table, where))}
+    return _budget_dataset(study, table, times, words, remarks)
 
 
 def _budget_dataset(study: Study, found: Budget, times: dict, words: dict[str, str], remarks: list[str]) -> Dataset:

@@ -96,18 +96,21 @@ def workspace_map(
     >>> data.stiffness.dims, (1e-6 * data.stiffness).round(0).values.tolist()  # N/um, along z
     (('heave',), [250.0, 253.0, 254.0])
     """
-    study = model.override(
-        study_at_pose(robot, load), fidelity=fidelity, modes=modes, axial_modes=axial_modes, basis=basis
-    )
+    study = study_at_pose(robot, load)
+    study = model.override(study, fidelity=fidelity, modes=modes, axial_modes=axial_modes, basis=basis)
     poses = build_grid(study.robot, axes, at)
-    a = quantities(acceleration, "acceleration", key="acceleration")
-    a = None if a is None else _vector("acceleration", a)
+    a = _acceleration(acceleration)
     wanted = PoseRequest(direction=_unit(direction), acceleration=a, frequencies=_count(frequencies), budget=budget)
     check_map(poses.size, wanted.frequencies)
     began = time.perf_counter()
     data = _described(study, poses, wanted, _computed(study, poses, wanted, progress))
     data.attrs["wall_time"] = time.perf_counter() - began
     return data
+
+
+def _acceleration(given: ArrayLike | None) -> Array | None:
+    a = quantities(given, "acceleration", key="acceleration")
+    return None if a is None else _vector("acceleration", a)
 
 
 def _described(study: model.Study, poses: Grid, wanted: PoseRequest, values: dict[str, Array]) -> Dataset:

@@ -353,7 +353,7 @@ def _former_hook(former: str, hook: str) -> Any:
         own = holder if isinstance(holder, type) else type(holder)
         above = own.__mro__[: own.__mro__.index(Element)]
         overridden = any(isinstance(vars(c).get(former), classmethod | FunctionType) for c in above)
-        found: Any = super(Element, holder) if overridden else holder  # type: ignore[arg-type]
+        found: Any = super(Element, holder) if overridden else holder  # type: ignore[reportArgumentType]
         return getattr(found, hook)(*args)
 
     return classmethod(forward) if isinstance(vars(Physics)[hook], classmethod) else forward

@@ -42,10 +42,12 @@ from flexapod.mechanics.symbolic.vocabulary import (
     horzcat,
     jtimes,
     quadratic,
+    repeat_row,
     reshape,
     sin,
     sqrt,
     vertcat,
+    weighted_gram,
     zeros,
 )
 
@@ -173,35 +175,32 @@ def stepped_shapes(
     at = nodes(basis.count + _MORE + _TAPERED * part.tapers)
     beams = [_Beam(part, at, basis, shear, name) for name in planes]
     shown = [beam.shapes_at_points for beam in beams]
-    all_ = GaussPointShapes(
-        **{f.name: vertcat(*(getattr(one, f.name) for one in shown)) for f in fields(GaussPointShapes)}
-    )
-    own = [
-        _gram(one.bend, beam.section_weights(f"EI_{beam.plane}"), one.bend)
-        for one, beam in zip(shown, beams, strict=True)
-    ]
+    names = [f.name for f in fields(GaussPointShapes)]
+    all_ = GaussPointShapes(**{name: vertcat(*(getattr(one, name) for one in shown)) for name in names})
+    rigidity = [beam.section_weights(f"EI_{beam.plane}") for beam in beams]
+    own = [weighted_gram(one.bend, EI, one.bend) for one, EI in zip(shown, rigidity, strict=True)]
     beam = beams[0]
     length, (beyond, moment), X = beam.lengths, beam.beyond, part.place(beam.x)
-    bent, dm, tau = _gram(all_.turn, length, all_.bend), part.s * beam.section_weights("rhoA"), beam.shares
+    bent, dm, tau = weighted_gram(all_.turn, length, all_.bend), part.s * beam.section_weights("rhoA"), beam.shares
     psi = vertcat(*(sin(k * np.pi * tau) if k else tau for k in range(axial.count)), zeros(0, tau.numel()))
     one = SX.ones(1, tau.numel())
     thick = {} if shear is None else _thick(part, all_, shown, beams)
     return thick | {
         "tip_slope": vertcat(*(-beam.tip_slope for beam in beams)),
         "stiffness": diagcat(*own),
-        "slope_tip": _gram(all_.slope, length, all_.slope),
-        "slope_first": _gram(all_.slope, length * beyond, all_.slope),
-        "slope_moment": _gram(all_.slope, length * moment, all_.slope),
+        "slope_tip": weighted_gram(all_.slope, length, all_.slope),
+        "slope_first": weighted_gram(all_.slope, length * beyond, all_.slope),
+        "slope_moment": weighted_gram(all_.slope, length * moment, all_.slope),
         "turn": bent.T - bent,
-        "phi": _gram(all_.value, dm, one),
-        "phi_X": _gram(all_.value, dm, X),
-        "sliding": _gram(all_.slid, dm, one),
-        "sliding_X": _gram(all_.slid, dm, X),
-        "phi_phi": _gram(all_.value, dm, all_.value),
-        "phi_sliding": _gram(all_.value, dm, all_.slid),
-        "sliding_sliding": _gram(all_.slid, dm, all_.slid),
-        "phi_psi": _gram(all_.value, dm, psi),
-        "sliding_psi": _gram(all_.slid, dm, psi),
+        "phi": weighted_gram(all_.value, dm, one),
+        "phi_X": weighted_gram(all_.value, dm, X),
+        "sliding": weighted_gram(all_.slid, dm, one),
+        "sliding_X": weighted_gram(all_.slid, dm, X),
+        "phi_phi": weighted_gram(all_.value, dm, all_.value),
+        "phi_sliding": weighted_gram(all_.value, dm, all_.slid),
+        "sliding_sliding": weighted_gram(all_.slid, dm, all_.slid),
+        "phi_psi": weighted_gram(all_.value, dm, psi),
+        "sliding_psi": weighted_gram(all_.slid, dm, psi),
     }
 
 
@@ -215,10 +214,10 @@ def _thick(part: Part, at: GaussPointShapes, shown: list[GaussPointShapes], beam
         for plane, weight in zip(shown, turning, strict=True)
     ]
     return {
-        "shear_stiffness": _gram(at.sheared, beams[0].section_weights("shear"), at.sheared),
-        "turned": vertcat(*(_gram(x["turn"], x["weight"], one) for x in parts)),
-        "turned_slid": vertcat(*(_gram(x["slid"], x["weight"], one) for x in parts)),
-        **{name: diagcat(*(_gram(x[a], x["weight"], x[b]) for x in parts)) for name, (a, b) in pairs.items()},
+        "shear_stiffness": weighted_gram(at.sheared, beams[0].section_weights("shear"), at.sheared),
+        "turned": vertcat(*(weighted_gram(x["turn"], x["weight"], one) for x in parts)),
+        "turned_slid": vertcat(*(weighted_gram(x["slid"], x["weight"], one) for x in parts)),
+        **{name: diagcat(*(weighted_gram(x[a], x["weight"], x[b]) for x in parts)) for name, (a, b) in pairs.items()},
     }
 
 
@@ -329,8 +328,8 @@ class _Beam:
         """Shapes at the points, which slide along the piston: it moves by rate x + x over them."""
         value, slope, bend = (horzcat(*(y for one in parts for y in getattr(one, f"{x}s"))) for x in _SHOWN)
         past = self.part.rate(self.x) + self.x
-        slid = self.part.rate(value) - _each(past, slope) * slope
-        slid_turn = self.part.rate(slope) - _each(past, bend) * bend
+        slid = self.part.rate(value) - repeat_row(past, slope) * slope
+        slid_turn = self.part.rate(slope) - repeat_row(past, bend) * bend
         return GaussPointShapes(
             value=value, slope=slope, turn=slope, bend=bend, sheared=0 * slope, slid=slid, slid_turn=slid_turn
         )
@@ -342,14 +341,6 @@ def _held(at: GaussPointShapes, first: GaussPointShapes, E: SX, rate: SX) -> Gau
     kept["slid"] -= rate @ first.value[0, :]
     kept["slid_turn"] -= rate @ first.turn[0, :]
     return GaussPointShapes(**kept)
-
-
-def _gram(left: SX, weight: SX, right: SX) -> SX:
-    return (left * _each(weight, left)) @ right.T
-
-
-def _each(row: SX, like: SX) -> SX:
-    return vertcat(*[row] * like.shape[0])
 
 
 def stepped_piston(f: PistonMotion, p: SimpleNamespace) -> Energies:

@@ -1,7 +1,4 @@
-"""The named functions from which every solver is built, Eqs. (T4.7)-(T4.9).
-
-The residuals are exact. The matrices at rest serve equilibria, modes and the iterations of the time integration.
-"""
+"""The named functions from which every solver is built: exact residuals, matrices at rest, Eqs. (T4.7)-(T4.9)."""
 
 from collections.abc import Sequence
 

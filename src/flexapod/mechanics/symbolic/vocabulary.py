@@ -227,3 +227,13 @@ def split(column: SX, layout: Sequence[tuple[str, int]]) -> SimpleNamespace:
         pieces[key] = column[start : start + size]
         start += size
     return SimpleNamespace(**pieces)
+
+
+def weighted_gram(left: SX, weight: SX, right: SX) -> SX:
+    """Inner products of rows (m, K) and (n, K) under weights (1, K), (m, n)."""
+    return (left * repeat_row(weight, left)) @ right.T
+
+
+def repeat_row(row: SX, like: SX) -> SX:
+    """Matrix of the rows of another one, each the given row."""
+    return vertcat(*[row] * like.shape[0])

@@ -92,10 +92,33 @@ def prepare(
     state = _begun(study, elastic, law) if state is None else state
     refuse_false_root(system, robot, RestStates.from_state(state))
     system = release_redundant(system, state)
-    counters, output_step, outputs = Counters(), simulation.stored_step, simulation.outputs(study.duration)
     measure, loop = _Measure(study, system, path), _around(sampled, system, study, path)
+    problem = _problem(study, system, path, law, method, measure, loop)
+    step = initial_step(problem, simulation.step)
+    start, impact = consistent_start(system, state, law, 0.0, method, step)
+    if loop is not None:
+        loop.refuse_off(step, study.path)
+        start = replace(start, loop=loop.start())
+    counters = Counters()
+    chunks = _with_minimum_energy(march(problem, start, step, counters), system, law)
+    return RobotMarch(
+        system=system, start=start, impact=impact, step=step, chunks=chunks, problem=problem, counters=counters
+    )
+
+
+def _problem(
+    study: Study, system: System, path: "_Path", law: Law, method: GeneralizedAlpha, measure: "_Measure",
+    loop: "SampledLoop | None",
+) -> Problem:  # fmt: skip
+    """Problem of a study for the time loops: tables, outputs, scales, events."""
+    simulation = study.simulation
+    output_step, outputs = simulation.stored_step, simulation.outputs(study.duration)
     far = 0.0 if simulation.tolerance is not None and system.kernel.library else None  # steps end on every row
-    problem = Problem(
+
+    def restart(flow: Flow, t: float, h: float) -> Flow:
+        return after_impact(system, flow, loop.add_held_outputs(law, flow) if loop else law, t, method, h)
+
+    return Problem(
         system=system,
         method=method,
         tables=law,
@@ -104,27 +127,20 @@ def prepare(
         measure=measure,
         weights=measure.weights(),
         knots=path.knots,
-        restart=lambda flow, t, h: after_impact(
-            system, flow, loop.add_held_outputs(law, flow) if loop else law, t, method, h
-        ),
+        restart=restart,
         stops=Stops.from_breaks(kinematics.robot_breaks(study, far), output_step, simulation.step, outputs),
         check=_Range(study, system, controlled=loop is not None),
         tolerance=simulation.tolerance,
         loop=loop,
     )
-    step = initial_step(problem, simulation.step)
-    start, impact = consistent_start(system, state, law, 0.0, method, step)
-    if loop is not None:
-        loop.refuse_off(step, study.path)
-        start = replace(start, loop=loop.start())
-    chunks = march(problem, start, step, counters)
-    if system.slack is not None:
-        chunks = (
-            replace(x, recording=minimum_energy_recording(system, x.recording, law(x.recording.time)[0]))
-            for x in chunks
-        )
-    return RobotMarch(
-        system=system, start=start, impact=impact, step=step, chunks=chunks, problem=problem, counters=counters
+
+
+def _with_minimum_energy(chunks: Iterator[Chunk], system: System, law: Law) -> Iterator[Chunk]:
+    """Chunks whose forces are those of least energy, where a robot is overconstrained."""
+    if system.slack is None:
+        return chunks
+    return (
+        replace(x, recording=minimum_energy_recording(system, x.recording, law(x.recording.time)[0])) for x in chunks
     )
 
 
