@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from flexapod.common.tables.named_files import Content
     from flexapod.common.tables.section import Section
 
-_WRITTEN = "written"  # where an object keeps the table that it was read from
+_WRITTEN = "source_table"  # where an object keeps the table that it was read from
 _HELD = "held"  # where a study keeps that its tables are all there is
 
 
