@@ -45,7 +45,7 @@ def electric_leg(joints: Joints, stroke: float, screw: Screw, diameter: float) -
 
 
 @dataclass(frozen=True, kw_only=True)
-class ElectricDrive:
+class ElectricActuator:
     """Electric drive as chosen: a `screw`, the rated `torque` [N m] of its motor, the `preload` [N] of its nut.
 
     `load`: thrust on a leg at rest at home [N]; `leg`: its lengths.
@@ -156,7 +156,7 @@ def plate_lines(plan: Plan) -> list[str]:
     ]
 
 
-def _joints(self: ElectricDrive, plan: Plan) -> list[str]:
+def _joints(self: ElectricActuator, plan: Plan) -> list[str]:
     bore = self.screw.bore
     seals = 0.1 * (bore / 0.03) ** 2
     friction = f', friction = {{ M0 = "{number(seals, 2)} N m", f1 = 0.0005, diameter = "{length_text(1.2 * bore)}" }}'
@@ -171,7 +171,7 @@ def _joints(self: ElectricDrive, plan: Plan) -> list[str]:
     ]
 
 
-def _bodies(self: ElectricDrive, plan: Plan) -> list[str]:
+def _bodies(self: ElectricActuator, plan: Plan) -> list[str]:
     leg, request = self.leg_, plan.request
     mass, com, across, along = self.cylinder()
     diameter = value_origin(
@@ -205,7 +205,7 @@ def _bodies(self: ElectricDrive, plan: Plan) -> list[str]:
     ]
 
 
-def _drive(self: ElectricDrive) -> list[str]:
+def _drive(self: ElectricActuator) -> list[str]:
     screw, torque, drag = self.screw, self.torque, self.drag
     loss = "0.03 in all springs: with it the lowest frequencies are damped by 1 to 2 %, as in machines"
     return [

@@ -18,7 +18,7 @@ from flexapod.common.errors import InputError
 from flexapod.common.quantities import text
 from flexapod.design.first_robot import sizing
 from flexapod.design.first_robot.catalogue import MOTORS, SCREWS, Screw, speed_limit
-from flexapod.design.first_robot.electric import OUTER, TUBE, ElectricDrive, electric_leg, longest_stroke
+from flexapod.design.first_robot.electric import OUTER, TUBE, ElectricActuator, electric_leg, longest_stroke
 from flexapod.design.first_robot.sizing import OPTION, Joints, Request, SizedLeg
 from flexapod.design.first_robot.study_text import Plan, write_study_text
 from flexapod.model.leg.screw import HIGHEST, UNLOADS
@@ -108,7 +108,7 @@ def _legs(request: Request, joints: Joints, stroke: float, screw: Screw) -> Iter
 
 def _try_leg(ideal: Plan, screw: Screw, leg: SizedLeg) -> ElectricTrial:
     """The robot with a screw and a leg: preload by the thrust, duration by the speed, then the motor by its torque."""
-    parts = ElectricDrive(screw=screw, torque=MOTORS[0], preload=PRELOAD * screw.dynamic_load, load=1.0, leg_=leg)
+    parts = ElectricActuator(screw=screw, torque=MOTORS[0], preload=PRELOAD * screw.dynamic_load, load=1.0, leg_=leg)
     plan = _slowed(replace(ideal, leg=leg, parts=parts))
     found = _described(plan)
     for _ in MOTORS:
@@ -126,7 +126,7 @@ def _try_leg(ideal: Plan, screw: Screw, leg: SizedLeg) -> ElectricTrial:
     )
 
 
-def _chosen(parts: ElectricDrive, found: Described) -> ElectricDrive:
+def _chosen(parts: ElectricActuator, found: Described) -> ElectricActuator:
     """The cylinder with a preload and a motor for the loads that were found; its motor no smaller than before."""
     _, screws, rest = found
     thrust, rating = max(one.thrust.value for one in screws), parts.screw.dynamic_load
@@ -153,7 +153,7 @@ def _slowed(plan: Plan) -> Plan:
 
 def _allowed(plan: Plan) -> float:
     """Speed of the screw [rad/s] that motor, nut and shaft allow."""
-    parts: ElectricDrive = plan.parts  # type: ignore[assignment]
+    parts: ElectricActuator = plan.parts  # type: ignore[assignment]
     drive = _study(plan).robot.legs[0].screw
     return min(speed_limit(parts.screw), critical_speed(drive))  # type: ignore[arg-type]
 
@@ -171,7 +171,7 @@ def _described(plan: Plan) -> Described:
 
 
 def _excess(
-    plan: Plan, parts: ElectricDrive, legs: tuple[LegDescription, ...], screws: tuple[ScrewDescription, ...]
+    plan: Plan, parts: ElectricActuator, legs: tuple[LegDescription, ...], screws: tuple[ScrewDescription, ...]
 ) -> dict[str, float]:
     """Ratio of what the path demands to what the cylinder bears, by kind of load."""
     thrust = max(s.thrust.value for s in screws)
@@ -226,7 +226,7 @@ def _no_stroke(request: Request, joints: Joints, stroke: float, screw: Screw) ->
 
 def _too_much(request: Request, tried: ElectricTrial) -> InputError:
     kind, ratio = max(tried.excess.items(), key=lambda item: item[1])
-    parts: ElectricDrive = tried.plan.parts  # type: ignore[assignment]
+    parts: ElectricActuator = tried.plan.parts  # type: ignore[assignment]
     if request.duration is not None and kind in ("speed", "torque of the motor"):
         least = tried.plan.duration * (ratio if kind == "speed" else math.sqrt(ratio))
         return InputError(

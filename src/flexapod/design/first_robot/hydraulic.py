@@ -38,7 +38,7 @@ STEEL = MATERIALS["steel"].density
 
 
 @dataclass(frozen=True, kw_only=True)
-class HydraulicDrive:
+class HydraulicActuator:
     """A cylinder of a `bore` [m] with its leg; `load`: thrust at rest [N]."""
 
     bore: float
@@ -104,11 +104,11 @@ def hydraulic_robot(ideal: Plan) -> Plan:
 
 def _try_bore(ideal: Plan, leg: SizedLeg, bore: float) -> tuple[Plan, dict[str, float]]:
     """The robot with a cylinder, and what its path asks for over what it bears, by kind."""
-    plan = _slowed(replace(ideal, leg=leg, parts=HydraulicDrive(bore=bore, leg_=leg)))
+    plan = _slowed(replace(ideal, leg=leg, parts=HydraulicActuator(bore=bore, leg_=leg)))
     path = _path(plan)
     oil, legs = describe_hydraulics(path), describe_legs(path)
     rest = float(np.abs(np.einsum("li,li->l", path.forces.joint_force[0], path.axes[0])).max())
-    parts = HydraulicDrive(bore=bore, leg_=leg, load=sizing.round_significant(rest))
+    parts = HydraulicActuator(bore=bore, leg_=leg, load=sizing.round_significant(rest))
     stress = max(x.stress.total.value / (x.stress.yield_stress or np.inf) for x in legs if x.stress is not None)
     return replace(plan, parts=parts), {
         "pressure": max(x.pressure.value for x in oil) / (SHARE * SUPPLY),
@@ -124,7 +124,7 @@ def _path(plan: Plan) -> RigidPath:
     return RigidPath(study, np.linspace(0.0, study.duration, INSTANTS))
 
 
-def _speed(oil: tuple[HydraulicDescription, ...], parts: HydraulicDrive) -> float:
+def _speed(oil: tuple[HydraulicDescription, ...], parts: HydraulicActuator) -> float:
     return max(x.flow.value for x in oil) / parts.area
 
 
@@ -137,7 +137,7 @@ def _slowed(plan: Plan) -> Plan:
     return replace(plan, duration=math.ceil(100 * plan.duration * fast) / 100, slow=slow)
 
 
-def _leg(self: HydraulicDrive, plan: Plan) -> list[str]:
+def _leg(self: HydraulicActuator, plan: Plan) -> list[str]:
     leg, request = self.leg_, plan.request
     mass, com, across, along = self.cylinder()
     joints, _ = joint_lines(max(round(JOINT * self.bore, 3), 0.003), self.load, "")
@@ -171,7 +171,7 @@ def _leg(self: HydraulicDrive, plan: Plan) -> list[str]:
     ]  # fmt: skip
 
 
-def _drive(self: HydraulicDrive) -> list[str]:
+def _drive(self: HydraulicActuator) -> list[str]:
     leg = self.leg_
     swept = 1e3 * self.area * (leg.longest - leg.shortest)
     return [

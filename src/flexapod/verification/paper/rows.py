@@ -11,7 +11,7 @@ from flexapod.verification.paper.study import PaperStudy
 
 
 @dataclass(frozen=True, kw_only=True)
-class Finding:
+class ClaimFinding:
     """Result of ours, the verdict, its reason; `where`, `says`: in place of the row's, where they hold numbers."""
 
     ours: str
@@ -21,7 +21,7 @@ class Finding:
     says: str = ""
 
 
-Numbers = Callable[..., Finding | Sequence[Finding]]
+Numbers = Callable[..., ClaimFinding | Sequence[ClaimFinding]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +48,7 @@ class ClaimRow:
                 reason=said.reason,
                 expected=self.expected,
             )
-            for said in ([found] if isinstance(found, Finding) else found)
+            for said in ([found] if isinstance(found, ClaimFinding) else found)
         ]
 
 
