@@ -164,7 +164,7 @@ def clamped_legs_figure(found: xr.Dataset) -> Figure:
     Parameters
     ----------
     found : xarray.Dataset
-        From `with_clamped_legs.welded_map`.
+        From `with_clamped_legs.clamped_legs_map`.
     """
     names = [str(name) for name in found.reading.values]
     fig = figure(2 * COLUMN, 7.0)
