@@ -110,6 +110,7 @@ def _as_powers(
 
 
 UPON = 1e-15  # distance from a pole over its size at which a point lies upon it
+FAR = 1e-14  # relative difference of their distances from 0 above which it does not, rounding included
 CHECKED = 12  # frequencies at which poles and residues are compared with solving
 ALIKE = 1e5  # condition of the shapes of poles above which residues cancel
 NEAR = 1e-4  # distance of two poles over their size below which they may be one of which rounding makes two
@@ -119,6 +120,7 @@ CANCELS = 0.1  # what its poles could add up to
 SHIFTED = 2**0.5  # from the middle of the points, which may lie upon a pole
 ADVICE = "Choose other frequencies, or give damping to what vibrates there"
 BLOCK = 64  # frequencies solved for side by side
+SPAN = 512  # frequencies at which all poles are summed side by side: in the cache of the processor
 BAND, MANY = 4.0, 100  # span, and number of frequencies, with less of which they are solved for and not taken in halves
 
 
@@ -136,7 +138,11 @@ def response(A: Array, B: Array, C: Array, D: Array, s: Complex) -> Complex:
     apart = without_integrators(*reachable_observable(A, B, C))
     if len(apart.powers):
         _refuse_poles(np.zeros(1), s)
-    return _regular(apart.A, apart.B, apart.C, s) + apart.integrator_response(s) + D[:, :, None]
+    found = _regular(apart.A, apart.B, apart.C, s)
+    if len(apart.powers):
+        found += apart.integrator_response(s)
+    found += D[:, :, None]
+    return found
 
 
 def _regular(A: Array, B: Array, C: Array, s: Complex) -> Complex:
@@ -196,11 +202,16 @@ def _most(values: Complex, left: Complex, right: Complex, s: Complex) -> Array:
 
 
 def _refuse_poles(values: Complex | Array, s: Complex) -> None:
-    away = np.abs(s[:, None] - values)
-    if (away <= UPON * np.abs(values)).any():
-        at = s[(away <= UPON * np.abs(values)).any(axis=1)][0]
+    """Refuse points upon a pole; a pole is compared with the points as far from 0 as itself."""
+    order = np.argsort(np.abs(s), kind="stable")
+    sizes, size = np.abs(s)[order], np.abs(values)
+    first, end = np.searchsorted(sizes, size * (1 - FAR), "left"), np.searchsorted(sizes, size * (1 + FAR), "right")
+    alike = [order[i:k] for i, k in zip(first, end, strict=True)]
+    upon = [at[np.abs(s[at] - value) <= UPON * abs(value)] for value, at in zip(values, alike, strict=True)]
+    if any(at.size for at in upon):
         raise ComputationError(
-            f"the response has no finite size at {abs(at.imag) / (2 * np.pi):.6g} Hz: a pole lies there",
+            f"the response has no finite size at {abs(s[np.concatenate(upon).min()].imag) / (2 * np.pi):.6g} Hz: "
+            "a pole lies there",
             next_step=ADVICE,
         )
 
@@ -209,7 +220,7 @@ def _where_it_matters(values: Complex, s: Complex) -> NDArray[np.int_]:
     """Points spread over all of them, and those nearest to poles."""
     spread = np.linspace(0, s.size - 1, min(CHECKED, s.size)).round().astype(int)
     lasting = values[np.argsort(np.abs(values.real) / np.maximum(np.abs(values), 1e-300), kind="stable")[:CHECKED]]
-    near = np.abs(s[:, None] - lasting).argmin(axis=0)
+    near = np.abs(s - lasting[:, None]).argmin(axis=1)
     return np.unique(np.concatenate([spread, near]))
 
 
@@ -218,13 +229,14 @@ def _by_residues(values: Complex, left: Complex, right: Complex, s: Complex) -> 
     upper = values.imag >= 0
     pole, twice = values[upper], np.where(values[upper].imag > 0, 2.0, 1.0)
     residues = np.einsum("pn,nm->pmn", right[:, upper], left[upper]) * twice
-    minus, plus = 1.0 / (s[None] - pole[:, None]), 1.0 / (s[None] - np.conj(pole)[:, None])
-    even, odd = 0.5 * (minus + plus), 0.5j * (minus - plus)
     flat = residues.reshape(-1, len(pole))
     real = np.concatenate([flat.real, flat.imag], axis=1)
-    basis = np.concatenate([even, odd])
     found = np.empty((len(flat), s.size), dtype=complex)
-    found.real, found.imag = real @ basis.real, real @ basis.imag
+    for i in range(0, s.size, SPAN):
+        part = s[i : i + SPAN]
+        minus, plus = 1.0 / (part - pole[:, None]), 1.0 / (part - np.conj(pole)[:, None])
+        basis = np.concatenate([0.5 * (minus + plus), 0.5j * (minus - plus)])
+        found[:, i : i + SPAN] = (real @ basis.view(float)).view(complex)
     return found.reshape(*residues.shape[:2], s.size)
 
 
