@@ -24,9 +24,10 @@ Complex = NDArray[np.complex128]
 class IntegratorSplit:
     """A system as A (n, n), B (n, m), C (p, n) beside powers (k, p, m) of 1/s, 1/s^2, ..., Eq. (T21.34).
 
-    ``most`` (k, p, m): what the powers could add up to without cancelling.
+    ``kept`` (n,): which states A is of; ``most`` (k, p, m): what the powers could add up to without cancelling.
     """
 
+    kept: NDArray[np.int_]
     A: Array
     B: Array
     C: Array
@@ -76,20 +77,36 @@ def without_integrators(A: Array, B: Array, C: Array) -> IntegratorSplit:
     if not len(N) or not len(main):
         return _as_powers(A, B, C, N, main, (np.abs(B), np.abs(C)))
     # (T21.33)  x_main + X x_up and x_down + Y x_main are apart
-    X = scipy.linalg.solve_sylvester(part(main, main), -part(up, up), -part(main, up)) if len(up) else None
-    Y = scipy.linalg.solve_sylvester(part(down, down), -part(main, main), -part(down, main)) if len(down) else None
+    form: Any = scipy.linalg.schur(part(main, main))
     change, back = np.eye(len(A)), np.eye(len(A))
-    if X is not None:
+    if len(up):
+        X = _decoupled(form, scipy.linalg.schur(part(up, up)), part(main, up))
         change[main[:, None], up], back[main[:, None], up] = X, -X
-    if Y is not None:
+    if len(down):
+        Y = _decoupled(scipy.linalg.schur(part(down, down)), form, part(down, main))
         second, undone = np.eye(len(A)), np.eye(len(A))
         second[down[:, None], main], undone[down[:, None], main] = Y, -Y
         change, back = change @ second, undone @ back
     if not (np.isfinite(change).all() and np.isfinite(back).all()):
         none = np.zeros((0, len(C), B.shape[1]))
-        return IntegratorSplit(A=A, B=B, C=C, powers=none, most=none)
+        return IntegratorSplit(kept=np.arange(len(A)), A=A, B=B, C=C, powers=none, most=none)
     most = np.abs(back) @ np.abs(B), np.abs(C) @ np.abs(change)
     return _as_powers(back @ A @ change, back @ B, C @ change, N, main, most)
+
+
+def _decoupled(first: Any, second: Any, coupling: Array) -> Array:
+    """X of A X - X B = -coupling by the real Schur forms (T, Z) of A and B."""
+    (S, U), (T, V) = first, second
+    return U @ sylvester(S, T, -U.T @ coupling @ V, isgn=-1) @ V.T
+
+
+def sylvester(S: Array, T: Array, Q: Array, **form: Any) -> Array:
+    """Solution X of S X + X T = Q of matrices in real Schur form; as `form` asks of S X - X T or S X + X T'."""
+    if not Q.size:
+        return Q
+    lapack: Any = scipy.linalg.lapack
+    found, scale, _ = lapack.dtrsyl(S, T, Q, **form)
+    return np.asarray(found / scale, dtype=float)
 
 
 def _as_powers(
@@ -104,7 +121,7 @@ def _as_powers(
         most.append(sizes[1][:, N] @ size)
         power, size = inner @ power, np.abs(inner) @ size
     return IntegratorSplit(
-        A=A[main][:, main], B=B[main], C=C[:, main], powers=np.array(powers).reshape(len(powers), *shape),
+        kept=main, A=A[main][:, main], B=B[main], C=C[:, main], powers=np.array(powers).reshape(len(powers), *shape),
         most=np.array(most).reshape(len(powers), *shape),
     )  # fmt: skip
 
