@@ -23,10 +23,11 @@ from flexapod.output.text import parts
 from flexapod.output.text.terminal import print_answer
 
 if TYPE_CHECKING:
-    from flexapod.common.tables import reference
+    from flexapod.common.tables import key_rows, reference
+    from flexapod.common.tables.key_rows import ListedEntry
     from flexapod.common.tables.reference import Entry
-    from flexapod.model.file.page import ListedEntry
 else:
+    key_rows = LazyModule("flexapod.common.tables.key_rows")
     reference = LazyModule("flexapod.common.tables.reference")
 
 Name = Annotated[Path | None, typer.Argument(metavar="NAME.toml", help="File to write.")]
@@ -165,17 +166,17 @@ def keys(table: Table = None, markdown: Markdown = None, schema: Schema = None, 
         raise InputError(words, key="TABLE", value=table, allowed="one of the two")
     if len(set(files)) < len(files):
         raise InputError("is that of --markdown, too", key="--schema", value=files[0], allowed="another file")
-    from flexapod.model.file import page
-
     if markdown is not None:
-        write_text(markdown, page.study_file_page())
+        from flexapod.model.file.page import study_file_page
+
+        write_text(markdown, study_file_page())
     if schema is not None:
         from flexapod.model.file.json_schema import json_schema
 
         write_text(schema, json_schema())
-    found = page.list_entries(table)
+    found = key_rows.list_entries(table)
     written = [f"{' and '.join(files)} written."] if files else None
-    told = (_key_chapter(item, page.HEAD, alone=table is not None) for item in found)
+    told = (_key_chapter(item, key_rows.HEAD, alone=table is not None) for item in found)
     print_answer(written or told, lambda: [asdict(item) for item in found], json=json)
 
 
