@@ -33,7 +33,8 @@ load = fx.model.Load(wrench=fx.model.StepWrench(amplitude=np.array(PUSH), time=0
 ours = fx.simulate(study, load=load, step=STEP, output_step=STEP, duration=UNTIL)
 place, before = np.asarray(found["tool_position"]), np.asarray(found["time"]) < 0.02
 moved = np.abs(np.diff(ours.tool_deviation.values, axis=0)).max()
-print(f"{len(place)} instants in FMPy; the push lifts the tool by {1e6 * np.ptp(ours.tool_deviation[:, 2].values):.1f} um")
+lifted = 1e6 * np.ptp(ours.tool_deviation.values[:, 2])
+print(f"{len(place)} instants in FMPy; the push lifts the tool by {lifted:.1f} um")
 
 # The same steps in vectors that are not as wide: rounding. What a master gives acts from a step on, so that after the
 # push one program is ahead of the other by what it moves in a step.

@@ -2,9 +2,9 @@ r"""
 Two loops: forces damp the legs, strokes hold the payload
 =========================================================
 
-A hexapod on ball screws. Forces at the platform damp its legs; about that a loop of strokes, decoupled by the Jacobian at
-the centre of mass, holds the payload direction by direction. Its integral makes rigid what lies before the stroke (screw,
-nut, bearing); what lies behind stands in series, $K_z = 6 k (h / l)^2$ with $1 / k = \sum 1 / k_i$.
+A hexapod on ball screws. Forces at the platform damp its legs; about that a loop of strokes, decoupled by the
+Jacobian at the centre of mass, holds the payload direction by direction. Its integral makes rigid what lies before the
+stroke (screw, nut, bearing); what lies behind stands in series, $K_z = 6 k (h / l)^2$ with $1 / k = \sum 1 / k_i$.
 """
 
 import numpy as np
