@@ -174,7 +174,7 @@ def _plan(top: Section, text: str) -> SweepPlan:
             file=top.file,
         )
     except InputError as error:
-        raise error.located(file=top.file) from None
+        raise error.with_location(file=top.file) from None
     if not plan.shape:
         raise InputError(
             "varies nothing", file=top.file or "sweep", allowed="[[vary]], [latin_hypercube], [random], or several"

@@ -13,6 +13,7 @@ from flexapod import model
 from flexapod.analysis.results.summary import POINT_WORDS, has_separate_tool
 from flexapod.common.arrays import Array
 from flexapod.common.errors import FlexapodError
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.common.quantities import number, scale, zero_rounding_lines
 from flexapod.common.resources import one_thread
 from flexapod.output.scene.geometry import BeamMotion, RobotMotion
@@ -23,7 +24,10 @@ from flexapod.output.scene.style import FLEXIBLE, RIGID, colors_of_legs
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from flexapod import analysis
     from flexapod.model import ActuatorStudy, Study
+else:
+    analysis = LazyModule("flexapod.analysis")
 
 MOST_POINTS = 1500  # of a curve: more than a page is wide
 
@@ -58,10 +62,9 @@ def locked_modes(study: Study | ActuatorStudy) -> Dataset | None:
     """Modes of a robot at home while its commands stand still; None for an actuator, and where there are none."""
     if isinstance(study, model.ActuatorStudy):
         return None
-    from flexapod.analysis import modes
 
     try:
-        return modes(study)
+        return analysis.modes(study)
     except FlexapodError:
         return None
 
