@@ -307,18 +307,3 @@ def plotly_array(values: Array) -> dict[str, str]:
     flat = np.ascontiguousarray(values, dtype="<f4")
     made = {"dtype": "f4", "bdata": base64.b64encode(flat.tobytes()).decode("ascii")}
     return made | ({"shape": ", ".join(map(str, flat.shape))} if flat.ndim > 1 else {})
-
-
-def decimate_curve(x: Array, y: Array, most: int = MOST_POINTS) -> tuple[Array, Array]:
-    """A curve (n,), (n,) of at most about `most` points: both ends, least and largest of each interval between."""
-    if len(x) <= most:
-        return x, y
-    edges = np.linspace(0, len(x), most // 2 + 1).astype(int)
-    begins, interval = edges[:-1], np.repeat(np.arange(len(edges) - 1), np.diff(edges))
-    keep = [np.array([0, len(x) - 1])]
-    for extreme, none in ((np.minimum, np.inf), (np.maximum, -np.inf)):
-        known = np.where(np.isfinite(y), y, none)
-        hit = np.flatnonzero(known == extreme.reduceat(known, begins)[interval])
-        keep.append(hit[np.searchsorted(hit, begins)])  # the first of each interval
-    chosen = np.unique(np.concatenate(keep))
-    return x[chosen], y[chosen]
