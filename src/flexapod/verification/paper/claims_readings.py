@@ -16,8 +16,8 @@ from flexapod.verification.paper.claim import (
     ratio_words,
     size_verdict,
 )
-from flexapod.verification.paper.readings import CUBE, MODULI, cube_edge, inertia_about_com
 from flexapod.verification.paper.rows import ClaimFinding, variant
+from flexapod.verification.paper.variants import CUBE, MODULI, cube_edge, inertia_about_com
 
 SAYS = "5 mm in Y and 10 mm in Z"
 PRINTED = f"{1e3 * ELASTIC_LENGTH:.0f} mm"

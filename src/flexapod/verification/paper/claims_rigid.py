@@ -25,8 +25,8 @@ from flexapod.verification.paper.claim import (
     transverse_words,
 )
 from flexapod.verification.paper.computing_time import FORMULATIONS
-from flexapod.verification.paper.readings import TRAVELS
 from flexapod.verification.paper.rows import ClaimFinding, row
+from flexapod.verification.paper.variants import TRAVELS
 
 TRAVEL, TRAVEL_ROUNDED = 0.26, 0.005  # of a piston, Fig. 7; printed to 10 mm [m]
 SHEAR = 2.6 / 0.9  # E / kappa G of a round steel section: 2 (1 + 0.3), kappa = 0.9

@@ -22,7 +22,7 @@ from flexapod.analysis.simulation import simulate
 from flexapod.commissioning.feedforward import compensate, shape
 from flexapod.control.controllers import IFF
 from flexapod.verification.paper.claim import axis_motion, residual_vibration
-from flexapod.verification.paper.readings import robot_preset, with_legs
+from flexapod.verification.paper.variants import with_legs
 
 #: Words for commands that make up for more and more, and the orders of `compensate` that do.
 COMMANDS: dict[str, Literal[0, 2, "stable-inversion"] | None] = {
@@ -56,7 +56,7 @@ _METRE, _SECOND = {"units": "m"}, {"units": "s"}
 
 
 def _roll() -> model.Study:
-    return robot_preset("paper-robot")
+    return model.preset("paper-robot")
 
 
 def _stacked(
