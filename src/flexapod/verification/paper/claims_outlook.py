@@ -97,7 +97,7 @@ def _friction(rubbing: Dataset) -> ClaimFinding:
     extra = np.abs(rubs - ideal).max(axis=0)
     own, kept, left = (along_axes(np.abs(x).max(axis=0)) for x in (ideal, rubs, ahead))
     lost = float(rubbing.lost[1] - rubbing.lost[0])
-    mu, width = FRICTION.mu or 0.0, FRICTION.diameter or 0.0
+    mu, width = FRICTION["mu"], FRICTION["diameter"]
     return ClaimFinding(
         ours=f"Plain joints of {text(width, 'm')} with a coefficient of {mu:g}: {kept} in place of {own}, on the way "
         f"up to {along_axes(extra)} from there; {text(lost, 'J', 2)} are lost in the roll. With commands ahead for "
@@ -127,9 +127,8 @@ def _imperfections(spread: Dataset, robot: Dataset) -> ClaimFinding:
 
 def _spreads() -> tuple[str, ...]:
     """Spreads of joints, legs, bow, stiffness and density as text."""
-    lengths = (getattr(TOLERANCES, name).sigma for name in ("base_joints", "leg_offset", "bow"))
-    ratios = (getattr(TOLERANCES, name).sigma for name in ("EA", "density"))
-    return (*(text(x, "m", 2) for x in lengths), *(f"{100 * x:g} %" for x in ratios))
+    lengths = (text(TOLERANCES[name], "m", 2) for name in ("base_joints", "leg_offset", "bow"))
+    return (*lengths, *(f"{100 * TOLERANCES[name]:g} %" for name in ("EA", "density")))
 
 
 @outlook("Section 4.3, disturbances", "Not accounted for: external disturbances", "budget")

@@ -71,6 +71,11 @@ COLUMNS = {
     "apart": Column("m", partial(_spread, dim="leg")),
     "stretch_stiffness": Column("N m-1", lambda data: _piston(data).EA / _piston(data).length),
     "sag": Column("m", dims=("axis",)),
+    "miss": Column("m", dims=("time", "axis")),
+    "miss_peak": Column("m", dims=("axis",)),
+    "lost": Column("J"),
+    "vibration": Column("m", dims=("time", "axis")),
+    "longer": Column("s"),
     "deviation": Column("m", dims=("roll", "axis")),
     "off_axis": Column("m", dims=("roll",)),
     "slope": Column("rad", dims=("roll",)),
@@ -98,4 +103,9 @@ def trial(study: model.Study, columns: Sequence[str], step: float | None = TRIAL
         if "verdict" not in columns:
             raise
         return {**nothing(columns), "verdict": error.what.split(":")[0]}
+    return trial_columns(data, columns)
+
+
+def trial_columns(data: Dataset, columns: Sequence[str]) -> dict[str, Any]:
+    """Columns by name of the result of a simulation; without those that are found in none."""
     return {name: value(data) for name in columns if (value := COLUMNS[name].value) is not None}
