@@ -194,7 +194,7 @@ def test_spikes_of_the_forces_have_a_word():
 def test_what_welded_robots_do_not_reach_is_said():
     """Where a curve is missing, the panel says so and how near it comes: 0.9 of y, 0.3 of z here."""
     table = variants.clamped_legs()
-    along = {**table.along, "roll": variants.ROLLS}
+    along = {name: list(labels) for name, labels in {**table.along, "roll": variants.ROLLS}.items()}
     shape = tuple(map(len, along.values()))
     values = {name: (("reading", "arm", "roll"), np.zeros(shape)) for name in table.columns if name != "deviation"}
     grown = np.array([1e-3, 4.5e-3, 3e-3]) * np.linspace(0, 1, shape[2])[:, None]
