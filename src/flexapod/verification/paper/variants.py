@@ -16,6 +16,7 @@ import numpy as np
 from xarray import Dataset
 
 from flexapod import kinematics, model
+from flexapod.analysis.results.arguments import as_pose
 from flexapod.analysis.results.attributes import attributes
 from flexapod.analysis.results.rigid_path import path_instants
 from flexapod.analysis.results.time_history import Share
@@ -103,23 +104,18 @@ def coordinate(name: str, labels: Sequence[str] | Sequence[float]) -> tuple[Any,
 
 def extend_strokes(study: model.Study) -> model.Study:
     """Study with mouths and strokes moved just so far that no piston leaves its cylinder on the path."""
-    robot = study.robot
-    path = kinematics.poses(robot, study.motion, path_instants(study))
-    longest = float(
-        kinematics.leg_lengths(robot.base_joints, robot.platform_joints, path.position, path.rotation).max()
-    )
-
-    def change_leg(leg: model.Leg) -> model.Leg:
+    robot, legs = study.robot, []
+    longest = float(_lengths(robot, kinematics.poses(robot, study.motion, path_instants(study))).max())
+    for leg in robot.legs:
         mouth = max(leg.cylinder.mouth, longest - leg.piston.length)
         stroke = model.Stroke(min=mouth, max=mouth + leg.piston.length)
-        return leg.replace(stroke=stroke, cylinder=leg.cylinder.replace(mouth=mouth))
+        legs.append(leg.replace(stroke=stroke, cylinder=leg.cylinder.replace(mouth=mouth)))
+    return study.replace(robot=robot.replace(legs=tuple(legs)))
 
-    return with_legs(study, change_leg)
 
-
-def with_legs(study: model.Study, change: Callable[[model.Leg], model.Leg]) -> model.Study:
-    """Study with every leg changed."""
-    return study.replace(robot=study.robot.replace(legs=tuple(change(leg) for leg in study.robot.legs)))
+def _lengths(robot: model.Robot, path: kinematics.Poses) -> Array:
+    """Lengths (T, n) from joint to joint on a path [m]."""
+    return kinematics.leg_lengths(robot.base_joints, robot.platform_joints, path.position, path.rotation)
 
 
 HALF_ANGLES = (5.0, 10.0, 15.0, 20.0, 25.0, 27.0, 28.0, 29.0)  # deg; at 30 deg both circles are regular hexagons
@@ -264,16 +260,8 @@ def _servo(stiffness: float, mass: float) -> dict[str, object]:
 def _needed_errors(study: model.Study) -> Array:
     """Leg-length errors (n,) [m] that move the CoM by the paper's deviation."""
     robot, roll = study.robot, axis_motion(study).target[3]
-    home = kinematics.home_pose(robot)
-    off, there = (
-        kinematics.leg_lengths(
-            robot.base_joints,
-            robot.platform_joints,
-            home.position,
-            kinematics.rotation_matrix(np.array([[x, 0.0, 0.0]]))[0],
-        )[0]
-        for x in (roll + roll_error(float(np.linalg.norm(robot.payload.com))), roll)
-    )
+    rolls = (roll + roll_error(float(np.linalg.norm(robot.payload.com))), roll)
+    off, there = (_lengths(robot, as_pose(robot, [0.0, 0.0, 0.0, x, 0.0, 0.0]))[0] for x in rolls)
     return off - there
 
 
