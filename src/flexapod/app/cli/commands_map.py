@@ -9,7 +9,17 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.cli.failures import report_failures
-from flexapod.app.cli.options import Json, NoFigures, Out, Quiet, StudyFile, as_options, results_folder, robot_study
+from flexapod.app.cli.options import (
+    Json,
+    NoFigures,
+    Out,
+    Quiet,
+    Settings,
+    StudyFile,
+    as_options,
+    results_folder,
+    robot_study,
+)
 from flexapod.common.errors import InputError
 from flexapod.common.lazy_imports import LazyModule
 from flexapod.output.text import terminal
@@ -66,15 +76,15 @@ Count = Annotated[int | None, typer.Option("--count", min=1, help="Points of an 
 
 @report_failures
 def workspace_map(
-    file: StudyFile, x: X = None, y: Y = None, z: Z = None, at: At = None, direction: Direction = "z",
-    acceleration: Acceleration = None, budget: Budget = False, mode: Mode = 1, count: Count = None, out: Out = None,
-    no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
+    file: StudyFile, settings: Settings = None, x: X = None, y: Y = None, z: Z = None, at: At = None,
+    direction: Direction = "z", acceleration: Acceleration = None, budget: Budget = False, mode: Mode = 1,
+    count: Count = None, out: Out = None, no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Map frequencies, stiffness, deviations, forces and margins over poses: map.nc and figures."""
-    study = robot_study(file)
+    study = robot_study(file, settings)
     axes = pose_options.parse_axes({"--x": x, "--y": y, "--z": z}, count, grid.usual_axes(study.robot))
     fixed = pose_options.parse_at(at, axes)
-    settings = {
+    load = {
         "direction": pose_options.parse_direction(direction),
         "acceleration": pose_options.parse_acceleration(acceleration),
     }
@@ -84,7 +94,7 @@ def workspace_map(
             poses, frequencies = grid.build_grid(study.robot, axes, fixed), max(mode, maps_maps.FREQUENCIES)
             resource_limits.check_map(poses.size, frequencies, folder)
             data = maps.workspace_map(
-                study, poses.values, at=fixed, frequencies=frequencies, budget=budget, **settings,
+                study, poses.values, at=fixed, frequencies=frequencies, budget=budget, **load,
                 progress=lambda words, share: report(words, COMPUTING * share),
             )  # fmt: skip
         if mode > data.sizes["mode"]:

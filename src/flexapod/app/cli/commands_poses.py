@@ -12,7 +12,19 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.cli.failures import report_failures
-from flexapod.app.cli.options import Json, NoFigures, Pose, Quiet, StudyFile, Verbose, as_options, check_writable
+from flexapod.app.cli.options import (
+    Json,
+    NoFigures,
+    Pose,
+    Quiet,
+    Settings,
+    StudyFile,
+    Verbose,
+    as_options,
+    check_writable,
+    load_study,
+    robot_study,
+)
 from flexapod.common.lazy_imports import LazyModule
 from flexapod.output.text.terminal import print_answer, progress_bar
 
@@ -53,14 +65,14 @@ Count = Annotated[int, typer.Option("--count", min=1, help="How many of the lowe
 
 @report_failures
 def modes(
-    file: StudyFile, pose: Pose = None, out: Folder = None, count: Count = 12, no_figures: NoFigures = False,
-    json: Json = False,
+    file: StudyFile, settings: Settings = None, pose: Pose = None, out: Folder = None, count: Count = 12,
+    no_figures: NoFigures = False, json: Json = False,
 ) -> None:  # fmt: skip
     """Frequencies, damping and shapes at a pose, commands of the drives held, about the static equilibrium.
 
     Of a single actuator those of its straight beam at t = 0.
     """
-    study = model.load(file)
+    study = load_study(file, settings)
     check_writable(out)
     with as_options(pose="--pose"):
         data = analysis.modes(study, pose_options.parse_pose(pose))
@@ -99,13 +111,12 @@ BudgetFolder = Annotated[
 
 @report_failures
 def budget(
-    file: StudyFile, pose: Pose = None, motion: Motion = False, out: BudgetFolder = None, no_figures: NoFigures = False,
-    quiet: Quiet = False, verbose: Verbose = False, json: Json = False,
+    file: StudyFile, settings: Settings = None, pose: Pose = None, motion: Motion = False,
+    out: BudgetFolder = None, no_figures: NoFigures = False, quiet: Quiet = False,
+    verbose: Verbose = False, json: Json = False,
 ) -> None:  # fmt: skip
     """Error budget of the tool: which part adds what, and what halving the largest error would bring."""
-    study = model.load(file)
-    if isinstance(study, model.ActuatorStudy):
-        raise errors.InputError("is the study of a single actuator", file=file, allowed="the study of a robot")
+    study = robot_study(file, settings)
     check_writable(out)
     with as_options(pose="--pose"), progress_bar(quiet=quiet or json) as report:
         data = analysis.budget(

@@ -16,8 +16,10 @@ from flexapod.app.cli.options import (
     NoFigures,
     Out,
     Quiet,
+    Settings,
     StudyFile,
     Verbose,
+    load_study,
     parse_formats,
     results_folder,
     write_all,
@@ -52,21 +54,21 @@ USUAL = "png,svg"
 
 @report_failures
 def run(
-    file: StudyFile, out: Out = None, formats: Format = USUAL, no_figures: NoFigures = False, json: Json = False,
-    quiet: Quiet = False, verbose: Verbose = False,
+    file: StudyFile, settings: Settings = None, out: Out = None, formats: Format = USUAL,
+    no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False, verbose: Verbose = False,
 ) -> None:  # fmt: skip
     """Simulate a study, rigid and flexible: results.nc, results.csv, figures, report.html."""
     drawn = () if no_figures else parse_formats(formats)
-    _run(model.load(file), results_folder(file, "run", out), drawn, json=json, quiet=quiet, verbose=verbose)
+    _run(load_study(file, settings), results_folder(file, "run", out), drawn, json=json, quiet=quiet, verbose=verbose)
 
 
 @report_failures
 def actuator(
-    file: StudyFile, out: Out = None, formats: Format = USUAL, no_figures: NoFigures = False, json: Json = False,
-    quiet: Quiet = False, verbose: Verbose = False,
+    file: StudyFile, settings: Settings = None, out: Out = None, formats: Format = USUAL,
+    no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False, verbose: Verbose = False,
 ) -> None:  # fmt: skip
     """Simulate the study of a single actuator; writes what `run` writes."""
-    study = model.load(file)
+    study = load_study(file, settings)
     if not isinstance(study, model.ActuatorStudy):
         raise InputError(
             "is the study of a robot",

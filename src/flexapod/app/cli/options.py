@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tomllib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from flexapod import model
     from flexapod.analysis import store
     from flexapod.analysis.results.time_history import Report
-    from flexapod.model import Study
+    from flexapod.model import ActuatorStudy, Study
     from flexapod.output.report import figures as report_figures
     from flexapod.output.report import report as report_report
     from flexapod.output.text import html
@@ -32,6 +33,14 @@ else:
     html = LazyModule("flexapod.output.text.html")
 
 StudyFile = Annotated[Path, typer.Argument(metavar="FILE", help="Study file (TOML); `flexapod new` writes one.")]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Another value at a key of the study: leg.piston.diameter=70 mm; once for each key.",
+    ),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON on stdout and nothing else; errors as JSON on stderr.")]
 Out = Annotated[
     Path | None,
@@ -60,9 +69,36 @@ def as_options(**options: str) -> Iterator[None]:
         raise InputError(**{name: getattr(error, name) for name in _PARTS}, key=key) from None
 
 
-def robot_study(file: Path) -> Study:
-    """The study of a robot; refuses that of a single actuator."""
+def load_study(file: Path, settings: Sequence[str] | None = None) -> Study | ActuatorStudy:
+    """The study of a file, with the values of ``--set KEY=VALUE`` in place of its own."""
+    values = dict(map(parse_setting, settings or ()))
     study = model.load(file)
+    try:
+        return study.with_values(values) if values else study
+    except InputError as error:
+        raise InputError(**{name: getattr(error, name) for name in _PARTS}, key=f"--set {error.key}") from None
+
+
+def parse_setting(text: str) -> tuple[str, object]:
+    """Key and value of ``KEY=VALUE``: a value of TOML, or else a text, which needs no quotes."""
+    key, equals, value = (part.strip() for part in text.partition("="))
+    if not equals or not key or not value:
+        raise InputError(
+            "is no key with a value",
+            key="--set",
+            value=text,
+            allowed="KEY=VALUE",
+            next_step='For example --set "leg.piston.diameter=70 mm"',
+        )
+    try:
+        return key, tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        return key, value
+
+
+def robot_study(file: Path, settings: Sequence[str] | None = None) -> Study:
+    """The study of a robot, as `load_study`; refuses that of a single actuator."""
+    study = load_study(file, settings)
     if isinstance(study, model.ActuatorStudy):
         raise InputError("is the study of a single actuator", file=file, allowed="the study of a robot")
     return study
