@@ -94,9 +94,10 @@ def _spell_out(table: dict[str, Any], steps: tuple[Step, ...], at: int) -> None:
     elif step in ("E", "density") and table.get("material") in MATERIALS:
         material = MATERIALS[table.pop("material")]
         table.update({"E": material.E, "density": material.density})
-        if material.yield_stress is not None:
-            table.setdefault("yield_stress", material.yield_stress)
-        table.setdefault("poisson", material.poisson)
+        others = {name: getattr(material, name) for name in ("yield_stress", "poisson", "expansion")}
+        for name, value in others.items():
+            if value is not None:
+                table.setdefault(name, value)
 
 
 def _place(circle: Any, end: str, plane: str | None) -> None:
