@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -9,7 +10,19 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.cli.failures import report_failures
-from flexapod.app.cli.options import Json, NoFigures, Out, Quiet, StudyFile, as_options, results_folder, robot_study
+from flexapod.app.cli.options import (
+    USUAL,
+    Format,
+    Json,
+    NoFigures,
+    Out,
+    Quiet,
+    StudyFile,
+    as_options,
+    parse_formats,
+    results_folder,
+    robot_study,
+)
 from flexapod.common.errors import InputError
 from flexapod.output.text import terminal
 
@@ -49,7 +62,7 @@ Count = Annotated[int | None, typer.Option("--count", min=1, help="Points of an 
 def workspace_map(
     file: StudyFile, x: X = None, y: Y = None, z: Z = None, at: At = None, direction: Direction = "z",
     acceleration: Acceleration = None, budget: Budget = False, mode: Mode = 1, count: Count = None, out: Out = None,
-    no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
+    formats: Format = USUAL, no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Map frequencies, stiffness, deviations, forces and margins over poses: map.nc and figures."""
     from flexapod.analysis.checks.resource_limits import check_map
@@ -60,7 +73,7 @@ def workspace_map(
     from flexapod.design.maps.maps import FREQUENCIES
     from flexapod.output.text.answers import map_items
 
-    study = robot_study(file)
+    study, drawn = robot_study(file), parse_formats(formats, no_figures)
     axes = parse_axes({"--x": x, "--y": y, "--z": z}, count, usual_axes(study.robot))
     fixed = parse_at(at, axes)
     settings = {"direction": parse_direction(direction), "acceleration": parse_acceleration(acceleration)}
@@ -77,23 +90,24 @@ def workspace_map(
             raise InputError(
                 "is not a mode of this robot", key="--mode", value=mode, allowed=f"1 to {data.sizes['mode']}"
             )
-        files = _write(data, folder, mode, report, figures=not no_figures)
+        files = _write(data, folder, mode, report, drawn)
     found = map_findings(data, mode)
-    drawn = " and a figure of each quantity" if len(files) > 1 else ""
-    where = f"In {folder}: map.nc{drawn}. ({data.attrs['wall_time']:.2g} s of computation)"
+    figures = " and a figure of each quantity" if len(files) > 1 else ""
+    where = f"In {folder}: map.nc{figures}. ({data.attrs['wall_time']:.2g} s of computation)"
     more = {"wall_time": data.attrs["wall_time"], "folder": folder, "files": files}
     terminal.print_answer(chain(map_items(data, found), [where]), lambda: found.as_dict() | more, json=json)
 
 
-def _write(data: Dataset, folder: Path, mode: int, report: Report, *, figures: bool) -> list[Path]:
-    """The map, and where they are wanted a figure of each quantity, of frequencies that of this `mode`."""
+def _write(data: Dataset, folder: Path, mode: int, report: Report, formats: Sequence[str]) -> list[Path]:
+    """The map, and where a format is given a figure of each quantity, of frequencies that of this `mode`."""
     from flexapod.analysis.store import save
     from flexapod.design.maps.findings import scalars_with_values
     from flexapod.output import figures as plot
 
     report("writing the map", COMPUTING)
-    files, names = [save(data, folder / "map.nc")], scalars_with_values(data) if figures else ()
+    files, names = [save(data, folder / "map.nc")], scalars_with_values(data) if formats else ()
     for k, name in enumerate(names):
         report(f"drawing {name.replace('_', ' ')}", COMPUTING + (1 - COMPUTING) * k / len(names))
-        files += plot.save(plot.workspace_map(data, name, mode=mode), folder / f"map-{name.replace('_', '-')}")
+        figure, stem = plot.workspace_map(data, name, mode=mode), folder / f"map-{name.replace('_', '-')}"
+        files += plot.save(figure, stem, formats=formats)
     return files

@@ -5,6 +5,7 @@ The budget is at a pose or along the motion.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,7 +13,19 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.cli.failures import report_failures
-from flexapod.app.cli.options import Json, NoFigures, Pose, Quiet, StudyFile, Verbose, as_options, check_writable
+from flexapod.app.cli.options import (
+    USUAL,
+    Format,
+    Json,
+    NoFigures,
+    Pose,
+    Quiet,
+    StudyFile,
+    Verbose,
+    as_options,
+    check_writable,
+    parse_formats,
+)
 from flexapod.output.text.terminal import print_answer
 
 if TYPE_CHECKING:
@@ -31,8 +44,8 @@ Count = Annotated[int, typer.Option("--count", min=1, help="How many of the lowe
 
 @report_failures
 def modes(
-    file: StudyFile, pose: Pose = None, out: Folder = None, count: Count = 12, no_figures: NoFigures = False,
-    json: Json = False,
+    file: StudyFile, pose: Pose = None, out: Folder = None, count: Count = 12, formats: Format = USUAL,
+    no_figures: NoFigures = False, json: Json = False,
 ) -> None:  # fmt: skip
     """Frequencies, damping and shapes at a pose, commands of the drives held, about the static equilibrium.
 
@@ -43,13 +56,13 @@ def modes(
     from flexapod.app.cli.pose_options import parse_pose
     from flexapod.output.text.answers import modes_as_dict, modes_items
 
-    study = model.load(file)
+    study, drawn = model.load(file), parse_formats(formats, no_figures)
     check_writable(out)
     with as_options(pose="--pose"):
         data = compute(study, parse_pose(pose))
     of_robot = isinstance(study, model.Study)
     shaken, sentences = _shaken(study, parse_pose(pose)) if of_robot else (None, ())
-    files = [] if out is None else _write_modes(data, shaken, out, figure=of_robot and not no_figures)
+    files = [] if out is None else _write_modes(data, shaken, out, drawn if of_robot else ())
     items = chain(modes_items(study, data, pose, count, sentences), map("Written: {}".format, files))
     print_answer(items, lambda: modes_as_dict(data, shaken, files), json=json)
 
@@ -70,15 +83,15 @@ def _shaken(study: Study, pose: dict[str, float] | None) -> tuple[Dataset | None
     return data, vibration_words(shaking(data), "there")
 
 
-def _write_modes(data: Dataset, shaken: Dataset | None, folder: Path, *, figure: bool) -> list[Path]:
+def _write_modes(data: Dataset, shaken: Dataset | None, folder: Path, formats: Sequence[str]) -> list[Path]:
     from flexapod.analysis.store import save
     from flexapod.output import figures
 
     files = [save(data, folder / "modes.nc")]
-    files += figures.save(figures.modes_3d(data), folder / "modes") if figure else ()
+    files += figures.save(figures.modes_3d(data), folder / "modes", formats=formats) if formats else ()
     if shaken is not None:
         files.append(save(shaken, folder / "vibration.nc"))
-        files += figures.save(figures.vibration(shaken), folder / "vibration") if figure else ()
+        files += figures.save(figures.vibration(shaken), folder / "vibration", formats=formats) if formats else ()
     return files
 
 
@@ -90,8 +103,8 @@ BudgetFolder = Annotated[
 
 @report_failures
 def budget(
-    file: StudyFile, pose: Pose = None, motion: Motion = False, out: BudgetFolder = None, no_figures: NoFigures = False,
-    quiet: Quiet = False, verbose: Verbose = False, json: Json = False,
+    file: StudyFile, pose: Pose = None, motion: Motion = False, out: BudgetFolder = None, formats: Format = USUAL,
+    no_figures: NoFigures = False, quiet: Quiet = False, verbose: Verbose = False, json: Json = False,
 ) -> None:  # fmt: skip
     """Error budget of the tool: which part adds what, and what halving the largest error would bring."""
     from flexapod import model
@@ -103,7 +116,7 @@ def budget(
     from flexapod.output.text.description import ideal_words
     from flexapod.output.text.terminal import print_answer, progress_bar
 
-    study = model.load(file)
+    study, drawn = model.load(file), parse_formats(formats, no_figures)
     if isinstance(study, model.ActuatorStudy):
         raise InputError("is the study of a single actuator", file=file, allowed="the study of a robot")
     check_writable(out)
@@ -111,7 +124,7 @@ def budget(
         data = compute(
             study, parse_pose(pose), motion=motion, progress=lambda now, end: report("simulating", now / end)
         )
-    files = [] if out is None else _write(data, out, figure=not no_figures)
+    files = [] if out is None else _write(data, out, drawn)
     ideal, counts = ideal_words(idealization(study.robot)), None if motion else budget_counts(study.robot)
     items = chain(budget_items(data, (ideal, counts)), map("Written: {}".format, files))
     print_answer(
@@ -119,9 +132,9 @@ def budget(
     )
 
 
-def _write(data: Dataset, folder: Path, *, figure: bool) -> list[Path]:
+def _write(data: Dataset, folder: Path, formats: Sequence[str]) -> list[Path]:
     from flexapod.analysis.store import save
     from flexapod.output import figures
 
     files = [save(data, folder / "budget.nc")]
-    return [*files, *(figures.save(figures.budget(data), folder / "budget") if figure else ())]
+    return [*files, *(figures.save(figures.budget(data), folder / "budget", formats=formats) if formats else ())]

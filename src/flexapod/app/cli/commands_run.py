@@ -12,6 +12,8 @@ import typer
 from flexapod.app.cli.failures import INTERRUPTED, print_error, print_parts, report_failures, stop_words
 from flexapod.app.cli.options import (
     FORMATS,
+    USUAL,
+    Format,
     Json,
     NoFigures,
     Out,
@@ -34,10 +36,6 @@ if TYPE_CHECKING:
     from flexapod.model import ActuatorStudy, Study
 
 COMPUTING = 0.88  # share of the bar for the simulation; the rest is for files
-Format = Annotated[
-    str, typer.Option("--format", metavar="FORMATS", help="Of the figures: one or more of png,svg,pdf, with commas.")
-]
-USUAL = "png,svg"
 
 
 @report_failures
@@ -48,7 +46,7 @@ def run(
     """Simulate a study, rigid and flexible: results.nc, results.csv, figures, report.html."""
     from flexapod.model import load
 
-    drawn = () if no_figures else parse_formats(formats)
+    drawn = parse_formats(formats, no_figures)
     _run(load(file), results_folder(file, "run", out), drawn, json=json, quiet=quiet, verbose=verbose)
 
 
@@ -68,7 +66,7 @@ def actuator(
             allowed="a study with [actuator]",
             next_step=f"Use `flexapod run {file}`",
         )
-    drawn = () if no_figures else parse_formats(formats)
+    drawn = parse_formats(formats, no_figures)
     _run(study, results_folder(file, "run", out), drawn, json=json, quiet=quiet, verbose=verbose)
 
 

@@ -30,7 +30,7 @@ from flexapod.output.figures.column_width import resize_figure
 INCH = 0.0254  # [m]
 TEXT, NOTE, SMALL = 8.5, 7.5, 7.0  # sizes of letters [points]
 
-_RC = {
+_RC: Any = {
     "font.family": "DejaVu Sans",
     "font.size": TEXT,
     "axes.titlesize": 9.0,

@@ -7,7 +7,7 @@ maps) makes the whole figure stay a picture. Curves have no more points than can
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -233,7 +233,7 @@ def _dash(line: Line2D) -> str:
 class _Dashes(RendererBase):
     """Renderer that keeps the dashes [points] of what was drawn last."""
 
-    dashes: Sequence[float] | None = None
+    dashes: Any = None
 
     def draw_path(self, gc: GraphicsContextBase, path: Path, transform: Transform, rgbFace: Any = None) -> None:
         self.dashes = gc.get_dashes()[1]
