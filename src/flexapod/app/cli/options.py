@@ -46,6 +46,9 @@ Out = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Folder for the results; default: beside the study, FILE-COMMAND."),
 ]
+Format = Annotated[
+    str, typer.Option("--format", metavar="FORMATS", help="Of the figures: one or more of png,svg,pdf, with commas.")
+]
 NoFigures = Annotated[bool, typer.Option("--no-figures", help="Draw nothing: data and words only, in less time.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar.")]
 
@@ -111,12 +114,18 @@ def refuse_existing(file: Path, force: bool) -> None:
 
 
 FORMATS = ("png", "svg", "pdf")  # of figures
+USUAL = "png"
 PROCESSES = min(os.cpu_count() or 1, 4)  # that draw them, where there are
 MANY = 10_000  # instants: with fewer, a copy of this process costs a third of what it takes off
 
 
-def parse_formats(text: str) -> tuple[str, ...]:
-    """Formats of figures, each once, ``"png, PDF"`` gives ``("png", "pdf")``; unknown ones, and none, are refused."""
+def parse_formats(text: str, no_figures: bool) -> tuple[str, ...]:
+    """Formats of figures, each once, ``"png, PDF"`` gives ``("png", "pdf")``; unknown ones, and none, are refused.
+
+    Without figures there are none.
+    """
+    if no_figures:
+        return ()
     names = tuple(dict.fromkeys(name.strip().lower() for name in text.split(",") if name.strip()))
     unknown = [name for name in names if name not in FORMATS]
     if unknown or not names:
@@ -160,8 +169,6 @@ def write_data(data: Dataset, folder: Path) -> list[Path]:
 
 def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str]) -> list[Path]:
     """Data, figures in the formats asked for (none: no figures), ``report.html``; `report` is told what is written."""
-    if formats:
-        _without_help()
     data.load()  # what nobody has asked for yet each copy of this process would make for itself
     figures: list[report_figures.StoredFigure] = []
     processes = PROCESSES if data.sizes["time"] >= MANY else 1
@@ -182,10 +189,3 @@ def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str
 
         page = report_report.write_report(data, folder, finish_figures)
     return [*files, *(path for figure in figures for path in figure.files), page]
-
-
-def _without_help() -> None:
-    """Import matplotlib without the help that it writes on each of its classes: nobody reads it in a command."""
-    from matplotlib.artist import Artist
-
-    Artist._update_set_signature_and_docstring = classmethod(lambda _: None)  # type: ignore[attr-defined]
