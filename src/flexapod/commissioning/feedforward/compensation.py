@@ -105,7 +105,7 @@ def compensation(
     path = LoadedPath(known, inertia=order == 2)
     until = study.motion.end_time - study.motion.hold if is_permanent(study) else study.duration
     knots = correction_knots(study, until)
-    series = static_series(path, corrections, knots)
+    series, tail = static_series(path, corrections, knots)
 
     def law(t: Array) -> Law:
         return Law(*(x + y for x, y in zip(path.target_law(t), series(t), strict=True)))
@@ -115,7 +115,7 @@ def compensation(
     hold = study.motion.hold if is_permanent(study) else 0.0
     length = kinematics.rigid_limbs(study.robot).L_c
     table = tabulate_law(law, knots, study.motion, path.axes, length, hold=hold, rows=rows)
-    found = _compensation_result(study, path, series.tail, table, periods)
+    found = _compensation_result(study, path, tail, table, periods)
     check_workspace(found.study)
     return found if out is None else replace(found, study=save_study(found.study, out))
 

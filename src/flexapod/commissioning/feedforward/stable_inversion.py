@@ -226,7 +226,7 @@ def elastic_compensation(
     path = LoadedPath(known)
     _refuse_others(study, path)
     moving = study.motion.end_time - study.motion.hold
-    series = static_series(path, corrections, correction_knots(study, moving))
+    series, _ = static_series(path, corrections, correction_knots(study, moving))
     found = elastic_commands(study, moving)
     time, value, early, late = _trim_commands(found, moving)
     inside = np.clip(time, 0.0, moving)

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from flexapod.common.arrays import Array
+from flexapod.common.piecewise_chebyshev import INSIDE, rough_pieces
 from flexapod.solve.system import COLUMNS
 from flexapod.solve.time.command_tables import Law
-from flexapod.solve.time.piecewise_chebyshev import ENOUGH, instants, series_of
 from flexapod.solve.time.time_events import NEAR
 
 AHEAD = 8  # pieces that are made at once
@@ -51,14 +51,14 @@ class Series:
         """The next pieces; those that would be too rough are quartered instead, and what comes after them waits."""
         spans = [self._todo.popleft() for _ in range(min(AHEAD, len(self._todo)))]
         first, last = np.array(spans).T
-        times = instants(first, last)
+        times = INSIDE.instants(first, last)
         table, load = self._law(times.ravel())
         values = np.concatenate([table.reshape(times.size, -1), load], axis=1)
         kinds = np.concatenate([np.tile(np.arange(COLUMNS), table[0].size // COLUMNS), np.full(load.shape[1], COLUMNS)])
         most = np.abs(values).max(axis=0, initial=0.0)
         scale = np.array([most[kinds == kind].max(initial=SMALL) for kind in range(COLUMNS + 1)])[kinds]
-        series = series_of(values, len(spans))
-        rough = (np.abs(series[:, -3:]) > ENOUGH * scale).any(axis=(1, 2)) & (last - first > self._finest)
+        series = INSIDE.series_of(values, len(spans))
+        rough = rough_pieces(series, scale) & (last - first > self._finest)
         smooth = len(spans) if not rough.any() else int(np.argmax(rough))
         self._pieces.extend((*spans[k], series[k]) for k in range(smooth))
         waiting = [part for k in range(smooth, len(spans)) for part in _parts(*spans[k], rough[k])]

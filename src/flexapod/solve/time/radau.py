@@ -8,10 +8,10 @@ import numpy as np
 
 from flexapod.common.arrays import Array
 from flexapod.common.generalized_alpha import GeneralizedAlpha
+from flexapod.common.piecewise_chebyshev import NODES
 from flexapod.solve.system import Flow, System
 from flexapod.solve.time.chebyshev import Series
 from flexapod.solve.time.native import Call, address, loops, memory, settings
-from flexapod.solve.time.piecewise_chebyshev import NODES
 from flexapod.solve.time.recording import Counters, record_width
 
 if TYPE_CHECKING:
