@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,9 +24,6 @@ from flexapod.solve.modal.modal_loops import UNSTABLE, ModalLoops, growth_rate
 from flexapod.solve.modal.modes import loops_of, modal_damping, no_mass, unit_modes
 from flexapod.solve.statics.locked_robot import LockedPoses, single_equilibrium
 
-if TYPE_CHECKING:
-    pass  # FOLD
-
 Complex = NDArray[np.complex128]
 
 NODES, WEIGHTS = (0.5 * x for x in np.polynomial.legendre.leggauss(4))
@@ -41,26 +37,17 @@ UNDAMPED = 1e-9  # damping ratio below which nothing limits a resonance
 FLOOR_RATES = {"acceleration": 0, "velocity": 1, "displacement": 2}
 
 
-class VibrationModel(Protocol):
-    """Interface of a linear model that the integral needs, as `LinearRobot` has it."""
+@dataclass(frozen=True, kw_only=True)
+class VibrationModel:
+    """Any linear system as the integral needs it, as a `LinearRobot` is by itself.
 
-    @property
-    def omega(self) -> Array:
-        """Angular frequencies of modes, (r,)."""
-        ...
+    ``tool`` (p, r): outputs by modes; ``poles`` [1/s] up to a rate [rad/s]; ``amplitudes``: modes (f, r, k) at
+    frequencies [Hz] under unit inputs, columns of (any, k).
+    """
 
-    @property
-    def tool(self) -> Array:
-        """Outputs by modes, (p, r)."""
-        ...
-
-    def poles(self, rate: float) -> Complex:
-        """Poles [1/s] up to a rate [rad/s]."""
-        ...
-
-    def amplitudes(self, frequency: Array, forces: Array) -> Complex:
-        """Modes (f, r, k) at frequencies [Hz] under unit inputs, columns of (any, k)."""
-        ...
+    tool: Array
+    poles: Callable[[float], Complex]
+    amplitudes: Callable[[Array, Array], Complex]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -161,7 +148,7 @@ def density_at(frequency: Array, density: Array, f: Array) -> Array:
     return np.where(power, curved, straight) * inside[:, None]
 
 
-def random_vibration(model: VibrationModel, sources: list[Source], *, refine: int = 1) -> RandomVibration:
+def random_vibration(model: LinearRobot | VibrationModel, sources: list[Source], *, refine: int = 1) -> RandomVibration:
     """Response of p outputs (the tool) to independent sources; ``refine``: into how many each panel is cut further.
 
     Raises
@@ -177,7 +164,7 @@ def random_vibration(model: VibrationModel, sources: list[Source], *, refine: in
     response = _response(model, forces, f, refine)
     p = len(model.tool)
     psd, covariance = np.zeros((len(f), p)), np.zeros((p, p))
-    by_mode, by_input = np.zeros((model.omega.size, p)), np.zeros((forces.shape[1], p))
+    by_mode, by_input = np.zeros((model.tool.shape[1], p)), np.zeros((forces.shape[1], p))
     for start in range(0, len(f), BLOCK):
         some = slice(start, start + BLOCK)
         S = np.concatenate([source.at(f[some]) for source in sources], axis=1)
@@ -202,7 +189,7 @@ def random_vibration(model: VibrationModel, sources: list[Source], *, refine: in
     )
 
 
-def vibration_with_error(model: VibrationModel, sources: list[Source]) -> tuple[RandomVibration, float]:
+def vibration_with_error(model: LinearRobot | VibrationModel, sources: list[Source]) -> tuple[RandomVibration, float]:
     """Response on panels cut in two, and the largest relative difference of its rms from that on whole ones."""
     found, coarse = random_vibration(model, sources, refine=2), random_vibration(model, sources)
     moves = found.rms > ROUNDING * found.rms.max(initial=0.0)
@@ -210,7 +197,7 @@ def vibration_with_error(model: VibrationModel, sources: list[Source]) -> tuple[
     return found, float(np.abs(error).max(initial=0.0))
 
 
-def _response(model: VibrationModel, forces: Array, f: Array, refine: int) -> Callable[[Array], Complex]:
+def _response(model: LinearRobot | VibrationModel, forces: Array, f: Array, refine: int) -> Callable[[Array], Complex]:
     """Amplitudes (f, r, k) at frequencies: solved for, or where tables have many rows polynomials on wider panels."""
     span = Source(name="", forces=forces, frequency=f[[0, -1]], density=np.zeros((2, 1)))
     edges = panels(model, [span], 2 * refine)
@@ -231,12 +218,12 @@ def _response(model: VibrationModel, forces: Array, f: Array, refine: int) -> Ca
         found = np.empty((len(some), values.shape[2]), dtype=complex)
         for p in np.unique(panel):
             found[panel == p] = share[panel == p] @ values[p]
-        return found.reshape(len(some), *forces.shape)
+        return found.reshape(len(some), -1, forces.shape[1])
 
     return interpolate
 
 
-def panels(model: VibrationModel, sources: list[Source], refine: int) -> Array:
+def panels(model: LinearRobot | VibrationModel, sources: list[Source], refine: int) -> Array:
     """Edges [Hz] of panels each as long as rows of the tables and poles let it be, Eq. (T18.11)."""
     breaks = np.unique(np.concatenate([source.frequency for source in sources]))
     z = _poles(model, breaks[0], breaks[-1])
@@ -262,7 +249,7 @@ def _free(z: Complex, start: float, widest: float, shares: Array) -> NDArray[np.
     return (np.maximum(np.abs(x + root), np.abs(x - root)) >= ELLIPSE).all(axis=1)
 
 
-def _poles(model: VibrationModel, low: float, high: float) -> Complex:
+def _poles(model: LinearRobot | VibrationModel, low: float, high: float) -> Complex:
     """Frequencies [Hz] at which responses are infinite, above the real axis.
 
     Raises
