@@ -113,9 +113,9 @@ Vector = Sequence[Array] | Array
 BLOCK = 1024  # poses; an array of six legs then takes 48 kB, and what a block needs fits the second-level cache
 
 
-def blocks(count: int) -> Iterator[slice]:
-    """Ranges of at most `BLOCK` out of `count` poses; of no poses one, which is empty."""
-    return (slice(first, min(first + BLOCK, count)) for first in range(0, max(count, 1), BLOCK))
+def blocks(count: int, size: int = BLOCK) -> Iterator[slice]:
+    """Ranges of at most `size` out of `count` poses; of no poses one, which is empty."""
+    return (slice(first, min(first + size, count)) for first in range(0, max(count, 1), size))
 
 
 def time_last(array: Array) -> Array:

@@ -23,10 +23,9 @@ from flexapod.commissioning.feedforward.correction_series import (
     check_correctable,
     check_workspace,
     correction_knots,
-    is_permanent,
     static_series,
 )
-from flexapod.commissioning.feedforward.loaded_path import LoadedPath, tool_miss
+from flexapod.commissioning.feedforward.loaded_path import LoadedPath, is_permanent, tool_miss
 from flexapod.commissioning.feedforward.stable_inversion import elastic_compensation
 from flexapod.common.arguments import flag
 from flexapod.common.arrays import Array

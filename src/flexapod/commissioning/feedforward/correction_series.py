@@ -17,7 +17,7 @@ from flexapod.common.errors import InputError
 from flexapod.common.piecewise_chebyshev import WITH_ENDS, Pieces
 from flexapod.common.units import DIMENSIONS
 from flexapod.kinematics import Law
-from flexapod.model import AxisMotion, CombinedMotion, ConstantWrench, CsvMotion, Study, WaypointMotion
+from flexapod.model import AxisMotion, CombinedMotion, CsvMotion, Study, WaypointMotion
 
 FINEST = 1 / 64  # of the whole time: the shortest piece
 TAIL = 1e-7  # of the largest correction: what its series leave out
@@ -36,14 +36,6 @@ def static_series(path: LoadedPath, corrections: int, knots: Array) -> tuple[Cal
         shortest=FINEST * (knots[-1] - knots[0]),
     )
     return lambda t: Law(*pieces.with_derivatives(t)), pieces.make_all()
-
-
-def is_permanent(study: Study) -> bool:
-    """Test whether the correction stays constant once the motion is at its end."""
-    robot, wrench = study.robot, study.load.wrench
-    heat = robot.heat is not None and robot.heat.time is not None
-    tables = any(getattr(leg.drive, "time", None) is not None for leg in robot.legs)
-    return (wrench is None or isinstance(wrench, ConstantWrench)) and not heat and not tables
 
 
 def correction_knots(study: Study, until: float) -> Array:

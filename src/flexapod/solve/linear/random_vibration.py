@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Complex
 from flexapod.common.errors import InputError
 from flexapod.common.quantities import fill_template
 from flexapod.model import Disturbance, Floor, Spectrum
@@ -23,8 +23,6 @@ from flexapod.solve.modal.eigenproblem import poles
 from flexapod.solve.modal.modal_loops import UNSTABLE, ModalLoops, growth_rate
 from flexapod.solve.modal.modes import loops_of, modal_damping, no_mass, unit_modes
 from flexapod.solve.statics.locked_robot import LockedPoses, single_equilibrium
-
-Complex = NDArray[np.complex128]
 
 NODES, WEIGHTS = (0.5 * x for x in np.polynomial.legendre.leggauss(4))
 PER_DECADE = 12  # panels where nothing resonates
