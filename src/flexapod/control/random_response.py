@@ -15,6 +15,7 @@ from flexapod.control.state_space import channel_indices
 from flexapod.model.study.disturbance import Disturbance, Floor, Spectrum, check_density
 from flexapod.solve.linear.random_vibration import (
     FLOOR_RATES,
+    GROUPS,
     SOURCES,
     RandomVibration,
     Source,
@@ -27,9 +28,7 @@ if TYPE_CHECKING:
 
 #: A disturbance of a study, or one-sided spectra by channel or group: tables of a study, or (frequency [Hz], density).
 Sources = Disturbance | Mapping[str, Floor | Spectrum | tuple[ArrayLike, ArrayLike]]
-#: Groups of inputs by the field of a disturbance.
 EXAMPLE = "spectra by channel: {'wrench:fz': (frequencies [Hz], densities)}"
-GROUPS = {"floor": "floor", "wrench": "wrench", "force_noise": "drive"}
 
 
 def output_vibration(system: StateSpace, sources: Sources) -> tuple[RandomVibration, float]:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from flexapod.common.arrays import Array, Complex
 from flexapod.common.errors import InputError
+from flexapod.common.piecewise_chebyshev import Pieces
 from flexapod.common.quantities import fill_template
 from flexapod.model import Disturbance, Floor, Spectrum
 from flexapod.solve.linear.channels import plant_channels
@@ -101,6 +102,8 @@ class RandomVibration:
 
 #: What shakes a robot by the field of its disturbance.
 SOURCES = {"floor": "floor vibration", "wrench": "wrench noise", "force_noise": "force noise"}
+#: Groups of inputs likewise.
+GROUPS = {"floor": "floor", "wrench": "wrench", "force_noise": "drive"}
 
 
 def sources_of(given: Disturbance, model: LinearRobot) -> list[Source]:
@@ -111,21 +114,15 @@ def sources_of(given: Disturbance, model: LinearRobot) -> list[Source]:
     InputError
         A noise of drives that hold their positions whatever pushes them.
     """
-    found = []
-    if given.floor is not None:
-        found.append(_source(SOURCES["floor"], model.inputs["floor"], given.floor))
-    if given.wrench is not None:
-        found.append(_source(SOURCES["wrench"], model.inputs["wrench"], given.wrench))
-    if given.force_noise is not None:
-        if not model.inputs["drive"].any():
-            raise InputError(
-                "moves nothing: the drives hold their positions, whatever pushes them",
-                key="disturbance.force_noise",
-                allowed='drives that give way: "servo", or "screw" commanded by "servo" or "torque"',
-                next_step="Leave force_noise out, or choose another leg.drive",
-            )
-        found.append(_source(SOURCES["force_noise"], model.inputs["drive"], given.force_noise))
-    return found
+    tables = {field: getattr(given, field) for field in GROUPS}
+    if tables["force_noise"] is not None and not model.inputs["drive"].any():
+        raise InputError(
+            "moves nothing: the drives hold their positions, whatever pushes them",
+            key="disturbance.force_noise",
+            allowed='drives that give way: "servo", or "screw" commanded by "servo" or "torque"',
+            next_step="Leave force_noise out, or choose another leg.drive",
+        )
+    return [_source(SOURCES[f], model.inputs[GROUPS[f]], table) for f, table in tables.items() if table is not None]
 
 
 def _source(name: str, forces: Array, table: Floor | Spectrum) -> Source:
@@ -201,24 +198,14 @@ def _response(model: LinearRobot | VibrationModel, forces: Array, f: Array, refi
     edges = panels(model, [span], 2 * refine)
     if len(f) <= 4 * POINTS * (len(edges) - 1):
         return lambda some: model.amplitudes(some, forces)
-    angle = np.pi * (np.arange(POINTS) + 0.5) / POINTS
-    nodes = 0.5 - 0.5 * np.cos(angle)
-    at = (edges[:-1, None] + np.diff(edges)[:, None] * nodes).ravel()
-    known = [model.amplitudes(at[i : i + BLOCK], forces) for i in range(0, len(at), BLOCK)]
-    values = np.concatenate(known).reshape(len(edges) - 1, POINTS, -1)
-    weights = np.sin(angle) * (-1.0) ** np.arange(POINTS)  # barycentric, of the zeros of Chebyshev's polynomial
 
-    def interpolate(some: Array) -> Complex:
-        panel = np.clip(np.searchsorted(edges, some, side="right") - 1, 0, len(edges) - 2)
-        away = (some - edges[panel])[:, None] / np.diff(edges)[panel, None] - nodes
-        share = weights / np.where(away == 0, 1e-300, away)
-        share /= share.sum(axis=1, keepdims=True)
-        found = np.empty((len(some), values.shape[2]), dtype=complex)
-        for p in np.unique(panel):
-            found[panel == p] = share[panel == p] @ values[p]
-        return found.reshape(len(some), -1, forces.shape[1])
+    def solved(at: Array) -> list[Array]:
+        parts = [model.amplitudes(at[i : i + BLOCK], forces) for i in range(0, len(at), BLOCK)]
+        return [np.concatenate(parts).view(float)]
 
-    return interpolate
+    pieces = Pieces(solved, edges, -np.cos(np.pi * (np.arange(POINTS) + 0.5) / POINTS), shortest=np.inf)
+    pieces.make_all()
+    return lambda some: pieces(some)[0].view(complex)
 
 
 def panels(model: LinearRobot | VibrationModel, sources: list[Source], refine: int) -> Array:
