@@ -40,14 +40,17 @@ class Channels(Protocol):
     @property
     def inputs(self) -> tuple[str, ...]:
         """Names of the inputs."""
+        ...
 
     @property
     def outputs(self) -> tuple[str, ...]:
         """Names of the outputs."""
+        ...
 
     @property
     def units(self) -> Mapping[str, str]:
         """Unit of each channel that has one."""
+        ...
 
 
 def split_complex(values: Complex) -> Array:

@@ -94,6 +94,7 @@ class ControllerLike(Protocol):
 
     def on(self, outputs: Sequence[str], inputs: Sequence[str], units: Mapping[str, str]) -> StateSpace:
         """The law between channels."""
+        ...
 
 
 def channel_law(
