@@ -199,11 +199,11 @@ def _response(model: LinearRobot | VibrationModel, forces: Array, f: Array, refi
     if len(f) <= 4 * POINTS * (len(edges) - 1):
         return lambda some: model.amplitudes(some, forces)
 
-    def solved(at: Array) -> list[Array]:
+    def responses(at: Array) -> list[Array]:
         parts = [model.amplitudes(at[i : i + BLOCK], forces) for i in range(0, len(at), BLOCK)]
         return [np.concatenate(parts).view(float)]
 
-    pieces = Pieces(solved, edges, -np.cos(np.pi * (np.arange(POINTS) + 0.5) / POINTS), shortest=np.inf)
+    pieces = Pieces(responses, edges, -np.cos(np.pi * (np.arange(POINTS) + 0.5) / POINTS), shortest=np.inf)
     pieces.make_all()
     return lambda some: pieces(some)[0].view(complex)
 
