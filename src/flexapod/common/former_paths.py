@@ -161,9 +161,9 @@ MODULES = (
     (
         "solve.time",
         "solve.time",
-        "pieces>piecewise_chebyshev redundant>overconstrained sampled>sampled_control stops>time_events "
-        "tables>command_tables",
+        "redundant>overconstrained sampled>sampled_control stops>time_events tables>command_tables",
     ),
+    ("solve.time", "common", "pieces>piecewise_chebyshev"),
     (
         "study",
         "analysis",
