@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.linalg
+from numpy.typing import NDArray
 
 from flexapod.common.arguments import flag, number
 from flexapod.common.arrays import Array, Complex, Mask
