@@ -29,7 +29,7 @@ _OUT_OF_PLANE = {
     "initial": ("elevation_displacement", "elevation_rate"),
 }
 
-variants = LazyModule("flexapod.model.file.variants")  # reads what is written here
+_variants = LazyModule("flexapod.model.file.variants")  # reads what is written here
 _ANEW = "-"  # for the text of a study that is to be written
 
 
@@ -105,7 +105,7 @@ class _Documented(Table):
         >>> fx.preset("paper-robot").with_values({"payload.mass": "50 kg"}).robot.payload.mass
         50.0
         """
-        return variants.with_values(self, values)
+        return _variants.with_values(self, values)
 
 
 class Study(_Documented):
