@@ -13,7 +13,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from tests import legs_of_all_kinds as legs
+from tests.helpers import legs_of_all_kinds as legs
 
 import flexapod as fx
 from flexapod.model import preset_text

@@ -5,6 +5,8 @@ from graphlib import CycleError, TopologicalSorter
 import grimp
 import pytest
 
+pytestmark = pytest.mark.meta
+
 
 def test_imports_make_no_circle():
     graph = grimp.build_graph("flexapod", exclude_type_checking_imports=True, cache_dir=None)

@@ -1,0 +1,82 @@
+"""Numbers of elements are merged in their order: none says a number of one that stands after it, which would win."""
+
+import numpy as np
+import pytest
+from tests.golden.net import STUDIES, text
+from tests.helpers.machines import NUT, SCREW, SOFT, TUBE, machine, study
+from tests.helpers.mechanisms import hexapod
+
+import flexapod as fx
+from flexapod import kinematics
+from flexapod.mechanics.elements.registry import OURS
+from flexapod.mechanics.leg.layout import LEG_PARAMETERS
+from flexapod.model import MATERIALS, Encoder, Joint, JointFriction, Loop, Motor, ScrewFriction, Tube
+from flexapod.model.leg.piston import Piston
+from flexapod.model.study.mount import BaseMotion, Mount
+from flexapod.solve.parameters import standings
+from flexapod.solve.shapes import robot_shapes
+
+pytestmark = pytest.mark.contract
+
+RUBS = SOFT.replace(friction=JointFriction(moment=2.0))
+MOUNT = Mount(stiffness=np.diag([3e8, 2e8, 5e8, 3e7, 2e7, 4e7]))
+MOVED = BaseMotion(of="acceleration", time=np.array([0.0, 1.0]), values=np.zeros((2, 6)))
+LAGGING = SCREW.replace(
+    command="servo", loop=Loop(stiffness=50.0, damping=0.5, integral=9.0), motor=Motor(bandwidth=150.0),
+    friction=ScrewFriction(torque=0.5), nut=NUT.replace(backlash=1e-5),
+)  # fmt: skip
+FLEXES = {"base_joint": Joint(stiffness=np.diag([2e7, 3e7, 5e7, 900.0, 800.0, 300.0]))}
+THICK = Piston.round(length=0.75, section=Tube(diameter=0.1), material=MATERIALS["steel"], shear=True)
+UNKEYED = {"drive": SCREW, "piston": TUBE.replace(keyed=False)}
+
+
+def with_legs(robot, parts):
+    """Robot whose legs have other parts."""
+    return robot.replace(legs=[leg.replace(**parts) for leg in robot.legs])
+
+
+def real(at, rate):
+    """A machine with all that an electric one may have; its loops are closed about a place."""
+    drive = LAGGING.replace(encoder=Encoder(at=at, rate=rate))
+    robot = machine(drive=drive, base_joint=RUBS, platform_joint=RUBS)
+    return study(robot.replace(base_mount=MOUNT, platform_mount=MOUNT, base_motion=MOVED), play="gap")
+
+
+LOOPS = [("rotor", "same"), *((at, rate) for at in ("stroke", "joint-to-joint") for rate in ("same", "rotor"))]
+MACHINES = (
+    {name: lambda name=name: fx.loads(text(name)) for name in STUDIES}
+    | {f"loop about {at}, rate of {rate}": lambda at=at, rate=rate: real(at, rate) for at, rate in LOOPS}
+    | {
+        "flexures": lambda: study(with_legs(hexapod("FPF"), FLEXES)),
+        "thick": lambda: study(with_legs(hexapod("UPS"), {"piston": THICK}), fidelity="lumped"),
+        "nut that turns": lambda: study(with_legs(hexapod("UCU"), UNKEYED)),
+    }
+)
+
+
+def kernel_of(name, at_rest):
+    """Layout of a machine's legs, and by leg what each element of it says."""
+    given = MACHINES[name]()
+    legs = kinematics.robot_limbs(given.robot)
+    shapes = robot_shapes(given.robot, given.simulation, legs)
+    stand = standings(given.robot, legs, 1e-3, at_rest=at_rest)
+    return shapes, [
+        [element.numbers(leg, one) for element in shapes.elements]
+        for leg, one in zip(given.robot.legs, stand, strict=True)
+    ]
+
+
+@pytest.mark.parametrize("at_rest", [False, True], ids=["moving", "at rest"])
+@pytest.mark.parametrize("name", MACHINES)
+def test_no_element_says_a_number_of_one_that_stands_after_it(name, at_rest):
+    shapes, said = kernel_of(name, at_rest)
+    first = {key: -1 for key, _ in (*LEG_PARAMETERS, *shapes.chain.parameters)}
+    owners = first | {key: i for i, element in enumerate(shapes.elements) for key, _ in element.parameters}
+    for of_leg in said:
+        late = {key for i, numbers in enumerate(of_leg) for key in numbers if owners[key] > i}
+        assert not late
+
+
+def test_these_machines_have_every_element_of_ours():
+    found = {element.kind for name in MACHINES for element in kernel_of(name, False)[0].elements}
+    assert {kind for kind in OURS if kind.parameters} <= found
