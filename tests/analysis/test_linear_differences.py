@@ -4,12 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.analysis.test_linear_poles import PRESETS, SAMPLES, known
-from tests.helpers.machines import SCREW, machine, study
-from tests.mechanics import test_motor_loop as motors
-from tests.mechanics.test_hydraulic_drive import OIL
-from tests.mechanics.test_screw_drive import EVERYTHING
-from tests.solve.test_frames_on_mounts import BASE, TOP
+from tests.helpers import motor_loops as motors
+from tests.helpers.machines import BASE, EVERYTHING, OIL, SCREW, TOP, machine, study
+from tests.helpers.samples import PRESETS, SAMPLES, known
 
 import flexapod as fx
 from flexapod import model

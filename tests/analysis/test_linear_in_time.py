@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from scipy.linalg import expm
+from tests.helpers import motor_loops as motors
 from tests.helpers.machines import study
-from tests.mechanics import test_motor_loop as motors
 
 import flexapod as fx
 from flexapod import kinematics, model

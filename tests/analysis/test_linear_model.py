@@ -4,11 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.analysis.test_vibration import TILTED, lumped
-from tests.helpers.machines import SCREW, machine, study
-from tests.mechanics import test_motor_loop as motors
-from tests.mechanics.test_hydraulic_drive import OIL
-from tests.mechanics.test_screw_drive import EVERYTHING
+from tests.helpers import motor_loops as motors
+from tests.helpers.machine_hexapod import TILTED, lumped
+from tests.helpers.machines import EVERYTHING, OIL, SCREW, machine, study
 
 import flexapod as fx
 from flexapod import kinematics, model

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from tests.helpers.machines import machine, study
-from tests.solve.test_frames_on_mounts import BASE, light
+from tests.helpers.machines import BASE, light, machine, study
 
 import flexapod as fx
 from flexapod.kinematics.rotations import matrix
@@ -23,7 +22,7 @@ def cross(a):
 
 def test_legs_without_mass_press_alike_on_plate_and_platform():
     """Between the sensors at both ends of a leg lies nothing; the plate's own inertia is behind the lower one."""
-    robot = light(machine(), base_mount=BASE)
+    robot = light(machine(), gravity=[0, 0, 0], base_mount=BASE)
     lin = fx.linearize(study(robot, fidelity="lumped"), inputs=["wrench", "floor"],
                        outputs=["force-sensor:base", "force-sensor:platform"])  # fmt: skip
     H = lin.at(HZ)
@@ -120,7 +119,7 @@ def test_what_jumps_with_a_force_is_the_response_without_end():
 def test_a_floor_that_turns_shakes_an_uneven_payload_of_a_turned_robot():
     """Massless springs, Newton and Euler in floor axes: M x'' + J' k J x = -(m (a + alpha x r), R I R' alpha)."""
     rpy, place = {"roll": 0.3, "pitch": -0.2, "yaw": 0.4}, {"surge": 0.05, "sway": -0.03, "heave": 0.04}
-    robot = light(machine(damping=0.0))
+    robot = light(machine(damping=0.0), gravity=[0, 0, 0])
     inertia = np.array([[120.0, 30.0, -20.0], [30.0, 90.0, 10.0], [-20.0, 10.0, 170.0]])
     robot = robot.replace(payload=robot.payload.replace(inertia=inertia, com=[0.1, -0.05, 0.15], tool=[0.2, 0.1, 0.5]))
     lin = fx.linearize(study(robot, fidelity="lumped"), {**place, **rpy}, inputs="floor", outputs=["tool", "com"])

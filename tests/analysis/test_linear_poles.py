@@ -1,16 +1,11 @@
 """Poles of the linear model against those of modes of unit stiffness, which are found in another way."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from scipy.optimize import linear_sum_assignment
-from tests.helpers.machines import SOFT, machine, study
-from tests.mechanics import test_motor_loop as motors
-from tests.mechanics.test_hydraulic_drive import OIL
-from tests.mechanics.test_screw_drive import EVERYTHING
-from tests.solve.test_frames_on_mounts import BASE, TOP
-from tests.solve.test_massless_modes import HEAVY, LIGHT, MOUNT, PLATE, SERVO
+from tests.helpers import motor_loops as motors
+from tests.helpers.machines import BASE, EVERYTHING, HEAVY, LIGHT, MOUNT, OIL, PLATE, SERVO, SOFT, TOP, machine, study
+from tests.helpers.samples import PRESETS, SAMPLES, known
 from tests.trial_element.maxwell import Maxwell
 
 import flexapod as fx
@@ -23,14 +18,7 @@ from flexapod.solve.modal.modes import loops_of, modal_damping, unit_modes
 
 pytestmark = pytest.mark.consistency
 
-PRESETS = ("paper-robot", "paper-robot-radii", "machine-hexapod", "nano-hexapod", "small-hexapod", "motion-base",
-           "flight-simulator", "tripod")  # fmt: skip
-SAMPLES = sorted(path.stem for path in Path("examples/mechanisms").glob("*.toml"))
 EVENLY = ("planar", "delta", "hexaglide")  # modes mix evenly: there the ratio of a mode is that of its own damper
-
-
-def known(name):
-    return fx.preset(name) if name in PRESETS else fx.load(f"examples/mechanisms/{name}.toml")
 
 
 def of_modes(given, pose=None):

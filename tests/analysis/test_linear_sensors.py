@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from tests.helpers.machines import machine, study
-from tests.mechanics import test_motor_loop as motors
-from tests.solve.test_frames_on_mounts import BASE
+from tests.helpers import motor_loops as motors
+from tests.helpers.machines import BASE, machine, study
 
 import flexapod as fx
 from flexapod.verification.cases.linear import stewart

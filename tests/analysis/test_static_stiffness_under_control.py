@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.solve.test_sampled_loops import PID, STUDY, K, T, height
+from tests.helpers.sampled_springs import PID, STUDY, K, T, height
 
 import flexapod as fx
 from flexapod.analysis.predicted_damping import control_effect, static_stiffness

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.linalg import solve_continuous_lyapunov
+from tests.helpers.machine_hexapod import TILTED, lumped, on_servos
 from tests.helpers.machines import machine
 from tests.helpers.machines import study as heaved
 
@@ -24,21 +25,6 @@ from flexapod.solve.statics.locked_robot import LockedPoses
 pytestmark = pytest.mark.consistency
 
 WHITE = np.array([1e-3, 1e5])
-TILTED = {"surge": 0.03, "heave": -0.02, "roll": 0.1, "yaw": 0.05}
-
-
-def lumped(**changes: object) -> model.Study:
-    """The machine hexapod with straight pistons and a drive that a force moves."""
-    study = fx.preset("machine-hexapod")
-    study = model.override(study, fidelity="lumped")
-    return study.replace(robot=on_servos(study.robot, stiffness=60e6, damping=60e3), **changes)
-
-
-def on_servos(robot: model.Robot, **servo: float) -> model.Robot:
-    """The robot as drawn, on drives of another kind."""
-    drive = model.ServoDrive(**servo)
-    legs = tuple(leg.replace(drive=drive, springs=()) for leg in robot.legs)
-    return robot.replace(legs=legs, geometry=None, heat=None, tolerances=None)
 
 
 def locked(study: model.Study, pose: dict | None = None) -> LockedPoses:

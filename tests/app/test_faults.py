@@ -9,8 +9,8 @@ import time
 from pathlib import Path
 
 import pytest
-from tests.app.test_interrupt import heed_interrupts
 from tests.helpers.short_runs import BRIEF
+from tests.helpers.started import heed_interrupts
 
 from flexapod.analysis import open_results, store
 from flexapod.analysis.checks import resource_limits

@@ -10,6 +10,7 @@ import time
 
 import pytest
 import typer
+from tests.helpers.started import heed_interrupts
 
 from flexapod.analysis import open_results
 from flexapod.app.cli import cli
@@ -22,13 +23,6 @@ LONG = [
     ("tolerance = 1e-4", 'step = "0.5 ms"\noutput_step = "10 ms"'),
     ('hold = "1 s" ', 'hold = "999 s" '),
 ]
-
-
-def heed_interrupts():
-    """A suite that runs in the background, or under nohup, passes on that signals are ignored."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    for name in ("SIGTERM", "SIGHUP"):
-        signal.signal(getattr(signal, name), signal.SIG_DFL)
 
 
 def terminal():

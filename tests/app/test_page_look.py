@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from tests.app.test_page_scene import difference
+from tests.helpers.browser import difference
 from tests.helpers.guests import until
 from tests.helpers.short_runs import SHORT, study_text
 

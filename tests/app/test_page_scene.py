@@ -5,6 +5,7 @@ import io
 import numpy as np
 import pytest
 from PIL import Image
+from tests.helpers.browser import difference
 from tests.helpers.guests import until
 from tests.helpers.short_runs import SHORT, SPACE, study_text
 
@@ -20,11 +21,6 @@ def picture(page) -> np.ndarray:
     """What the panel leaves of the page, (rows, columns, 3)."""
     shot = page.screenshot(clip={"x": 0, "y": 0, "width": 490, "height": 700})
     return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB"), dtype=int)
-
-
-def difference(one, other) -> int:
-    """Number of pixels that differ visibly."""
-    return int((np.abs(one - other).max(axis=-1) > 24).sum())
 
 
 def settled(page) -> np.ndarray:

@@ -12,9 +12,9 @@ from urllib.parse import urlsplit
 
 import netCDF4
 import pytest
-from tests.app.test_interrupt import heed_interrupts
 from tests.helpers.guests import guest, until
 from tests.helpers.short_runs import BRIEF
+from tests.helpers.started import heed_interrupts
 
 import flexapod as fx
 from flexapod.analysis import save

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
+from tests.helpers.six_springs import lengths, springs
 
 import flexapod as fx
 from flexapod.commissioning.feedforward.compensation import compensation
@@ -17,25 +18,9 @@ PLACE = 1e-12
 LEFT = 1e-11
 
 
-def springs() -> fx.Study:
-    study = fx.preset("paper-robot")
-    leg = study.robot.legs[0]
-    bare = leg.replace(
-        piston=fx.model.leg.piston.Piston(length=leg.piston.length, EA=leg.piston.EA, EI=leg.piston.EI, rhoA=0.0),
-        cylinder=leg.cylinder.replace(mass=0.0, inertia=0.0),
-    )
-    robot = study.robot.replace(legs=(bare,) * 6)
-    motion = fx.model.CombinedMotion(amplitudes={"roll": 0.3, "surge": 0.05, "yaw": 0.1}, duration=1.0)
-    return study.replace(robot=robot, motion=motion, simulation=fx.model.Simulation(fidelity="lumped"))
-
-
 def rigid(robot: fx.model.Robot, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Place and attitude of coordinates (6,) about the platform's origin, R = Rz Ry Rx."""
     return robot.home_position + x[:3], Rotation.from_euler("xyz", x[3:]).as_matrix()
-
-
-def lengths(robot: fx.model.Robot, p: np.ndarray, R: np.ndarray) -> np.ndarray:
-    return p + robot.platform_joints @ R.T - robot.base_joints
 
 
 def balance(robot: fx.model.Robot, unloaded: np.ndarray, p: np.ndarray, R: np.ndarray) -> np.ndarray:

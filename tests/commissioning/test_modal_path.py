@@ -4,26 +4,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
-from tests.commissioning.test_loaded_path import lengths, springs
+from tests.helpers.six_springs import AFTER, MOVING, lengths, turning
 
 import flexapod as fx
 from flexapod.commissioning.feedforward.modal_path import path_vibration
 
 pytestmark = pytest.mark.analytic
-
-MOVING, AFTER = 0.2, 0.03  # s
-
-
-def turning() -> fx.Study:
-    """Springs without mass, damping and weight under a payload whose tool is far from its mass."""
-    study = springs()
-    robot = study.robot
-    payload = robot.payload.replace(
-        com=[0.02, -0.03, 0.05], tool=[0.3, 0.1, 0.4], inertia=[[15.0, 2.0, -1.0], [2.0, 20.0, 1.0], [-1.0, 1.0, 12.0]]
-    )
-    bare = tuple(leg.replace(damping=0.0) for leg in robot.legs)
-    motion = fx.model.CombinedMotion(amplitudes={"roll": 0.3, "surge": 0.05, "yaw": 0.5}, duration=MOVING)
-    return study.replace(robot=robot.replace(legs=bare, payload=payload, gravity=[0, 0, 0]), motion=motion)
 
 
 def commanded(robot: fx.model.Robot, t: float) -> tuple[np.ndarray, np.ndarray]:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.commissioning.test_modal_path import AFTER, MOVING, turning
+from tests.helpers.six_springs import AFTER, MOVING, turning
 
 import flexapod as fx
 from flexapod.commissioning.feedforward.modal_path import path_vibration

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.io import savemat
+from tests.helpers.texts import UNIVERSAL
 
 import flexapod as fx
 import flexapod.control as fc
@@ -185,24 +186,6 @@ def test_another_version_of_matlab_is_told(tmp_path):
     assert "-v7" in (error.value.next_step or "")
 
 
-#: One response as the format has it: of real numbers and complex ones, single and double, evenly spaced and not.
-FORM = """\
-    -1
-    58
-{title}
-NONE
-NONE
-NONE
-NONE
-    4         0    0         0       NONE         4  -2       NONE         1   0
-{kind:10d}{count:10d}{even:10d}{start:13.5E}{step:13.5E}{zero:13.5E}
-        18    0    0    0 NONE                 NONE
-         8    0    0    0 NONE                 {top}
-        13    0    0    0 NONE                 {bottom}
-         0    0    0    0 NONE                 NONE
-{rows}
-    -1
-"""
 UNEVEN, REAL = np.array([2.0, 3.5, 7.0]), np.array([-1.25, 2.5, -3.75])
 
 
@@ -216,7 +199,7 @@ def form(kind, even):
     per_line = {(2, True): 6, (2, False): 3, (4, True): 4, (4, False): 2, (5, True): 3, (5, False): 2, (6, True): 2,
                 (6, False): 1}[kind, even]  # fmt: skip
     rows = ["".join(numbers[k : k + per_line]) for k in range(0, 3, per_line)]
-    return FORM.format(title="NONE", kind=kind, count=3, even=int(even), start=2.0 if even else 0.0,
+    return UNIVERSAL.format(title="NONE", kind=kind, count=3, even=int(even), start=2.0 if even else 0.0,
                        step=0.25 if even else 0.0, zero=0.0, top="m", bottom="N", rows="\n".join(rows))  # fmt: skip
 
 

@@ -115,14 +115,14 @@ def test_one_channel_has_one_unit(tmp_path):
 @pytest.mark.parametrize("given", [[2, 1], [1, 1], [-1, 1], [1, 2, 2], [3, 2, 1], [0, 1, 0.5]])
 def test_frequencies_rise_from_0_on(tmp_path, given):
     from scipy.io import savemat
-    from tests.control.test_measurements import FORM
+    from tests.helpers.texts import UNIVERSAL
 
     (tmp_path / "a.csv").write_text("f,a/b real,a/b imag\n" + "".join(f"{f},1,2\n" for f in given))
     savemat(tmp_path / "a.mat", {"frequency": np.array(given, dtype=float), "frf": np.ones(len(given), dtype=complex)})
     rows = "\n".join(f"{f:13.5E}{1:20.12E}{2:20.12E}" for f in given)
     (tmp_path / "a.uff").write_text(
-        FORM.format(title="NONE", kind=6, count=len(given), even=0, start=0.0, step=0.0, zero=0.0, top="m", bottom="N",
-                    rows=rows)
+        UNIVERSAL.format(title="NONE", kind=6, count=len(given), even=0, start=0.0, step=0.0, zero=0.0, top="m",
+                         bottom="N", rows=rows)
     )  # fmt: skip
     for name in ("a.csv", "a.mat", "a.uff"):
         with pytest.raises(InputError, match=r"is below 0|is not above the one before it") as error:

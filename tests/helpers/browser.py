@@ -4,6 +4,7 @@ import os
 import shutil
 from collections.abc import Callable, Iterator
 
+import numpy as np
 import pytest
 
 # Where software stands in for a graphics card it draws what WebGL asks for, not the rest of a page as well: that took
@@ -55,3 +56,8 @@ def axe() -> Callable[[object], list[str]]:
         ]
 
     return findings
+
+
+def difference(one, other) -> int:
+    """Number of pixels that differ visibly."""
+    return int((np.abs(one - other).max(axis=-1) > 24).sum())

@@ -5,12 +5,29 @@ from __future__ import annotations
 import numpy as np
 from tests.helpers.mechanisms import LOWER, UPPER, built, ring
 
-from flexapod.model import MATERIALS, Bearing, Nut, Rotor, ScrewDrive, Study
+from flexapod.mechanics.elements.springs import series_stiffness, springs_along
+from flexapod.model import (
+    MATERIALS,
+    AxialSpring,
+    Bearing,
+    Feedback,
+    HydraulicDrive,
+    JointFriction,
+    Loop,
+    Motor,
+    Nut,
+    Rotor,
+    ScrewDrive,
+    ScrewFriction,
+    Study,
+    Tube,
+)
 from flexapod.model.leg.cylinder import Cylinder
 from flexapod.model.leg.joint import Joint
 from flexapod.model.leg.leg import Leg
 from flexapod.model.leg.piston import Piston
 from flexapod.model.motion import AxisMotion
+from flexapod.model.study.mount import BaseMotion, Mount
 from flexapod.model.study.payload import Payload
 from flexapod.model.study.simulation import Simulation
 
@@ -49,3 +66,52 @@ SCREW = ScrewDrive(
     lead=0.01, root_diameter=0.02874, length=0.9, material=MATERIALS["steel"], bearing=BEARING, nut=NUT,
     rotor=Rotor(inertia=2e-3),
 )  # fmt: skip
+
+
+def light(robot, **more):
+    """The robot without gravity and without masses in its legs."""
+    legs = tuple(
+        leg.replace(piston=leg.piston.replace(rhoA=0.0, axial_inertia=0.0),
+                    cylinder=leg.cylinder.replace(mass=0.0, inertia=0.0, axial_inertia=0.0, com=0.0))
+        for leg in robot.legs
+    )  # fmt: skip
+    return robot.replace(legs=legs, **more)
+
+
+STILL = {"gravity": [0, 0, 0]}
+EVERYTHING = {"base_joint": SOFT, "platform_joint": SOFT, "springs": (AxialSpring(name="bracket", stiffness=5e8),)}
+
+
+def stiffness(robot, place="nut"):
+    """Of the springs at a place of the first leg, at home [N/m]."""
+    springs = [spring for spring in springs_along(robot.legs[0]) if spring.at == place]
+    return series_stiffness(springs, robot.home_lengths[0], 0.0)[0]
+
+
+OIL = HydraulicDrive(
+    bore=0.08, rod=0.056, stroke=0.5, bottom=0.05, dead_volume=[1e-4, 3e-4], bulk_modulus=1.2e9, leakage=1e-12
+)
+
+#: A frame below the machine and a plate below its payload, on springs.
+K = np.diag([3e8, 2e8, 5e8, 3e7, 2e7, 4e7]) + 0.0
+K[0, 4] = K[4, 0] = 2e7
+K[1, 2] = K[2, 1] = -5e7
+BASE = Mount(at=[0.05, -0.02, -0.1], stiffness=K, mass=150.0, inertia=np.diag([6.0, 7.0, 10.0]))
+TOP = Mount(at=[0.01, 0.03, 0.04], stiffness=0.6 * K, mass=30.0, inertia=np.diag([1.0, 1.5, 2.0]))
+
+#: Coordinates without mass, and some with.
+MOUNT = Mount(stiffness=np.diag([3e8, 3e8, 5e8, 1e8, 1e8, 1e8]))
+HEAVY = MOUNT.replace(mass=400.0, inertia=np.diag([40.0, 40.0, 70.0]))
+PLATE = Mount(stiffness=np.diag([8e8, 8e8, 9e8, 3e7, 3e7, 3e7]))
+LIGHT = TUBE.replace(rhoA=0.0, axial_inertia=0.0)
+SERVO = SCREW.replace(command="servo", loop=Feedback(stiffness=5e3, damping=20.0))
+
+#: Parts of which each brings numbers or coordinates of its own.
+RUBS = SOFT.replace(friction=JointFriction(moment=2.0))
+SPRUNG = Mount(stiffness=np.diag([3e8, 2e8, 5e8, 3e7, 2e7, 4e7]))
+MOVED = BaseMotion(of="acceleration", time=np.array([0.0, 1.0]), values=np.zeros((2, 6)))
+LAGGING = SCREW.replace(
+    command="servo", loop=Loop(stiffness=50.0, damping=0.5, integral=9.0), motor=Motor(bandwidth=150.0),
+    friction=ScrewFriction(torque=0.5), nut=NUT.replace(backlash=1e-5),
+)  # fmt: skip
+THICK = Piston.round(length=0.75, section=Tube(diameter=0.1), material=MATERIALS["steel"], shear=True)

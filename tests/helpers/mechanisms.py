@@ -127,3 +127,17 @@ ROBOTS = {
     "planar 3-PRR": lambda: planar("PRR"),
     "1-UPS": between_points,
 }
+
+
+AMPLITUDES = {"surge": 0.03, "sway": -0.02, "heave": 0.04, "roll": 0.15, "pitch": -0.12, "yaw": 0.2}
+TILTS, SHIFTS = ("heave", "roll", "pitch"), ("surge", "sway", "heave")
+OWN = {"3-RPS": TILTS, "3-SPR": TILTS, "3-PRS": TILTS, "3-UPS+UP": TILTS, "3-UPU": SHIFTS, "3-PUU": SHIFTS}
+MOVING = [name for name in ROBOTS if name != "1-UPS"]
+DURATION = 0.5
+
+
+def quintic(amplitude, t):
+    """Value, rate, acceleration of the law from rest to rest."""
+    s = t / DURATION
+    law = [s**3 * (10 - 15 * s + 6 * s**2), 30 * (s * (1 - s)) ** 2, 60 * s * (1 - s) * (1 - 2 * s)]
+    return amplitude * np.array(law) / DURATION ** np.arange(3)

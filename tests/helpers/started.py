@@ -53,3 +53,10 @@ def _said(number):
     with suppress(OSError):
         return Path(f"/proc/{number}/cmdline").read_bytes().replace(b"\0", b" ")[:200]
     return number
+
+
+def heed_interrupts():
+    """A suite that runs in the background, or under nohup, passes on that signals are ignored."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    for name in ("SIGTERM", "SIGHUP"):
+        signal.signal(getattr(signal, name), signal.SIG_DFL)

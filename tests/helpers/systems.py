@@ -1,15 +1,20 @@
 """Robots with balls at the platform as systems of equations, leg by leg, for tests of the solvers alone."""
 
+from dataclasses import replace
 from unittest.mock import patch
 
 import numpy as np
+from scipy.linalg import block_diag, eigh
 from tests.helpers.runs import uncompiled, uncompiled_kernel
 
 from flexapod.mechanics.leg.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS
 from flexapod.model import Simulation
-from flexapod.solve.batch import RestStates
+from flexapod.solve.batch import RestStates, matrices_at_rest
 from flexapod.solve.modal.structural_damping import per_loss
 from flexapod.solve.robot_system import robot_system
+from flexapod.solve.statics.equilibrium import equilibria
+from flexapod.solve.statics.ideal_robot import with_substitutes
+from flexapod.solve.statics.reduction import independent_motions
 from flexapod.solve.system import System
 
 PISTON = {"rhoA": 2.0, "EI": 2e3, "EA": 4e7, "Lp": 0.7, "mouth": 0.4, "piston_axial_inertia": 1e-4, "zeta": 0.01}
@@ -69,3 +74,47 @@ def of_robot(robot, **simulation):
     settings = Simulation(**simulation)
     with patch("flexapod.solve.robot_system.kernel", uncompiled_kernel):
         return robot_system(robot, settings, per_loss(robot, settings))
+
+
+THIRDS, EIGHT = [0.0, 120.0, 240.0], np.array([20.0, 70, 110, 160, 200, 250, 290, 340])
+
+
+def hold(system, x, name, legs=slice(None)):
+    held = system.held.copy()
+    held[legs, system.kernel.shapes.index(name)] = True
+    new = replace(system, held=held)
+    return new, replace(x, drive=np.zeros((len(x), new.legs, new.ports.size)))
+
+
+def tripod(**more):
+    """3-RPS: hinges along the tangents, so that beta is held at zero."""
+    return hold(*robot(ring(0.35, THIRDS), ring(0.2, THIRDS), tangents(THIRDS), **more), "beta")
+
+
+def hexapod(**more):
+    at = np.array([15.0, 105.0, 135.0, 225.0, 255.0, 345.0])
+    return robot(ring(0.4, at), ring(0.25, np.roll(at, 1) - 60.0), tangents(at), **more)
+
+
+def octopod(**more):
+    crossed = EIGHT + np.tile([25.0, -25.0], 4)
+    return robot(ring(0.45, EIGHT), ring(0.3, crossed), tangents(EIGHT), **more)
+
+
+def solved(system, x, **more):
+    command = x.q[..., system.ports] + more.get("gap", 0.0)
+    wrench = more.get("wrench", np.array([50.0, -30, -100, 3, -2, 4.0]))
+    found = equilibria(system, x, command, np.zeros_like(command), wrench)
+    assert (found.code == 0).all()
+    return found.states, matrices_at_rest(system, found.states, wrench), command, wrench
+
+
+def frequencies(system, x, m):
+    found = independent_motions(with_substitutes(system, x), m)
+    motions = found.flat(system, np.eye(found.columns.size)[None])[0]
+    M = motions.T @ dense_mass(system, m) @ motions
+    return np.sqrt(eigh(found.stiffness(system, m)[0], M, eigvals_only=True))
+
+
+def dense_mass(system, m):
+    return block_diag(*m.M[0], m.payload_M[0])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from tests.helpers.chains import NAMED, PLANES, as_mechanism
-from tests.helpers.mechanisms import ROBOTS, THREE, built, leg, ring
+from tests.helpers.mechanisms import AMPLITUDES, DURATION, MOVING, OWN, ROBOTS, THREE, built, leg, quintic, ring
 from tests.oracles import virtual_power
 
 from flexapod import kinematics
@@ -13,19 +13,7 @@ from flexapod.model import CombinedMotion
 
 pytestmark = pytest.mark.consistency
 
-AMPLITUDES = {"surge": 0.03, "sway": -0.02, "heave": 0.04, "roll": 0.15, "pitch": -0.12, "yaw": 0.2}
-TILTS, SHIFTS = ("heave", "roll", "pitch"), ("surge", "sway", "heave")
-OWN = {"3-RPS": TILTS, "3-SPR": TILTS, "3-PRS": TILTS, "3-UPS+UP": TILTS, "3-UPU": SHIFTS, "3-PUU": SHIFTS}
 OWN |= {"planar 3-RPR": PLANES["xy"], "planar 3-PRR": PLANES["xy"]}
-MOVING = [name for name in ROBOTS if name != "1-UPS"]
-DURATION = 0.5
-
-
-def quintic(amplitude, t):
-    """Value, rate, acceleration of the law from rest to rest."""
-    s = t / DURATION
-    law = [s**3 * (10 - 15 * s + 6 * s**2), 30 * (s * (1 - s)) ** 2, 60 * s * (1 - s) * (1 - 2 * s)]
-    return amplitude * np.array(law) / DURATION ** np.arange(3)
 
 
 def parts(chain, names, values):

@@ -10,15 +10,13 @@ import sys
 import time
 from pathlib import Path
 
-import numpy as np
 import pytest
+from tests.helpers.counted_compiles import Compile, doubled, functions
 
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.kinematics.robot import home_pose
 from flexapod.mechanics.symbolic import cache, compiler
-from flexapod.mechanics.symbolic.compiler import CompiledFunction, compiled_library, written_library
-from flexapod.mechanics.symbolic.functions import NamedFunction
-from flexapod.mechanics.symbolic.vocabulary import symbol
+from flexapod.mechanics.symbolic.compiler import compiled_library, written_library
 from flexapod.model import preset
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.robot_system import robot_system
@@ -31,31 +29,11 @@ pytestmark = [
 ]
 
 
-def functions(factor: float) -> list[NamedFunction]:
-    x = symbol("x", 3)
-    return [NamedFunction("scaled", [("x", x)], [("y", factor * x)])]
-
-
-class Compile:
-    """`compile(2.0)`: the function that doubles, through the cache; counts how often it was built."""
-
-    def __init__(self) -> None:
-        self.built = 0
-
-    def __call__(self, factor: float = 2.0, *comments: str) -> np.ndarray:
-        def build() -> list[NamedFunction]:
-            self.built += 1
-            return functions(factor)
-
-        library, signatures = compiled_library([factor, *comments], build, compiler.compiler())
-        return CompiledFunction(library, "scaled", signatures["scaled"])([1.0, 2.0, 3.0])[0]
-
-
 @pytest.fixture(scope="module")
 def kernel(tmp_path_factory) -> Path:
     """A cache with one kernel that this process has not loaded: made by another one."""
     folder = tmp_path_factory.mktemp("made") / "cache"
-    code = "from tests.mechanics.test_compile_cache import Compile; print(Compile()())"
+    code = "from tests.helpers.counted_compiles import Compile; print(Compile()())"
     python(code, FLEXAPOD_CACHE=str(folder))
     (only,) = libraries(folder)
     return only
@@ -84,10 +62,6 @@ def python(code: str, **environment: str) -> str:
 
 def libraries(folder: Path) -> list[Path]:
     return sorted(folder.glob("*.so"))
-
-
-def doubled(values: np.ndarray) -> bool:
-    return values.tolist() == [2.0, 4.0, 6.0]  # doubling rounds nothing
 
 
 def test_compiled_once_and_kept_for_this_user_alone(scaled, folder):
@@ -166,7 +140,7 @@ def test_a_damaged_note_of_what_equations_are(scaled, folder, text):
 def test_eight_processes_on_an_empty_folder(folder, tmp_path):
     code = (
         "import sys, time, pathlib\n"
-        "from tests.mechanics.test_compile_cache import Compile, doubled\n"
+        "from tests.helpers.counted_compiles import Compile, doubled\n"
         "import casadi\n"
         "compile, here = Compile(), pathlib.Path(sys.argv[1])\n"
         "(here / f'ready-{sys.argv[2]}').touch()\n"
@@ -230,7 +204,7 @@ def test_a_damaged_library_does_not_kill_a_new_process(folder, kernel):
     # Loading half a library ends the process with a bus error: it must be noticed before.
     folder.mkdir(mode=0o700)
     (folder / kernel.name).write_bytes(kernel.read_bytes()[:6000])
-    assert python("from tests.mechanics.test_compile_cache import *; c = Compile(); print(doubled(c()), c.built)") == (
+    assert python("from tests.helpers.counted_compiles import *; c = Compile(); print(doubled(c()), c.built)") == (
         "True 1\n"
     )
 

@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 
 import pytest
-from tests.mechanics.test_compile_cache import Compile
+from tests.helpers.counted_compiles import Compile
 
 from flexapod.common.errors import ComputationError
 from flexapod.mechanics.symbolic import compiler

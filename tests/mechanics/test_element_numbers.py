@@ -3,30 +3,20 @@
 import numpy as np
 import pytest
 from tests.golden.net import STUDIES, text
-from tests.helpers.machines import NUT, SCREW, SOFT, TUBE, machine, study
+from tests.helpers.machines import LAGGING, MOVED, RUBS, SCREW, SPRUNG, THICK, TUBE, machine, study
 from tests.helpers.mechanisms import hexapod
 
 import flexapod as fx
 from flexapod import kinematics
 from flexapod.mechanics.elements.registry import OURS
 from flexapod.mechanics.leg.layout import LEG_PARAMETERS
-from flexapod.model import MATERIALS, Encoder, Joint, JointFriction, Loop, Motor, ScrewFriction, Tube
-from flexapod.model.leg.piston import Piston
-from flexapod.model.study.mount import BaseMotion, Mount
+from flexapod.model import Encoder, Joint
 from flexapod.solve.parameters import standings
 from flexapod.solve.shapes import robot_shapes
 
 pytestmark = pytest.mark.contract
 
-RUBS = SOFT.replace(friction=JointFriction(moment=2.0))
-MOUNT = Mount(stiffness=np.diag([3e8, 2e8, 5e8, 3e7, 2e7, 4e7]))
-MOVED = BaseMotion(of="acceleration", time=np.array([0.0, 1.0]), values=np.zeros((2, 6)))
-LAGGING = SCREW.replace(
-    command="servo", loop=Loop(stiffness=50.0, damping=0.5, integral=9.0), motor=Motor(bandwidth=150.0),
-    friction=ScrewFriction(torque=0.5), nut=NUT.replace(backlash=1e-5),
-)  # fmt: skip
 FLEXES = {"base_joint": Joint(stiffness=np.diag([2e7, 3e7, 5e7, 900.0, 800.0, 300.0]))}
-THICK = Piston.round(length=0.75, section=Tube(diameter=0.1), material=MATERIALS["steel"], shear=True)
 UNKEYED = {"drive": SCREW, "piston": TUBE.replace(keyed=False)}
 
 
@@ -39,7 +29,7 @@ def real(at, rate):
     """A machine with all that an electric one may have; its loops are closed about a place."""
     drive = LAGGING.replace(encoder=Encoder(at=at, rate=rate))
     robot = machine(drive=drive, base_joint=RUBS, platform_joint=RUBS)
-    return study(robot.replace(base_mount=MOUNT, platform_mount=MOUNT, base_motion=MOVED), play="gap")
+    return study(robot.replace(base_mount=SPRUNG, platform_mount=SPRUNG, base_motion=MOVED), play="gap")
 
 
 LOOPS = [("rotor", "same"), *((at, rate) for at in ("stroke", "joint-to-joint") for rate in ("same", "rotor"))]

@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from tests.helpers.machines import NUT, SCREW, SOFT
+from tests.helpers.machines import LAGGING, MOVED, NUT, RUBS, SCREW, SOFT, SPRUNG, THICK
 from tests.helpers.moving import moving
 from tests.helpers.runs import with_legs
-from tests.mechanics.test_element_numbers import LAGGING, MOUNT, MOVED, RUBS, THICK
 
 import flexapod as fx
 from flexapod import kinematics
@@ -42,7 +41,7 @@ PARTS = {
     "oil": ({"drive": OIL}, {}, {}),
     "joints that rub": ({"base_joint": RUBS, "platform_joint": RUBS}, {}, {}),
     "drive that rubs": ({"drive": ServoDrive(stiffness=1e6, damping=2e3, friction=StrokeFriction(force=20.0))}, {}, {}),
-    "plates on mounts": ({}, {"base_mount": MOUNT, "platform_mount": MOUNT}, {}),
+    "plates on mounts": ({}, {"base_mount": SPRUNG, "platform_mount": SPRUNG}, {}),
     "base that moves": ({}, {"base_motion": MOVED}, {}),
     "clearance": ({"guide": Guide(gland=2e8, head=2e8, clearance=1e-5)}, {}, {}),
     "thick piston": ({"piston": THICK}, {}, {}),

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize_scalar
-from tests.helpers.machines import SCREW, machine, study, symmetric
+from tests.helpers.machines import OIL, SCREW, light, machine, study, symmetric
 from tests.helpers.runs import balance, run_robot
 from tests.helpers.texts import replaced
-from tests.mechanics.test_soft_joints import light
 
 import flexapod as fx
 from flexapod import model
@@ -16,7 +15,7 @@ from flexapod.analysis.description.robot_description import describe
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.errors import InputError
 from flexapod.mechanics.elements.springs import springs_along
-from flexapod.model import AxialSpring, HydraulicDrive, HydraulicLimits
+from flexapod.model import AxialSpring, HydraulicLimits
 from flexapod.output.text import html
 from flexapod.output.text.check import check_items
 from flexapod.output.text.study import study_items
@@ -25,9 +24,6 @@ from flexapod.solve.modal.structural_damping import loss_frequency
 
 pytestmark = pytest.mark.consistency
 
-OIL = HydraulicDrive(
-    bore=0.08, rod=0.056, stroke=0.5, bottom=0.05, dead_volume=[1e-4, 3e-4], bulk_modulus=1.2e9, leakage=1e-12
-)
 BETA, S = 1.2e9, 0.5
 STILL = {"gravity": [0, 0, 0]}
 

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from tests.helpers.mechanisms import LOWER, UPPER, built, hexapod, leg, ring, rod, sliders, tricept
 from tests.helpers.runs import uncompiled_kernel
+from tests.helpers.systems import hold, robot, solved, tangents
 from tests.helpers.systems import ring as circle
-from tests.helpers.systems import robot, tangents
-from tests.solve.test_mechanism_statics import hold, solved
 
 from flexapod import kinematics
 from flexapod.analysis.results.poses import poses_about_home

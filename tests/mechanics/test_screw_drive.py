@@ -2,27 +2,29 @@
 
 import numpy as np
 import pytest
-from tests.helpers.machines import BEARING, NUT, SCREW, SOFT, machine, study, symmetric
+from tests.helpers.machines import (
+    BEARING,
+    EVERYTHING,
+    NUT,
+    SCREW,
+    SOFT,
+    STILL,
+    light,
+    machine,
+    stiffness,
+    study,
+    symmetric,
+)
 from tests.helpers.mechanisms import ROBOTS, three_rps
 from tests.helpers.runs import balance, run_robot
-from tests.mechanics.test_soft_joints import light
 
 import flexapod as fx
 from flexapod.common.errors import InputError
-from flexapod.mechanics.elements.springs import series_stiffness, springs_along
 from flexapod.model import AxialSpring, AxisMotion, Feedback, Joint, PrescribedDrive, ServoDrive, Simulation, Study
 
 pytestmark = pytest.mark.consistency
 
-STILL = {"gravity": [0, 0, 0]}
 NEVER = 1e17  # N/m
-EVERYTHING = {"base_joint": SOFT, "platform_joint": SOFT, "springs": (AxialSpring(name="bracket", stiffness=5e8),)}
-
-
-def stiffness(robot, place="nut"):
-    """Of the springs at a place of the first leg, at home [N/m]."""
-    springs = [spring for spring in springs_along(robot.legs[0]) if spring.at == place]
-    return series_stiffness(springs, robot.home_lengths[0], 0.0)[0]
 
 
 def endless(**more):

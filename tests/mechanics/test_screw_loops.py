@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from tests.helpers.machines import NUT, SCREW, machine, study, symmetric
+from tests.helpers.machines import EVERYTHING, NUT, SCREW, light, machine, study, symmetric
 from tests.helpers.runs import balance, run_robot
 from tests.helpers.texts import replaced
-from tests.mechanics.test_screw_drive import EVERYTHING
-from tests.mechanics.test_soft_joints import light
 
 import flexapod as fx
 from flexapod import model

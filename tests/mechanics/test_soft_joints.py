@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.helpers.machines import SOFT, machine, study, symmetric
+from tests.helpers.machines import SOFT, light, machine, study, symmetric
 from tests.helpers.mechanisms import three_spr
 from tests.helpers.runs import balance, run_robot
 
@@ -26,16 +26,6 @@ def joint(along, across=None, **more):
 
 def ends(joint):
     return {"base_joint": joint, "platform_joint": joint}
-
-
-def light(robot, **more):
-    """The robot without gravity and without masses in its legs."""
-    legs = tuple(
-        leg.replace(piston=leg.piston.replace(rhoA=0.0, axial_inertia=0.0),
-                    cylinder=leg.cylinder.replace(mass=0.0, inertia=0.0, axial_inertia=0.0, com=0.0))
-        for leg in robot.legs
-    )  # fmt: skip
-    return robot.replace(legs=legs, **more)
 
 
 @pytest.mark.parametrize("fidelity", ["lumped", "assumed-modes"])

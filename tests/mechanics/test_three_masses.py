@@ -8,9 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import eigh
-from tests.helpers.machines import SCREW, symmetric
-from tests.mechanics.test_screw_drive import STILL
-from tests.mechanics.test_soft_joints import light
+from tests.helpers.machines import SCREW, STILL, light, symmetric
 
 import flexapod as fx
 from flexapod.mechanics.elements.springs import springs_along

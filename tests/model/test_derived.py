@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.model.test_written import plain
+from tests.helpers.tables import plain
 
 from flexapod.common.errors import InputError
 from flexapod.common.tables.reference import reference

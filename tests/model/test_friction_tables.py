@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.model.test_real_parts import STUDY
+from tests.helpers.texts import REAL_PARTS
 
 import flexapod as fx
 from flexapod.common.errors import InputError
@@ -25,14 +25,14 @@ TABLES = {
 def of(key, text):
     """A machine with a table of friction."""
     old, new = PLACES[key]
-    assert STUDY.count(old) == 1
-    return fx.loads(STUDY.replace(old, new % text), path="mine.toml")
+    assert REAL_PARTS.count(old) == 1
+    return fx.loads(REAL_PARTS.replace(old, new % text), path="mine.toml")
 
 
 @pytest.mark.parametrize("key", TABLES)
 def test_round_trip(key):
     study = of(key, TABLES[key])
-    assert fx.loads(to_toml(study)).robot == study.robot != fx.loads(STUDY).robot
+    assert fx.loads(to_toml(study)).robot == study.robot != fx.loads(REAL_PARTS).robot
 
 
 def test_moments_by_load():
@@ -72,6 +72,6 @@ def test_what_makes_no_sense_is_refused(key, text, said):
 
 def test_friction_of_what_does_not_turn_or_slide_is_refused():
     rubs = JointFriction(moment=1.0)
-    leg = fx.loads(STUDY).robot.legs[0]
+    leg = fx.loads(REAL_PARTS).robot.legs[0]
     with pytest.raises(InputError, match="does not turn"):
         leg.replace(chain="UPF", platform_joint=leg.platform_joint.replace(friction=rubs))

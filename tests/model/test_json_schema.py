@@ -6,7 +6,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from tests.model.test_written import respelled
+from tests.helpers.tables import respelled
 from tools.damaged import WHOLE
 from typer.testing import CliRunner
 

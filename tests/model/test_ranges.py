@@ -5,20 +5,14 @@ from typing import Annotated, get_args, get_origin
 import numpy as np
 import pytest
 from annotated_types import Ge, Le, Lt
+from tests.helpers.tables import classes
 
 from flexapod import model
 from flexapod.common.errors import InputError
-from flexapod.common.tables.base import Frozen, Quantity
+from flexapod.common.tables.base import Quantity
 from flexapod.common.units import DIMENSIONS
 
 pytestmark = pytest.mark.unit
-
-
-def classes(base=Frozen):
-    for cls in base.__subclasses__():
-        if cls.__module__.startswith("flexapod."):  # not those of other tests
-            yield cls
-        yield from classes(cls)
 
 
 def numbers():

@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 from tests.helpers.machines import BEARING, NUT, SCREW, SOFT, machine, study, symmetric
+from tests.helpers.texts import REAL_PARTS
 from typer.testing import CliRunner
 
 import flexapod as fx
@@ -36,42 +37,10 @@ from flexapod.solve.statics.parts import part_stiffness
 pytestmark = pytest.mark.unit
 
 UM = 1e6  # N/m
-STUDY = """
-[robot]
-type = "6-UPS"
-base = { radius = "700 mm", half_angle = "10 deg" }
-platform = { radius = "400 mm", half_angle = "10 deg" }
-home_height = "1 m"
-[payload]
-mass = "1000 kg"
-inertia = [120, 120, 180]
-com = [0, 0, 0.15]
-[leg]
-cylinder = { mass = "28 kg", com = "300 mm", inertia = 2.1, mouth = "600 mm" }
-piston = { diameter = "60 mm", inner_diameter = "40 mm", length = "750 mm", material = "steel" }
-base_joint = { stiffness = { axial = "200 N/um", radial = "150 N/um", loss = 0.01 } }
-springs = { bracket = "500 N/um", flange = { stiffness = "900 N/um", at = "base", damping = "2 kN s/m" } }
-[leg.drive]
-type = "screw"
-lead = "10 mm"
-root_diameter = "28.74 mm"
-length = "900 mm"
-material = "steel"
-mounting = "fixed-fixed"
-bearing = { stiffness = "780 N/um", position = "60 mm" }
-nut = { rigidity = "1130 N/um", preload = "2 kN", dynamic_load = "30.8 kN" }
-rotor = { inertia = "2e-3 kg m^2", ratio = 2 }
-command = "servo"
-loop = { stiffness = "5 kN m/rad", damping = "20 N m s/rad" }
-[motion]
-type = "heave"
-amplitude = "20 mm"
-duration = "0.1 s"
-"""
 
 
 def refused(*pairs):
-    text = STUDY
+    text = REAL_PARTS
     for old, new in pairs:
         assert text.count(old) == 1
         text = text.replace(old, new)
@@ -153,7 +122,7 @@ def test_the_compliance_is_a_polynomial_about_home():
 
 
 def test_a_study_with_a_screw_is_written_and_read_again():
-    given = fx.loads(STUDY)
+    given = fx.loads(REAL_PARTS)
     assert fx.loads(to_toml(given)).robot == given.robot
     assert given.robot.legs[0].screw.inertia == pytest.approx(
         7800 * 0.9 * np.pi / 32 * 0.02874**4 + 4 * 2e-3, rel=1e-12
@@ -252,9 +221,9 @@ def test_a_thrust_beyond_the_preload_is_remarked_on():
 @pytest.fixture
 def file(tmp_path):
     path = tmp_path / "machine.toml"
-    path.write_text(STUDY.replace('command = "servo"', "").replace('loop = { stiffness = "5 kN m/rad", damping = "20 '
-                                                                   'N m s/rad" }', "") + '[simulation]\nfidelity = '
-                    '"lumped"\nstep = "1 ms"\n', encoding="utf-8")  # fmt: skip
+    text = REAL_PARTS.replace('command = "servo"', "")
+    text = text.replace('loop = { stiffness = "5 kN m/rad", damping = "20 N m s/rad" }', "")
+    path.write_text(text + '[simulation]\nfidelity = "lumped"\nstep = "1 ms"\n', encoding="utf-8")
     return path
 
 

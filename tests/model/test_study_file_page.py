@@ -4,8 +4,8 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from tests.helpers.tables import classes
 from tests.helpers.texts import replaced
-from tests.model.test_ranges import classes
 
 from flexapod.common.errors import InputError
 from flexapod.common.tables.reference import example_line, plain_path, reference

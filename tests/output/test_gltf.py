@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.helpers.machines import BASE, TOP
 from tests.helpers.machines import study as machine_study
 from tests.helpers.mechanisms import ROBOTS as KINDS
 from tests.helpers.readers import GlbReader, z_up
 from tests.helpers.stepped import section
-from tests.solve.test_frames_on_mounts import BASE, TOP
 
 import flexapod as fx
 from flexapod.analysis.results.variables import VARIABLES

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from tests.helpers.one_leg import LEGS, PISTON, hertz, squared_frequencies
 from tests.oracles import beams
-from tests.solve.test_leg_frequencies import LEGS, PISTON, hertz, squared_frequencies
 
 from flexapod.common.errors import InputError
 from flexapod.model import Actuator, Simulation

@@ -4,9 +4,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from tests.helpers.machines import SCREW, SOFT, machine, study
+from tests.helpers.machines import BASE, SCREW, SOFT, TOP, machine, study
 from tests.helpers.runs import balance, collect
-from tests.solve.test_frames_on_mounts import BASE, TOP
 
 from flexapod.model import Feedback, JointFriction, ScrewFriction
 from flexapod.solve.time.native import LARGE

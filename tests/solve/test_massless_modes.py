@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from tests.helpers.machines import SCREW, TUBE, machine, study
+from tests.helpers.machines import HEAVY, LIGHT, MOUNT, PLATE, SCREW, SERVO, TUBE, machine, study
 
 import flexapod as fx
 from flexapod.model import Feedback, Motor, preset_text
-from flexapod.model.study.mount import Mount
 from flexapod.solve.modal.eigenproblem import damping_ratios, natural_modes, poles
 
 pytestmark = pytest.mark.analytic
@@ -106,13 +105,6 @@ def test_motors_that_lag_by_nothing_leave_modes_without_mass_alone():
     ratios = at_once.damping_ratio.values[at_once.damping_ratio.values < 1]
     assert len(found) == len(ratios) == 24
     np.testing.assert_allclose(np.sort(found), np.sort(ratios), rtol=1e-4)
-
-
-MOUNT = Mount(stiffness=np.diag([3e8, 3e8, 5e8, 1e8, 1e8, 1e8]))
-HEAVY = MOUNT.replace(mass=400.0, inertia=np.diag([40.0, 40.0, 70.0]))
-PLATE = Mount(stiffness=np.diag([8e8, 8e8, 9e8, 3e7, 3e7, 3e7]))
-LIGHT = TUBE.replace(rhoA=0.0, axial_inertia=0.0)
-SERVO = SCREW.replace(command="servo", loop=Feedback(stiffness=5e3, damping=20.0))
 
 
 @pytest.mark.parametrize(("robot", "count"), [

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 from tests.helpers.chains import NAMED, as_mechanism
-from tests.helpers.mechanisms import ROBOTS
-from tests.kinematics.test_mechanism_motions import AMPLITUDES, DURATION, MOVING, OWN, quintic
+from tests.helpers.mechanisms import AMPLITUDES, DURATION, MOVING, OWN, ROBOTS, quintic
 from tests.oracles import virtual_power
 
 from flexapod import kinematics

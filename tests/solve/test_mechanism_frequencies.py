@@ -8,8 +8,7 @@ from numpy.polynomial import Polynomial
 from scipy.linalg import eigh, null_space
 from tests.helpers.beam_frames import as_frame
 from tests.helpers.chains import NAMED
-from tests.helpers.mechanisms import PISTON, ROBOTS, THREE, built, hexapod, leg, ring, tangents
-from tests.kinematics.test_mechanism_motions import AMPLITUDES, OWN
+from tests.helpers.mechanisms import AMPLITUDES, OWN, PISTON, ROBOTS, THREE, built, hexapod, leg, ring, tangents
 from tests.oracles import frames
 
 import flexapod as fx

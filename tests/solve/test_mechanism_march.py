@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 from tests.helpers.chains import NAMED, as_mechanism
-from tests.helpers.mechanisms import ROBOTS
-from tests.kinematics.test_mechanism_motions import AMPLITUDES, OWN
+from tests.helpers.mechanisms import AMPLITUDES, OWN, ROBOTS
 from tests.oracles import virtual_power
 
 import flexapod as fx

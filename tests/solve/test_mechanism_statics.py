@@ -5,45 +5,32 @@ from functools import partial
 
 import numpy as np
 import pytest
-from scipy.linalg import block_diag, eigh, null_space
+from scipy.linalg import eigh, null_space
 from tests.helpers.mechanisms import ROBOTS as KINDS
-from tests.helpers.systems import of_robot, ring, robot, tangents
+from tests.helpers.systems import (
+    THIRDS,
+    frequencies,
+    hexapod,
+    hold,
+    octopod,
+    of_robot,
+    ring,
+    robot,
+    solved,
+    tripod,
+)
 
 from flexapod import kinematics
 from flexapod.kinematics.rotations import displace_pose
 from flexapod.model.study.payload import Payload
-from flexapod.solve.batch import matrices_at_rest, residual_at_rest
+from flexapod.solve.batch import residual_at_rest
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.statics.block_arrow import arrow_solve
-from flexapod.solve.statics.equilibrium import _Acts, _loaded_slowly, equilibria
+from flexapod.solve.statics.equilibrium import _Acts, _loaded_slowly
 from flexapod.solve.statics.ideal_robot import with_substitutes
 from flexapod.solve.statics.reduction import independent_motions
 
 pytestmark = pytest.mark.consistency
-
-THIRDS, EIGHT = [0.0, 120.0, 240.0], np.array([20.0, 70, 110, 160, 200, 250, 290, 340])
-
-
-def hold(system, x, name, legs=slice(None)):
-    held = system.held.copy()
-    held[legs, system.kernel.shapes.index(name)] = True
-    new = replace(system, held=held)
-    return new, replace(x, drive=np.zeros((len(x), new.legs, new.ports.size)))
-
-
-def tripod(**more):
-    """3-RPS: hinges along the tangents, so that beta is held at zero."""
-    return hold(*robot(ring(0.35, THIRDS), ring(0.2, THIRDS), tangents(THIRDS), **more), "beta")
-
-
-def hexapod(**more):
-    at = np.array([15.0, 105.0, 135.0, 225.0, 255.0, 345.0])
-    return robot(ring(0.4, at), ring(0.25, np.roll(at, 1) - 60.0), tangents(at), **more)
-
-
-def octopod(**more):
-    crossed = EIGHT + np.tile([25.0, -25.0], 4)
-    return robot(ring(0.45, EIGHT), ring(0.3, crossed), tangents(EIGHT), **more)
 
 
 def planar(**more):
@@ -75,14 +62,6 @@ def of_kind(name, **simulation):
 
 for kind in ("6-UCU", "6-FPF", "3-UPS+UP", "3-PUU", "6-RUS", "planar 3-PRR"):
     ROBOTS[kind] = partial(of_kind, kind)
-
-
-def solved(system, x, **more):
-    command = x.q[..., system.ports] + more.get("gap", 0.0)
-    wrench = more.get("wrench", np.array([50.0, -30, -100, 3, -2, 4.0]))
-    found = equilibria(system, x, command, np.zeros_like(command), wrench)
-    assert (found.code == 0).all()
-    return found.states, matrices_at_rest(system, found.states, wrench), command, wrench
 
 
 def constraints(dense, system):
@@ -156,17 +135,6 @@ def test_stiffness_is_the_derivative_of_the_balance(name):
     np.testing.assert_allclose(of_payload, on_payload, atol=1e-6 * np.abs(states.lam).max())
     moved = (m.J @ dq[..., None] - m.P @ dy[:, None, :, None])[..., 0]
     np.testing.assert_allclose(closures, moved, atol=1e-8)
-
-
-def frequencies(system, x, m):
-    found = independent_motions(with_substitutes(system, x), m)
-    motions = found.flat(system, np.eye(found.columns.size)[None])[0]
-    M = motions.T @ dense_mass(system, m) @ motions
-    return np.sqrt(eigh(found.stiffness(system, m)[0], M, eigvals_only=True))
-
-
-def dense_mass(system, m):
-    return block_diag(*m.M[0], m.payload_M[0])
 
 
 def test_modes_are_those_of_the_null_space_found_numerically():

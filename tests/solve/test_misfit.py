@@ -10,8 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.optimize import minimize
-from tests.helpers.systems import ring, robot, tangents
-from tests.solve.test_mechanism_statics import EIGHT
+from tests.helpers.systems import EIGHT, ring, robot, tangents
 
 from flexapod.kinematics.rotations import quaternion
 from flexapod.solve.statics.equilibrium import equilibria

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.verification.test_oracle_mechanisms import orsino_motion
+from tests.oracles.mechanism_cases import orsino_motion
 
 from flexapod.kinematics import RigidPoses
 from flexapod.kinematics.laws import Law

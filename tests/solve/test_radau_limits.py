@@ -4,8 +4,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from tests.helpers.free_actuator import free, inertia
 from tests.helpers.runs import paper_robot, run_actuator, run_robot, with_legs
-from tests.solve.test_free_actuator import free, inertia
 
 from flexapod import simulate
 from flexapod.model import CsvWrench, Load, StepWrench, override, preset

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.helpers.runs import paper_robot
-from tests.solve.test_mechanism_statics import hexapod, hold, octopod, tripod
+from tests.helpers.systems import hexapod, hold, octopod, tripod
 
 from flexapod import kinematics
 from flexapod.common.errors import ComputationError

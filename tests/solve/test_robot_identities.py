@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from tests.helpers.layouts import layout
-from tests.helpers.systems import CYLINDER, PISTON, packed, robot
+from tests.helpers.systems import CYLINDER, PISTON, frequencies, hexapod, packed, robot, solved
 from tests.oracles import beams
-from tests.solve.test_mechanism_statics import frequencies, hexapod, solved
 
 from flexapod.mechanics.leg.layout import leg_parameters
 from flexapod.mechanics.shapes import axial_basis, lateral_basis

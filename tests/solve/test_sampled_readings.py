@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from tests.solve import test_sampled_loops as springs
+from tests.helpers import sampled_springs as springs
 from xarray import Dataset
 
 import flexapod as fx

@@ -6,7 +6,7 @@ slope s: with shapes that hold the static answers, less than 1.5 s^2 of the larg
 
 import numpy as np
 import pytest
-from tests.verification.test_oracle_welded import deviation, robot
+from tests.oracles.welded_cases import deviation, robot
 
 from flexapod.verification.paper.claims_variants import EXACT
 from flexapod.verification.paper.clamped_legs import clamped_legs_map

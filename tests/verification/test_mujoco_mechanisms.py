@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 from tests.helpers.chains import NAMED
-from tests.helpers.mechanisms import ROBOTS
-from tests.kinematics.test_mechanism_motions import AMPLITUDES, DURATION, MOVING, OWN
+from tests.helpers.mechanisms import AMPLITUDES, DURATION, MOVING, OWN, ROBOTS
 
 from flexapod import kinematics
 from flexapod.model import CombinedMotion, Simulation

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from tests.oracles import mechanism_cases as cases
 from tests.oracles import virtual_power
+from tests.oracles.mechanism_cases import orsino_motion
 from tests.oracles.mechanisms import SURGE, SWAY, YAW, Mechanism, chain, platform
 
 pytestmark = pytest.mark.literature
@@ -35,14 +36,6 @@ def orsino(mixed):
     bar = np.diag([0.0, 1.0, 1.0]) * 2 * 0.25 / 3
     hub = platform(2.0, home, bar, pivot=home)
     return Mechanism(tuple(legs), hub, home, np.array([0, -9.8, 0]), (SURGE, SWAY, YAW))
-
-
-def orsino_motion(t):
-    w, turn = 4 * np.pi, np.pi / 9
-    c, s, c2, s2 = np.cos(w * t), np.sin(w * t), np.cos(2 * w * t), np.sin(2 * w * t)
-    value = np.array([0.1 * c, 0.1 * s, turn * s2])  # from x = 2, y = 0.3
-    rate = w * np.array([-0.1 * s, 0.1 * c, 2 * turn * c2])
-    return value, rate, -(w**2) * np.array([0.1 * c, 0.1 * s, 4 * turn * s2])
 
 
 @pytest.mark.parametrize(
