@@ -21,7 +21,7 @@ SERVO = ServoDrive(stiffness=2e7, damping=2e4)
 
 
 def rolling(**legs):
-    study = with_legs(paper_robot(), lambda leg: leg.replace(**legs))
+    study = paper_robot(leg=legs)
     return study.replace(motion=study.motion.replace(duration=0.2, hold=0.0))
 
 

@@ -1,10 +1,9 @@
 """Paths that no robot could follow are refused before anything is computed, in the user's words."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from tests.helpers.runs import paper_robot, with_legs
+from tests.helpers.samples import sample_text
 
 import flexapod as fx
 from flexapod.analysis.checks.checks import check_path
@@ -12,8 +11,6 @@ from flexapod.analysis.results.rigid_path import path_instants
 from flexapod.model import AxisMotion, ForceDrive, base_circle, loads, platform_circle
 
 pytestmark = pytest.mark.unit
-
-SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 
 
 def moving(kind, amplitude, **motion):
@@ -61,7 +58,7 @@ def test_stroke_excess_names_leg_amount_and_time(side, amplitude, limit):
 
 def test_the_worst_leg_is_named():
     study = moving("roll", np.deg2rad(45), pivot=[0, 0, 0])
-    study = with_legs(study, lambda leg: leg.replace(stroke={"min": 0.7, "max": 0.97}))
+    study = with_legs(study, stroke={"min": 0.7, "max": 0.97})
     path = fx.kinematics.poses(study.robot, study.motion, np.array([1.0]))
     length = fx.kinematics.leg_lengths(
         study.robot.base_joints, study.robot.platform_joints, path.position, path.rotation
@@ -90,7 +87,7 @@ def test_pull_out():
 
 
 def test_piston_behind_its_joint_is_only_remarked_on():
-    study = with_legs(moving("heave", -0.2), lambda leg: leg.replace(stroke=None))
+    study = with_legs(moving("heave", -0.2), stroke=None)
     remarks = check_path(study)
     assert len(remarks) == 6
     assert "behind its universal joint" in remarks[0]
@@ -153,7 +150,7 @@ def test_folding_on_the_way_names_leg_and_time():
 
 
 def test_pure_force_drives_cannot_start_from_equilibrium():
-    study = with_legs(paper_robot(), lambda leg: leg.replace(drive=ForceDrive(law="rigid")))
+    study = paper_robot(leg={"drive": ForceDrive(law="rigid")})
     with pytest.raises(fx.InputError, match="holds no position"):
         check_path(study)
     assert check_path(study.replace(initial={"start": "moving"})) == []
@@ -197,7 +194,7 @@ def test_a_path_is_looked_at_often_enough_and_not_too_often():
 )
 def test_too_few_drives_are_named_as_such(sample, old, new, left):
     # Not as a singular path, whose cure would be other joints or another motion.
-    text = (SAMPLES / f"{sample}.toml").read_text(encoding="utf-8")
+    text = sample_text(sample)
     error = refusal(loads(text.replace(old, new)))
     assert error.key == "robot.type"
     assert error.what.startswith(f"with all drives locked it still has {left}")

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.helpers.runs import paper_robot, with_legs
+from tests.helpers.runs import paper_robot
 
 import flexapod as fx
 from flexapod.model import ActuatorLoad, Cylinder, ForceDrive, PrescribedDrive, ServoDrive, loads, override
@@ -110,7 +110,7 @@ def unequal(study):
 @pytest.mark.parametrize("drive", DRIVES)
 @pytest.mark.parametrize("fidelity", ["rigid", "lumped", "assumed-modes"])
 def test_every_promised_variable_of_a_robot(fidelity, drive):
-    study = with_legs(paper_robot(), lambda leg: leg.replace(drive=DRIVES[drive]))
+    study = paper_robot(leg={"drive": DRIVES[drive]})
     data = fx.simulate(study, fidelity=fidelity, **SHORT)
     check_variables(data, ROBOT | ENERGIES)
     check_attributes(data)

@@ -31,8 +31,7 @@ def test_balance_of_a_damped_and_driven_robot(drive):
         "servo": ServoDrive(**GAINS),
         "force": ForceDrive(law="rigid", feedback=GAINS),
     }
-    study = paper_robot(profile="smooth", duration=0.6)
-    study = study.replace(motion=study.motion.replace(duration=0.6, hold=0.0))
+    study = paper_robot(motion={"duration": 0.6, "hold": 0.0}, profile="smooth", duration=0.6)
     names = list(kinds) * 2 if drive == "mixed" else [drive] * 6
     legs = [leg.replace(drive=kinds[name], damping=0.02) for name, leg in zip(names, study.robot.legs, strict=True)]
     study = study.replace(robot=study.robot.replace(legs=tuple(legs)))
@@ -49,9 +48,8 @@ def test_balance_of_a_damped_and_driven_robot(drive):
 @pytest.mark.parametrize("drive", [None, ServoDrive(**GAINS)], ids=["prescribed", "servo"])
 def test_balance_of_a_robot_shaken_at_its_first_frequency(drive):
     # Nothing moves but what bends, stretches and gives: the wrench's work goes into damping.
-    study = paper_robot(duration=0.5)
-    study = study.replace(motion=study.motion.replace(amplitude=0.0))
-    study = with_legs(study, lambda leg: leg.replace(damping=0.02, **({} if drive is None else {"drive": drive})))
+    study = paper_robot(motion={"amplitude": 0.0}, duration=0.5)
+    study = with_legs(study, damping=0.02, **{} if drive is None else {"drive": drive})
     frequency = float(fx.modes(study).frequency[0])
     shake = SineWrench(amplitude=[100, 50, 30, 5, 4, -3], frequency=frequency)
     runs = [fx.simulate(study, load=shake, step=h, output_step=2e-3) for h in (1e-3, 5e-4, 2.5e-4)]
@@ -83,7 +81,7 @@ def test_balance_of_a_driven_actuator():
 
 def test_potential_energy_is_the_height_of_all_masses():
     # Rigid legs at home: payload, cylinders and pistons at their heights above the base plane.
-    study = with_legs(paper_robot(), lambda leg: leg.replace(damping=0.0))
+    study = paper_robot(leg={"damping": 0.0})
     data = fx.simulate(study, fidelity="rigid", duration=2e-3, step=1e-3).isel(time=0)
     robot, leg = study.robot, study.robot.legs[0]
     upright = robot.home_height / robot.home_lengths

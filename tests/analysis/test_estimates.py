@@ -126,8 +126,7 @@ def moments(study, t):
 
 def test_bending_moment_is_that_of_stiff_pistons_in_motion():
     # Bending a hundred times stiffer: its own vibration has no part in it, curvature times EI is the moment.
-    study = paper_robot(profile="smooth")
-    study = study.replace(motion=study.motion.replace(duration=0.5, hold=0.0))
+    study = paper_robot(motion={"duration": 0.5, "hold": 0.0}, profile="smooth")
     study = with_legs(study, lambda leg: leg.replace(
         piston=leg.piston.replace(EI=100 * EI, EA=100 * leg.piston.EA, E=None, density=None)))  # fmt: skip
     data = fx.simulate(study, modes=6, step=5e-4, output_step=5e-3, duration=0.5)
@@ -294,7 +293,7 @@ def test_what_is_fed_forward_does_not_excite():
     }
     told, found = {}, {}
     for name, drive in drives.items():
-        study = with_legs(paper_robot(fidelity="lumped", duration=0.3, step=5e-4), lambda leg: leg.replace(drive=drive))  # noqa: B023
+        study = paper_robot(leg={"drive": drive}, fidelity="lumped", duration=0.3, step=5e-4)
         study = study.replace(motion=AxisMotion(type="roll", amplitude=np.deg2rad(5), duration=0.1, hold=0.2))
         elastic = ElasticRobot(study.robot, study.simulation, study.load)
         told[name] = expected_vibration(RestingRobot(study, elastic, 0.1)).amplitude

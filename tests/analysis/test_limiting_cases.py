@@ -13,9 +13,8 @@ SHORT = {"duration": 0.4, "step": 5e-4, "output_step": 2e-3}
 
 
 def rolling(profile="smooth", **leg_changes):
-    study = paper_robot(profile=profile)
-    study = study.replace(motion=study.motion.replace(duration=0.4, hold=0.0))
-    return with_legs(study, lambda leg: leg.replace(**leg_changes)) if leg_changes else study
+    study = paper_robot(motion={"duration": 0.4, "hold": 0.0}, profile=profile)
+    return with_legs(study, **leg_changes) if leg_changes else study
 
 
 def servo(stiffness):

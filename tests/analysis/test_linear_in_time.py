@@ -5,6 +5,7 @@ import pytest
 from scipy.linalg import expm
 from tests.helpers import motor_loops as motors
 from tests.helpers.machines import study
+from tests.helpers.samples import sample_study
 
 import flexapod as fx
 from flexapod import kinematics, model
@@ -154,7 +155,7 @@ def test_floor(name, signal):
 
 @pytest.mark.parametrize("signal", [sine, chirp])
 def test_commands_of_carriages(signal):
-    given = fx.load("examples/mechanisms/hexaglide.toml")
+    given = sample_study("hexaglide")
     way = 1e-7 * np.sin(np.pi * TIME / END) ** 4 * signal()
     given = given.replace(motion=model.CsvMotion(time=TIME, pose=way[:, None] * np.array([1.0, 0, 0.5, 0, 1.0, 0.3])))
     path = kinematics.poses(given.robot, given.motion, TIME)

@@ -1,12 +1,11 @@
 """The linear model as a whole: beside spectra in modes, by symmetry, released drives, many poses, what is refused."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from tests.helpers import motor_loops as motors
 from tests.helpers.machine_hexapod import TILTED, lumped
 from tests.helpers.machines import EVERYTHING, OIL, SCREW, machine, study
+from tests.helpers.samples import SAMPLES, sample_study
 
 import flexapod as fx
 from flexapod import kinematics, model
@@ -204,10 +203,10 @@ COMMANDED = {
     ),
     "loops": study(motors.mixed()),
     "oil": study(machine(drive=OIL)),
-    "carriages": fx.load("examples/mechanisms/hexaglide.toml"),
-    "hinges": fx.load("examples/mechanisms/tripod.toml"),
-    "a passive leg": fx.load("examples/mechanisms/tricept.toml"),
-    "flexures": fx.load("examples/mechanisms/flexures.toml"),
+    "carriages": sample_study("hexaglide"),
+    "hinges": sample_study("tripod"),
+    "a passive leg": sample_study("tricept"),
+    "flexures": sample_study("flexures"),
 }
 
 
@@ -238,7 +237,7 @@ MOTIONS = {"delta": ("surge", "sway", "heave"), "tripod": ("heave", "roll", "pit
 
 class TestManyPoses:
     def test_a_grid_holds_the_matrices_of_each_pose(self, tmp_path):
-        given = fx.load("examples/mechanisms/delta.toml")
+        given = sample_study("delta")
         heave = np.linspace(-0.01, 0.01, 5)
         names = {"inputs": ["wrench", "command"], "outputs": ["tool", "com", "stroke"]}
         data = fx.linearize(given, {"heave": heave}, **names)
@@ -268,7 +267,7 @@ class TestManyPoses:
     @pytest.mark.parametrize("name", list(MOTIONS))
     def test_matrices_are_smooth_from_pose_to_pose(self, name):
         """Along each motion of a sample, and along that of its file: neighbours half as far apart differ by half."""
-        given = fx.load(f"examples/mechanisms/{name}.toml")
+        given = sample_study(name)
         moving = given.motion.end_time - given.motion.hold
         ways = [lambda n: kinematics.coordinates(given.motion, np.linspace(0.0, moving, n))[0]]
         for axis in MOTIONS[name]:
@@ -283,9 +282,8 @@ class TestManyPoses:
             assert steps[0] == pytest.approx(2 * np.array(steps[1]), rel=0.1, abs=1e-12)
 
     def test_the_sample_that_is_left_out_has_one_pose(self):
-        samples = {path.stem for path in Path("examples/mechanisms").glob("*.toml")}
-        assert samples - set(MOTIONS) == {"strut"}
-        strut = fx.load("examples/mechanisms/strut.toml")
+        assert set(SAMPLES) - set(MOTIONS) == {"strut"}
+        strut = sample_study("strut")
         assert strut.robot.platform_fixed
         with pytest.raises(fx.InputError, match="0 motions"):
             fx.linearize(strut, {"heave": [0.0, 0.001]}, inputs="drive", outputs="stroke")
@@ -311,13 +309,13 @@ class TestRefused:
             fx.linearize(fx.preset("paper-robot"), inputs=inputs, outputs=outputs)
 
     def test_a_base_that_turns_in_a_plane(self):
-        planar = fx.load("examples/mechanisms/planar.toml")
+        planar = sample_study("planar")
         assert fx.linearize(planar, inputs="floor", outputs="tool").inputs == AXES
         with pytest.raises(fx.InputError, match="floor:x to floor:z"):
             fx.linearize(planar, inputs="floor:rz", outputs="tool")
 
     def test_channels_of_a_platform_that_is_fixed(self):
-        strut = fx.load("examples/mechanisms/strut.toml")
+        strut = sample_study("strut")
         with pytest.raises(fx.InputError, match="platform is fixed"):
             fx.linearize(strut, inputs="wrench", outputs="stroke")
 

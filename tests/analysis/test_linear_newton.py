@@ -1,15 +1,13 @@
 """Newton's law of the payload between channels of a linear model, away from home, on a floor that shakes and tilts."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from tests.helpers.samples import sample_study
 
 import flexapod as fx
 
 pytestmark = pytest.mark.analytic
 
-SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 HZ = np.array([0.3, 7.0, 60.0, 400.0])
 PLACE, TURN, WRENCH = ("x", "y", "z"), ("rx", "ry", "rz"), ("fx", "fy", "fz", "mx", "my", "mz")
 
@@ -21,7 +19,7 @@ def cross(a):
 @pytest.mark.parametrize("drives", ["given", "force"])
 @pytest.mark.parametrize("name", ["tripod", "delta", "tricept", "hexaglide"])
 def test_forces_of_joints_and_accelerometers_obey_newton(name, drives):
-    study = fx.load(SAMPLES / f"{name}.toml")
+    study = sample_study(name)
     outputs = ["tool", "com", "joint-force", "accelerometer:com", "geophone:com[4.5 Hz, 0.6, 28.8]"]
     lin = fx.linearize(study, {"heave": 0.004}, inputs=["floor", "wrench"], outputs=outputs, drives=drives)
     H, s, g, mass = lin.at(HZ), 2j * np.pi * HZ, study.robot.gravity, study.robot.payload.mass

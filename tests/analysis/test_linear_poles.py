@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import linear_sum_assignment
 from tests.helpers import motor_loops as motors
 from tests.helpers.machines import BASE, EVERYTHING, HEAVY, LIGHT, MOUNT, OIL, PLATE, SERVO, SOFT, TOP, machine, study
-from tests.helpers.samples import PRESETS, SAMPLES, known
+from tests.helpers.samples import PRESETS, SAMPLES, known, sample_study
 from tests.trial_element.maxwell import Maxwell
 
 import flexapod as fx
@@ -141,6 +141,6 @@ def test_commands_and_floors_add_integrators_alone():
 
 
 def test_states_keep_their_names_over_poses():
-    given = fx.load("examples/mechanisms/delta.toml")
+    given = sample_study("delta")
     names = {fx.linearize(given, x, inputs="wrench", outputs="tool").states for x in (None, {"heave": 0.01})}
     assert len(names) == 1

@@ -1,22 +1,19 @@
 """Static laws of the linear model: Betti's between drives and forces, and slopes of loaded equilibria."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from tests.helpers.machines import study
 from tests.helpers.mechanisms import ROBOTS
+from tests.helpers.samples import MECHANISMS, sample_study
 
 import flexapod as fx
 from flexapod.kinematics.rotations import matrix
 
 pytestmark = pytest.mark.analytic
 
-SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
-
 
 def robot_of(name):
-    return fx.load(SAMPLES / f"{name}.toml") if (SAMPLES / f"{name}.toml").exists() else study(ROBOTS[name]())
+    return sample_study(name) if (MECHANISMS / f"{name}.toml").exists() else study(ROBOTS[name]())
 
 
 @pytest.mark.parametrize("name", ["6-RUS", "hexaglide", "tripod", "delta", "tricept"])

@@ -2,11 +2,11 @@
 
 import json
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from tests.helpers.samples import SAMPLES, sample_study, sample_text
 from typer.testing import CliRunner
 
 import flexapod as fx
@@ -18,8 +18,6 @@ from flexapod.model import chains_of, override
 
 pytestmark = pytest.mark.contract
 
-FILES = sorted((Path(__file__).parents[2] / "examples" / "mechanisms").glob("*.toml"))
-SAMPLES = [path.stem for path in FILES]
 FIXED = {"strut"}  # platforms that are fixed
 REDUNDANT = {"eight-legs"}
 SHORT = {"modes": 2, "step": 1e-3, "duration": 0.02, "output_step": 1e-3}
@@ -27,7 +25,7 @@ SHORT = {"modes": 2, "step": 1e-3, "duration": 0.02, "output_step": 1e-3}
 
 @cache
 def study(name):
-    return override(fx.load(next(path for path in FILES if path.stem == name)), **SHORT)
+    return override(sample_study(name), **SHORT)
 
 
 @cache
@@ -41,7 +39,7 @@ def name(request):
 
 
 def test_every_sample_of_the_page_is_there():
-    assert len(FILES) >= 9
+    assert len(SAMPLES) >= 9
 
 
 def test_names_sizes_and_units(name):
@@ -227,7 +225,7 @@ def test_command_line(name, command, tmp_path):
 )
 def test_sweeps_over_tables_of_other_legs(sample, key, values, tmp_path):
     path, sweep = tmp_path / "robot.toml", tmp_path / "sweep.toml"
-    text = next(file for file in FILES if file.stem == sample).read_text(encoding="utf-8").split("[simulation]")[0]
+    text = sample_text(sample).split("[simulation]")[0]
     settings = "\n".join(f"{name} = {value}" for name, value in (SHORT | {"modes": 1, "duration": 0.01}).items())
     path.write_text(f"{text}[simulation]\n{settings}\n", encoding="utf-8")
     kept = 'scalars = ["com_deviation_peak", "actuator_force_peak", "first_frequency"]\nrecords = ["drive_force"]'

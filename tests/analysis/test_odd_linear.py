@@ -1,18 +1,15 @@
 """What a linear model, a loop about it, a simulation with a controller must not be given: refused in words, by key."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from tests.helpers.odd import NAN, refused, swinging
+from tests.helpers.samples import sample_study
 
 import flexapod as fx
 from flexapod import control
 from flexapod.output.exchange.formats import uff
 
 pytestmark = pytest.mark.unit
-
-MECHANISMS = Path(__file__).parents[2] / "examples" / "mechanisms"
 
 
 @pytest.fixture(scope="module")
@@ -70,11 +67,11 @@ def test_many_poses_of_which_none_is_in_reach(robot, pose):
 )
 def test_robots_in_a_plane_and_without_a_platform(name, call, key):
     """Once an error of shapes, a base_motion that nobody had asked for, and an attribute of nothing."""
-    refused(lambda: call(fx.load(MECHANISMS / f"{name}.toml")), key)
+    refused(lambda: call(sample_study(name)), key)
 
 
 def test_what_nothing_can_move_in_is_told_by_its_drives():
-    strut = fx.model.override(fx.load(MECHANISMS / "strut.toml"), fidelity="rigid")
+    strut = fx.model.override(sample_study("strut"), fidelity="rigid")
     with pytest.raises(fx.InputError, match="with the drives released") as error:
         fx.linearize(strut, inputs="drive", outputs="stroke", drives="force")
     assert "releases" not in (error.value.next_step or "")

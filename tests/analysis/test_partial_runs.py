@@ -19,7 +19,7 @@ pytestmark = pytest.mark.unit
 def falling():
     """Drives without force: the payload falls until a piston has slid into its cylinder."""
     drive = ForceDrive(law="csv", file="none.csv", time=[0.0, 2.0], force=[0.0, 0.0])
-    return with_legs(paper_robot(start="moving", fidelity="lumped", step=1e-3), lambda leg: leg.replace(drive=drive))
+    return paper_robot(leg={"drive": drive}, start="moving", fidelity="lumped", step=1e-3)
 
 
 @pytest.mark.parametrize("how", [{}, {"tolerance": 1e-4}], ids=["fixed step", "tolerance"])
@@ -77,13 +77,13 @@ def test_a_run_that_fails_within_the_first_outputs():
     def drive(force):
         return ForceDrive(law="csv", file="none.csv", time=[0.0, 2.0], force=[force, force])
 
-    data = fx.simulate(with_legs(falling(), lambda leg: leg.replace(drive=drive(-5e4))))
+    data = fx.simulate(with_legs(falling(), drive=drive(-5e4)))
     assert data.attrs["partial"] == 1
     assert 2 < data.sizes["time"] < 30
     # The first thing that went wrong, not what came of it some steps later.
     assert "left the range of the model at t = 0.018 s" in data.attrs["failure"]
     with pytest.raises(fx.ComputationError) as error:  # not one output
-        fx.simulate(with_legs(falling(), lambda leg: leg.replace(drive=drive(-5e9))))
+        fx.simulate(with_legs(falling(), drive=drive(-5e9)))
     assert error.value.next_step
 
 
@@ -199,7 +199,7 @@ def test_memory_is_a_small_multiple_of_what_is_stored():
 def test_a_piston_pulled_out_by_its_drive_is_told():
     """Drives that push too hard once pushed pistons out of their cylinders without a word."""
     drive = ForceDrive(law="csv", file="much.csv", time=[0.0, 2.0], force=[500.0, 500.0])
-    data = fx.simulate(with_legs(falling(), lambda leg: leg.replace(drive=drive)))
+    data = fx.simulate(with_legs(falling(), drive=drive))
     assert data.attrs["partial"] == 1
     assert "its piston has been pulled out of the cylinder" in data.attrs["failure"]
     assert (data.leg_stroke <= 0.31518 + 0.75).all()

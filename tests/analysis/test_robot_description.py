@@ -1,10 +1,9 @@
 """What `describe` says before a simulation, against closed forms and against simulations."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from tests.helpers.runs import paper_robot, with_legs
+from tests.helpers.samples import sample_study
 
 import flexapod as fx
 from flexapod.analysis.description.leg_description import _stress
@@ -53,11 +52,11 @@ def test_lengths_and_margins_are_those_of_the_path(found):
 
 
 def test_margin_names_the_limit_that_is_nearer():
-    study = with_legs(paper_robot(), lambda leg: leg.replace(stroke=Stroke(min=0.85, max=1.3)))
+    study = paper_robot(leg={"stroke": Stroke(min=0.85, max=1.3)})
     legs = describe(study).legs
     assert legs[5].stroke_margin.value == pytest.approx(legs[5].shortest.value - 0.85)
     assert legs[5].stroke_margin.time == 1.0
-    assert describe(with_legs(study, lambda leg: leg.replace(stroke=None))).legs[0].stroke_margin is None
+    assert describe(with_legs(study, stroke=None)).legs[0].stroke_margin is None
 
 
 def test_forces_are_those_of_newton_and_euler(found):
@@ -159,7 +158,7 @@ def test_residual_vibration_is_that_of_a_simulation(study, step):
 def test_settling_time_is_when_a_simulation_settles():
     # Servo drives damp the payload's modes strongly, so that a short run sees the end of it.
     drive = ServoDrive(stiffness=1e7, damping=1e5)
-    study = with_legs(rolling(0.15, 0.02, "trapezoid", hold=1.5), lambda leg: leg.replace(drive=drive))
+    study = with_legs(rolling(0.15, 0.02, "trapezoid", hold=1.5), drive=drive)
     expected = describe(study).vibration
     data = fx.simulate(study, step=2e-4, fidelity="lumped")
     end = data.tool_deviation.values[-1]
@@ -181,7 +180,7 @@ def test_modes_that_a_long_motion_leaves_out_are_named():
 
 
 def test_undamped_vibration_never_settles():
-    study = with_legs(rolling(0.15, 0.1, "linear"), lambda leg: leg.replace(damping=0.0))
+    study = with_legs(rolling(0.15, 0.1, "linear"), damping=0.0)
     assert describe(study).vibration.settling == np.inf
 
 
@@ -216,7 +215,7 @@ def test_worst_pose_between_start_and_end_is_described_too():
 def test_drives_that_hold_nothing_have_no_stiffness():
     from flexapod.model import ForceDrive
 
-    study = with_legs(paper_robot(start="moving"), lambda leg: leg.replace(drive=ForceDrive(law="rigid")))
+    study = paper_robot(leg={"drive": ForceDrive(law="rigid")}, start="moving")
     found = describe(study)
     assert "pure force drive holds no position" in found.poses[0].problem
     assert found.poses[0].stiffness is None
@@ -249,25 +248,21 @@ def test_driven_actuator_has_no_path_to_describe():
 
 
 def test_what_gives_way_is_not_called_locked():
-    servo = with_legs(paper_robot(), lambda leg: leg.replace(drive=ServoDrive(stiffness=2e7, damping=1e3)))
+    servo = paper_robot(leg={"drive": ServoDrive(stiffness=2e7, damping=1e3)})
     assert locked_drive_words(describe(paper_robot()).held) == "Drives locked"
     assert (
         locked_drive_words(describe(servo).held)
         == "Commands of the drives held, with the springs and dampers of the servo drives"
     )
-    force = with_legs(paper_robot(), lambda leg: leg.replace(drive=ForceDrive()))
+    force = paper_robot(leg={"drive": ForceDrive()})
     assert (
         locked_drive_words(soft_drives(force.robot)) == "Drives locked"
     )  # what would have to be: no feedback holds anything
 
 
-def sample(name):
-    return fx.load(Path(__file__).parents[2] / "examples" / "mechanisms" / f"{name}.toml")
-
-
 def test_a_fixed_platform_has_frequencies_and_nothing_that_moves():
     # 42.66 Hz: of this strut across its weight, `fx.modes` finds the same.
-    found, study = describe(sample("strut")), sample("strut")
+    found, study = describe(sample_study("strut")), sample_study("strut")
     assert found.singularity is None and found.vibration is None
     for pose in found.poses:
         assert pose.problem is None and pose.stiffness is None and pose.sag is None
@@ -276,7 +271,7 @@ def test_a_fixed_platform_has_frequencies_and_nothing_that_moves():
 
 def test_a_strip_has_stresses_by_its_thickness():
     # N / A and 6 M / (w t^2) of a section of 25 by 1.5 mm.
-    study, force, moment = sample("planar"), 3.0, 0.02
+    study, force, moment = sample_study("planar"), 3.0, 0.02
     stress = _stress(study.robot.legs[0], np.zeros(1), np.array([force]), np.array([moment]), np.array([0.3]))
     np.testing.assert_allclose(stress.axial, force / 37.5e-6)
     np.testing.assert_allclose(stress.bending, 6 * moment / (25e-3 * 1.5e-3**2))

@@ -1,11 +1,10 @@
 """The study files of `examples/mechanisms` through public calls against virtual power and dynamic stiffness."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from tests.helpers.beam_frames import as_frame
 from tests.helpers.chains import NAMED, PLANES, as_mechanism
+from tests.helpers.samples import MECHANISMS, sample_study
 from tests.oracles import frames, virtual_power
 
 import flexapod as fx
@@ -13,14 +12,13 @@ from flexapod.model import PrescribedDrive
 
 pytestmark = pytest.mark.consistency
 
-FOLDER = Path(__file__).parents[2] / "examples" / "mechanisms"
-NAMES = sorted(path.stem for path in FOLDER.glob("*.toml") if path.stem != "strut")  # its platform does not move
+NAMES = sorted(path.stem for path in MECHANISMS.glob("*.toml") if path.stem != "strut")  # its platform does not move
 PRESETS = ("flight-simulator", "tripod-preset")
 
 
 def loaded(name):
     """A sample, or a preset."""
-    return fx.preset(name.removesuffix("-preset")) if name in PRESETS else fx.load(FOLDER / f"{name}.toml")
+    return fx.preset(name.removesuffix("-preset")) if name in PRESETS else sample_study(name)
 
 
 def locked(robot):

@@ -20,7 +20,7 @@ def still(tool=TOOL, **legs):
     study = paper_robot().replace(motion=AxisMotion(type="heave", amplitude=0.0, duration=1.0))
     payload = study.robot.payload.replace(tool=tool)
     study = study.replace(robot=study.robot.replace(payload=payload))
-    return with_legs(study, lambda leg: leg.replace(**legs)) if legs else study
+    return with_legs(study, **legs) if legs else study
 
 
 def light(study):
@@ -159,7 +159,7 @@ def test_modes_show_in_a_simulation():
     # A step of a wrench that drives the lowest mode alone: an undamped oscillation about the static answer.
     study = light(still(tool=[0, 0.373, 0]))
     study = study.replace(robot=study.robot.replace(gravity=[0, 0, 0]))
-    study = with_legs(study, lambda leg: leg.replace(damping=0.0))
+    study = with_legs(study, damping=0.0)
     found = fx.modes(study, fidelity="lumped")
     shape = found.platform_shape.values[0]
     M = np.diag([100.0] * 3 + [17.88] * 3)  # parallel to the world at home; the tool is the centre of mass
@@ -219,7 +219,7 @@ def test_poses_that_are_refused(call, pose, words):
 def test_what_has_no_modes_is_refused_with_the_reason(call):
     with pytest.raises(fx.InputError):
         call(paper_robot(), fidelity="rigid")
-    pure = with_legs(paper_robot(), lambda leg: leg.replace(drive=ForceDrive(law="rigid")))
+    pure = paper_robot(leg={"drive": ForceDrive(law="rigid")})
     with pytest.raises(fx.InputError, match="holds no position"):
         call(pure)
     with pytest.raises(fx.ComputationError, match="no equilibrium"):

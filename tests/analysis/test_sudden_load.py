@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.helpers.runs import paper_robot, with_legs
+from tests.helpers.runs import paper_robot
 
 import flexapod as fx
 from flexapod.model import AxisMotion, StepWrench
@@ -15,7 +15,7 @@ STEP = 2e-5  # [s]; the period of the vertical mode, 2.2 ms, has 109
 
 def still_robot():
     """Symmetric about z, undamped, at rest: a vertical force moves it vertically."""
-    study = with_legs(paper_robot(fidelity="lumped", step=STEP), lambda leg: leg.replace(damping=0.0))
+    study = paper_robot(leg={"damping": 0.0}, fidelity="lumped", step=STEP)
     payload = study.robot.payload.replace(com=[0, 0, 0], tool=[0, 0, 0])
     motion = AxisMotion(type="heave", amplitude=0.0, duration=0.1)
     return study.replace(motion=motion, robot=study.robot.replace(payload=payload))

@@ -1,10 +1,9 @@
 """The answer in a few numbers, and results on disk."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from tests.helpers.runs import paper_robot
+from tests.helpers.samples import sample_study
 
 import flexapod as fx
 from flexapod.analysis import open_results, save, summary
@@ -16,8 +15,7 @@ pytestmark = pytest.mark.unit
 
 @pytest.fixture(scope="module")
 def data():
-    study = paper_robot(duration=0.3, step=1e-3)
-    study = study.replace(motion=study.motion.replace(duration=0.2))
+    study = paper_robot(motion={"duration": 0.2}, duration=0.3, step=1e-3)
     return fx.run(study)
 
 
@@ -81,7 +79,7 @@ def test_rigid_legs_need_no_blame():
 
 
 def test_a_leg_that_bends_under_a_fixed_platform_is_not_called_rigid():
-    strut = fx.load(Path(fx.__file__).parents[2] / "examples" / "mechanisms" / "strut.toml")
+    strut = sample_study("strut")
     found = summary(fx.simulate(strut, step=1e-3, duration=0.05))
     assert found.peak == 0 and found.tips > 1e-6 and "tips of legs swing by up to" in found.sentence
 

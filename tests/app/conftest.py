@@ -14,7 +14,7 @@ from flexapod.app.browser.network import free_port
 from flexapod.app.browser.server import GONE, View
 from flexapod.app.browser.session import Session
 from flexapod.app.cli.cli import app
-from flexapod.model import loads, preset_text
+from flexapod.model import loads
 
 HOST = "127.0.0.1"
 Command = Callable[..., Result]
@@ -37,12 +37,8 @@ def study(folder) -> Callable[..., Path]:
     """A file from a preset, with pieces of its text replaced: `study(("100 kg", "-100 kg"))`."""
 
     def write(*changes: tuple[str, str], preset: str = "paper-robot", more: str = "") -> Path:
-        text = preset_text(preset)
-        for old, new in changes:
-            assert text.count(old) == 1, f"{old!r} is {text.count(old)} times in {preset}"
-            text = text.replace(old, new)
         path = folder / "study.toml"
-        path.write_text(text + more, encoding="utf-8")
+        path.write_text(study_text(*changes, preset=preset) + more, encoding="utf-8")
         return Path(path.name)
 
     return write

@@ -1,18 +1,16 @@
 """`frf` and `damp` as a user types them: words, files, JSON, refusals."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.io import loadmat
+from tests.helpers.samples import MECHANISMS
 from tests.helpers.short_runs import BRIEF
 
 import flexapod as fx
 
 pytestmark = pytest.mark.cli
-
-MECHANISMS = Path(__file__).parents[2] / "examples" / "mechanisms"
 
 
 def test_responses_are_said_written_and_read_again(flexapod, study, folder):

@@ -1,24 +1,23 @@
 """How much of the page the robot gets, measured on pictures: beside the panel, above it on a phone; the notice."""
 
 import io
-from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 from tests.helpers.browser import difference
 from tests.helpers.guests import until
+from tests.helpers.samples import sample_text
 from tests.helpers.short_runs import SHORT, study_text
 
 pytestmark = pytest.mark.web
 
 WIDE, PHONE = {"width": 1440, "height": 900}, {"width": 390, "height": 844}
-MECHANISMS = Path(__file__).parents[2] / "examples" / "mechanisms"
 STUDIES = {
     "machine-hexapod": study_text(preset="machine-hexapod"),
     "paper-robot": study_text(*SHORT),
-    "hexaglide": (MECHANISMS / "hexaglide.toml").read_text(encoding="utf-8"),
-    "planar": (MECHANISMS / "planar.toml").read_text(encoding="utf-8"),
+    "hexaglide": sample_text("hexaglide"),
+    "planar": sample_text("planar"),
     "paper-actuator": study_text(('duration = "10 s"', 'duration = "1 s"'), preset="paper-actuator"),
 }
 PANEL = "document.querySelector('[role=tablist]').closest('.mantine-Paper-root').getBoundingClientRect()"

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from tests.helpers.samples import sample_study
 from typer.testing import CliRunner
 
 import flexapod as fx
@@ -55,7 +56,7 @@ def test_one_correction_leaves_a_thousandth_of_the_static_miss(name: str) -> Non
 
 def test_a_robot_of_three_motions_has_its_tool_on_the_path_in_what_it_commands() -> None:
     """The tool of a delta is met in all three; turns of its platform by weight are left."""
-    study = fx.load("examples/mechanisms/delta.toml")
+    study = sample_study("delta")
     own, ahead = fx.simulate(study), fx.simulate(fx.compensate(study))
     miss = [np.linalg.norm((x.tool_position - own.tool_position_rigid).values[0]) for x in (own, ahead)]
     # two corrections by differences of 1e-6 leave the square of what one leaves, 1e-3

@@ -2,11 +2,11 @@
 
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from tests.helpers.runs import paper_robot
+from tests.helpers.samples import MECHANISMS
 
 import flexapod as fx
 from flexapod.analysis import open_results, save
@@ -246,4 +246,4 @@ def test_a_solid_study_is_compared_with_solids_only():
 @pytest.mark.parametrize("survey", [fx.converge, fx.ladder])
 def test_a_fixed_platform_has_no_deviation_to_compare(survey):
     with pytest.raises(fx.InputError, match=r"platform.fixed = True: leaves no deviation of the platform"):
-        survey(Path(__file__).parents[2] / "examples" / "mechanisms" / "strut.toml")
+        survey(MECHANISMS / "strut.toml")

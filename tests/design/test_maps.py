@@ -327,7 +327,7 @@ def test_figures_that_are_refused(study):
     data = fx.workspace_map(study, {"heave": [0.0]}, fidelity="lumped")
     with pytest.raises(fx.InputError, match="not in this map"):
         fx.plot.workspace_map(data, "speed")
-    free = with_legs(study, lambda leg: leg.replace(stroke=None))
+    free = with_legs(study, stroke=None)
     without = fx.workspace_map(free, {"heave": [0.0]}, fidelity="lumped")
     with pytest.raises(fx.InputError, match="no leg has such a limit"):  # an empty picture once
         fx.plot.workspace_map(without, "stroke_margin")

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from tests.helpers.mechanisms import ROBOTS, THREE, built, leg, ring, sliders, tangents
+from tests.helpers.samples import sample_study
 
 import flexapod as fx
 from flexapod.analysis.checks.checks import check_geometry
@@ -64,7 +65,7 @@ def test_a_map_varies_what_the_robot_can_do_unless_told():
     given = {"3-RPS": ["heave", "roll"], "6-PUS": ["surge", "heave"]}
     assert {name: usual_axes(ROBOTS[name]()) for name in given} == given
     with pytest.raises(fx.InputError, match=r"platform\.fixed.*nothing to map.*flexapod modes"):
-        fx.workspace_map(fx.load("examples/mechanisms/strut.toml"))
+        fx.workspace_map(sample_study("strut"))
 
 
 def study(robot, kind, amplitude):

@@ -1,9 +1,8 @@
 """From a plan to studies: products, short forms spelled out, draws, points that are alike."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from tests.helpers.samples import sample_text
 from tests.helpers.sweeps import KEY, diameters, quick
 
 from flexapod.analysis.checks import resource_limits
@@ -14,8 +13,6 @@ from flexapod.model import loads, preset_text
 from flexapod.solve.kernel import kernel
 
 pytestmark = pytest.mark.unit
-
-MECHANISMS = Path(__file__).parents[2] / "examples" / "mechanisms"
 
 
 def points(**sweep):
@@ -223,7 +220,7 @@ def test_draws_beyond_the_memory_are_refused_before_they_are_made(monkeypatch):
     ],
 )  # fmt: skip
 def test_keys_of_other_mechanisms(name, key, value, read, expected):
-    study = loads((MECHANISMS / f"{name}.toml").read_text(encoding="utf-8"))
+    study = loads(sample_text(name))
     if "EI" in key:  # of a piston by its section: refused as a study file with both is
         with pytest.raises(InputError, match="EA"):
             Points(study, read_plan({"vary": [{"key": key, "values": [value]}]})).resolve()
@@ -233,7 +230,7 @@ def test_keys_of_other_mechanisms(name, key, value, read, expected):
 
 
 def test_tolerances_of_joints_at_angles_and_of_a_carriage():
-    study = loads((MECHANISMS / "hexaglide.toml").read_text(encoding="utf-8"))
+    study = loads(sample_text("hexaglide"))
     plan = draws(20, ("robot.base.joints", {"uniform": "0.1 mm"}), ("leg.carriage.mass", {"normal": "1 %"}))
     joints, masses = Points(study, read_plan(plan)).resolve().scattered
     assert joints.shape == (20, 18) and masses.shape == (20, 6)

@@ -22,17 +22,9 @@ BENDING = ('fidelity = "lumped"', 'fidelity = "assumed-modes"\nmodes = 2')
 ROUNDING = {"rel": 1e-12, "abs": 1e-15}
 
 
-def text(*changes):
-    made = quick_text()
-    for old, new in changes:
-        assert made.count(old) == 1
-        made = made.replace(old, new)
-    return made
-
-
 @pytest.mark.parametrize("changes", [(BENDING, TOOL), (BENDING, TOOL, SERVO), ()], ids=["bending", "servo", "lumped"])
 def test_scalars_are_those_of_a_run(changes):
-    study = loads(text(*changes))
+    study = loads(quick_text(*changes))
     plan = read_plan({"vary": [{"key": "payload.mass", "values": [100]}], "keep": {"scalars": list(ROBOT_SCALARS)}})
     points = Points(study, plan)
     result = compute_point(select_outputs(plan.keep, study, points.resolve()), points.study(0))
@@ -64,7 +56,7 @@ def test_scalars_are_those_of_a_run(changes):
 
 
 def test_stress_is_force_over_section_where_nothing_bends():
-    study = loads(text())
+    study = loads(quick_text())
     plan = read_plan({"vary": [{"key": "payload.mass", "values": [100]}], "keep": {"scalars": ["stress_peak_by_leg"]}})
     points = Points(study, plan)
     stress = compute_point(select_outputs(plan.keep, study, points.resolve()), points.study(0)).values[

@@ -29,17 +29,20 @@ def run_actuator(study, amplitudes=None, rates=None):
     return collect(prepare_actuator(study, amplitudes, rates).chunks)
 
 
-def paper_robot(*, profile="quintic", start="equilibrium", **simulation):
-    """The preset `paper-robot` with another profile, start or simulation settings."""
+def paper_robot(*, profile="quintic", start="equilibrium", motion=None, leg=None, **simulation):
+    """The preset `paper-robot` with another profile, motion, start, other parts of legs and settings."""
     study = preset("paper-robot")
-    study = study.replace(motion=study.motion.replace(profile=profile), initial=study.initial.replace(start=start))
-    return override(study, **simulation) if simulation else study
+    moved = study.motion.replace(profile=profile, **(motion or {}))
+    study = study.replace(motion=moved, initial=study.initial.replace(start=start))
+    study = override(study, **simulation) if simulation else study
+    return with_legs(study, **leg) if leg else study
 
 
-def with_legs(study, change):
-    """The study with every leg replaced by `change(leg)`."""
-    legs = tuple(change(leg) for leg in study.robot.legs)
-    return study.replace(robot=study.robot.replace(legs=legs))
+def with_legs(given, change=None, **parts):
+    """The study, or robot, with every leg replaced by `change(leg)`, or with other parts."""
+    robot = getattr(given, "robot", given)
+    robot = robot.replace(legs=tuple(change(leg) if change else leg.replace(**parts) for leg in robot.legs))
+    return given.replace(robot=robot) if hasattr(given, "robot") else robot
 
 
 def balance(run):

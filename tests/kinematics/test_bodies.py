@@ -5,6 +5,7 @@ import pytest
 from scipy.optimize import minimize
 from tests.helpers.machines import TUBE, machine, study
 from tests.helpers.mechanisms import built, ring
+from tests.helpers.samples import sample_study
 from typer.testing import CliRunner
 
 import flexapod as fx
@@ -106,7 +107,7 @@ def test_legs_that_meet_at_a_joint_and_legs_in_a_plane_are_no_pairs():
     pairs = built("6-UPS", ring(0.7, [0, 0, 120, 120, 240, 240]), ring(0.4, [60, 300, 60, 180, 180, 300]), 1.0,
                   list(machine().legs), payload=machine().payload)  # fmt: skip
     assert len(pairs_of_legs(pairs)) == 9
-    assert pairs_of_legs(fx.load("examples/mechanisms/planar.toml").robot) == []
+    assert pairs_of_legs(sample_study("planar").robot) == []
 
 
 def test_a_path_beyond_the_angle_of_a_joint_is_refused():

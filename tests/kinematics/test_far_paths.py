@@ -1,18 +1,15 @@
 """Paths far outside of all reach: refused at their first instants, and where a length is not what was meant."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from tests.helpers.mechanisms import ROBOTS
+from tests.helpers.samples import sample_text
 
 import flexapod as fx
 from flexapod.kinematics import closures
 from flexapod.model import AxisMotion
 
 pytestmark = pytest.mark.consistency
-
-SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 
 
 @pytest.fixture
@@ -29,7 +26,7 @@ def newtons(monkeypatch):
 
 
 def sample(name, old="", new=""):
-    text = (SAMPLES / f"{name}.toml").read_text(encoding="utf-8")
+    text = sample_text(name)
     assert old in text
     return fx.loads(text.replace(old, new))
 

@@ -5,6 +5,7 @@ import pytest
 from tests.golden.net import STUDIES, text
 from tests.helpers.machines import LAGGING, MOVED, RUBS, SCREW, SPRUNG, THICK, TUBE, machine, study
 from tests.helpers.mechanisms import hexapod
+from tests.helpers.runs import with_legs
 
 import flexapod as fx
 from flexapod import kinematics
@@ -20,11 +21,6 @@ FLEXES = {"base_joint": Joint(stiffness=np.diag([2e7, 3e7, 5e7, 900.0, 800.0, 30
 UNKEYED = {"drive": SCREW, "piston": TUBE.replace(keyed=False)}
 
 
-def with_legs(robot, parts):
-    """Robot whose legs have other parts."""
-    return robot.replace(legs=[leg.replace(**parts) for leg in robot.legs])
-
-
 def real(at, rate):
     """A machine with all that an electric one may have; its loops are closed about a place."""
     drive = LAGGING.replace(encoder=Encoder(at=at, rate=rate))
@@ -37,9 +33,9 @@ MACHINES = (
     {name: lambda name=name: fx.loads(text(name)) for name in STUDIES}
     | {f"loop about {at}, rate of {rate}": lambda at=at, rate=rate: real(at, rate) for at, rate in LOOPS}
     | {
-        "flexures": lambda: study(with_legs(hexapod("FPF"), FLEXES)),
-        "thick": lambda: study(with_legs(hexapod("UPS"), {"piston": THICK}), fidelity="lumped"),
-        "nut that turns": lambda: study(with_legs(hexapod("UCU"), UNKEYED)),
+        "flexures": lambda: study(with_legs(hexapod("FPF"), **FLEXES)),
+        "thick": lambda: study(with_legs(hexapod("UPS"), piston=THICK), fidelity="lumped"),
+        "nut that turns": lambda: study(with_legs(hexapod("UCU"), **UNKEYED)),
     }
 )
 

@@ -61,7 +61,7 @@ def given(kind, part):
     if kind == "3-PUU" and "piston" in legs:
         bar = type(found.robot.legs[0].strut).round
         legs = {"strut": bar(length=0.4, section=Tube(diameter=0.1), material=MATERIALS["steel"], shear=True)}
-    found = with_legs(found, lambda leg: leg.replace(**legs))
+    found = with_legs(found, **legs)
     return found.replace(
         robot=found.robot.replace(**robot), simulation=found.simulation.replace(duration=0.03, step=1e-3, **settings)
     )

@@ -14,7 +14,7 @@ from tests.helpers import legs_of_all_kinds as legs
 from tests.helpers.layouts import layout
 from tests.helpers.machines import SCREW, machine, study
 from tests.helpers.mechanisms import planar, three_rps
-from tests.helpers.runs import balance, run_robot
+from tests.helpers.runs import balance, run_robot, with_legs
 from tests.oracles.guided import Guided
 
 import flexapod as fx
@@ -230,10 +230,6 @@ BENDING = Cylinder.tube(mouth=0.6, section=TUBE_SECTION, material=MATERIALS["ste
 
 def bushings(k, **more):
     return Guide(gland=k, head=k, **more)
-
-
-def with_legs(robot, **parts):
-    return robot.replace(legs=tuple(leg.replace(**parts) for leg in robot.legs))
 
 
 def test_the_rotation_that_stiff_bushings_leave():

@@ -1,12 +1,11 @@
 """Damping of the springs of joints: what they lose, against closed forms; loss factors made viscous at home."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from tests.helpers.mechanisms import built, leg
 from tests.helpers.runs import balance, collect
+from tests.helpers.samples import sample_text
 
 import flexapod as fx
 from flexapod.kinematics.leg_geometry import limbs
@@ -120,7 +119,7 @@ def test_dampers_without_springs_are_refused(joint, message):
 
 def test_loss_factors_of_a_study_file_are_said(tmp_path):
     """Frequency and dampers are printed; written again, the file says the same."""
-    text = (Path(__file__).parents[2] / "examples" / "mechanisms" / "flexures.toml").read_text()
+    text = sample_text("flexures")
     given = '_joint = { bending = "15 N m/rad", torsion = "20 N m/rad"'
     path = tmp_path / "lossy.toml"
     text = text.replace(f"base{given}", f"base{given}, {LOSSY}")

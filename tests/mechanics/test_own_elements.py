@@ -164,12 +164,12 @@ def test_every_fidelity_of_every_mechanism_has_elements_from_outside(kind, some,
         part = "strut" if kind == "3-PUU" else "piston"
         bar = type(getattr(given.robot.legs[0], part)).round
         drawn = bar(length=given.robot.legs[0].piston.length, section=ROUND, material=STEEL)
-        given = with_legs(given, lambda leg: leg.replace(**{part: drawn}))
+        given = with_legs(given, **{part: drawn})
     data = fx.simulate(given, fidelity=fidelity, duration=0.02, output_step=2e-3)
     assert not data.attrs["partial"] and all(np.isfinite(data[name]).any() for name in data.data_vars)
     # Energies are summed with the same steps: the tolerance, and stretch that begins to ring at the corner of the law.
     assert np.ptp(balance(data)) < 1e-3 * np.ptp(data.work_drive.values)
-    bare = with_legs(given, lambda leg: leg.replace(elements=()))
+    bare = with_legs(given, elements=())
     forces = fx.simulate(bare, fidelity="rigid", duration=0.02, output_step=2e-3)
     known = forces.actuator_force_rigid if kind != "3-PUU" else forces.drive_force_rigid
     np.testing.assert_allclose(data[known.name], known, rtol=1e-12, atol=1e-9)  # without them, and said so

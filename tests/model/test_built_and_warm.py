@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from tests.helpers import machines, mechanisms
+from tests.helpers.texts import replaced
 
 from flexapod import accuracy, loads
 from flexapod.common.errors import InputError
@@ -211,10 +212,9 @@ def test_a_sweep_of_parts_that_are_not_in_the_file_keeps_no_causes():
     ],
 )  # fmt: skip
 def test_parts_that_contradict_each_other_or_themselves_are_refused(old, new, key, allowed):
-    text = preset_text("machine-hexapod")
-    assert text.count(old) == 1
+    text = replaced(preset_text("machine-hexapod"), (old, new))
     with pytest.raises(InputError) as caught:
-        loads(text.replace(old, new))
+        loads(text)
     assert caught.value.key == key
     assert allowed in str(caught.value)
 

@@ -2,10 +2,10 @@
 
 import re
 import tomllib
-from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.helpers.samples import SAMPLES, sample_text
 from tests.helpers.tables import plain
 
 from flexapod.common.errors import InputError
@@ -19,8 +19,7 @@ from flexapod.model.study.tolerances import RatioSpread
 
 pytestmark = pytest.mark.property
 
-MECHANISMS = sorted((Path(__file__).parents[2] / "examples" / "mechanisms").glob("*.toml"))
-TEXTS = {name: preset_text(name) for name in PRESETS} | {path.stem: path.read_text("utf-8") for path in MECHANISMS}
+TEXTS = {name: preset_text(name) for name in PRESETS} | {name: sample_text(name) for name in SAMPLES}
 ENTRIES = {f"{entry.study} {entry.table} {entry.title}": entry for entry in reference().entries}
 OF_ROBOT = ("payload", "leg", "geometry", "heat", "tolerances")
 ENDS = ("base", "platform")

@@ -2,11 +2,11 @@
 
 import pickle
 from math import pi
-from pathlib import Path
 
 import numpy as np
 import pytest
 from tests.helpers.machines import machine, study
+from tests.helpers.samples import sample_study
 
 import flexapod as fx
 from flexapod.common.errors import InputError
@@ -179,7 +179,7 @@ def test_springs_along_the_leg_are_written_whole(more):
 
 
 def test_the_piston_of_a_leg_with_a_strut_is_its_strut():
-    given = fx.load(Path(__file__).parents[2] / "examples" / "mechanisms" / "delta.toml")
+    given = sample_study("delta")
     leg = given.robot.legs[0]
     thick = Strut.round(length=leg.strut.length, section=Tube(diameter=0.03), material=STEEL)
     for changed in (leg.replace(strut=thick), leg.replace(piston=thick)):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.helpers.texts import REAL_PARTS
+from tests.helpers.texts import REAL_PARTS, replaced
 
 import flexapod as fx
 from flexapod.common.errors import InputError
@@ -25,8 +25,7 @@ TABLES = {
 def of(key, text):
     """A machine with a table of friction."""
     old, new = PLACES[key]
-    assert REAL_PARTS.count(old) == 1
-    return fx.loads(REAL_PARTS.replace(old, new % text), path="mine.toml")
+    return fx.loads(replaced(REAL_PARTS, (old, new % text)), path="mine.toml")
 
 
 @pytest.mark.parametrize("key", TABLES)

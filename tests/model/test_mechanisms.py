@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.helpers.samples import MECHANISMS
 from tests.helpers.texts import replaced
 
 from flexapod import model
@@ -13,8 +14,7 @@ from flexapod.model.leg.chain import chain_of, chains_of
 
 pytestmark = pytest.mark.unit
 
-FOLDER = Path(__file__).parents[2] / "examples" / "mechanisms"
-SAMPLES = {path.stem: path.read_text(encoding="utf-8") for path in sorted(FOLDER.glob("*.toml"))}
+SAMPLES = {path.stem: path.read_text(encoding="utf-8") for path in sorted(MECHANISMS.glob("*.toml"))}
 PRESETS = ("tripod", "flight-simulator", "machine-hexapod")
 
 

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 from tests.helpers.machines import BEARING, NUT, SCREW, SOFT, machine, study, symmetric
-from tests.helpers.texts import REAL_PARTS
+from tests.helpers.texts import REAL_PARTS, replaced
 from typer.testing import CliRunner
 
 import flexapod as fx
@@ -40,10 +40,7 @@ UM = 1e6  # N/m
 
 
 def refused(*pairs):
-    text = REAL_PARTS
-    for old, new in pairs:
-        assert text.count(old) == 1
-        text = text.replace(old, new)
+    text = replaced(REAL_PARTS, *pairs)
     with pytest.raises(InputError) as caught:
         fx.loads(text, path="mine.toml")
     return caught.value

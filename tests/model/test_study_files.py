@@ -5,6 +5,7 @@ import re
 
 import numpy as np
 import pytest
+from tests.helpers.texts import replaced
 
 from flexapod import model
 from flexapod.common.errors import InputError
@@ -17,8 +18,7 @@ ACTUATOR = model.preset_text("paper-actuator")
 
 def robot_with(old: str, new: str, text: str = ROBOT) -> str:
     """The preset with one piece of text replaced; `old` must be there, so that a test cannot pass by accident."""
-    assert text.count(old) == 1, f"{old!r} appears {text.count(old)} times"
-    return text.replace(old, new)
+    return replaced(text, (old, new))
 
 
 def with_motion(motion: str) -> str:

@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 from tests.helpers.mechanisms import ROBOTS
+from tests.helpers.runs import with_legs
 
 from flexapod import InputError
 from flexapod.kinematics import home_pose
@@ -167,10 +168,6 @@ def test_load_at_the_tool_has_the_force_and_moment_that_the_study_says(robot):
     np.testing.assert_allclose(forces.sum(axis=0), wrench[:3], rtol=1e-9)
     at = [0.1, 0.2, robot.home_height + 0.3]
     np.testing.assert_allclose(np.cross(places - at, forces).sum(axis=0), wrench[3:], rtol=1e-8)
-
-
-def with_legs(robot, **fields):
-    return robot.replace(legs=[leg.replace(**fields) for leg in robot.legs])
 
 
 def test_servo_stiffness_is_written(robot):

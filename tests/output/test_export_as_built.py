@@ -1,10 +1,9 @@
 """Units of robots as built and warm whose commands come from outside: what the errors of building make of a command."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from tests.helpers.fmi_importer import Instance, Unit
+from tests.helpers.samples import MECHANISMS, sample_text
 
 import flexapod as fx
 from flexapod.common.errors import InputError
@@ -14,7 +13,6 @@ from flexapod.model import preset_text
 
 pytestmark = [pytest.mark.consistency, pytest.mark.skipif(compiler() is None, reason="there is no C compiler")]
 STEP = 5e-4
-EXAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 FIRST = "home=300 mm, payload=20 kg, stroke=60 mm"
 HEAT = "\n[heat]\nreference = 20\nbase = 21\nplatform = 23\npiston = [22, 23, 24, 25, 26, 27]\ncylinder = 22\n"
 OFF = ", ".join('["0.1 mm", "-0.05 mm", "0.02 mm"]' for _ in range(5))
@@ -81,8 +79,8 @@ def test_carriages_of_a_rail_that_is_too_long(tmp_path):
 
     Prescribed places from the foot of the rail; the way from home is the command less that at home.
     """
-    text = (EXAMPLES / "hexaglide.toml").read_text() + "\n[geometry]\nlead = 1e-4\n"
-    study = fx.loads(text, path=EXAMPLES / "hexaglide.toml")
+    text = sample_text("hexaglide") + "\n[geometry]\nlead = 1e-4\n"
+    study = fx.loads(text, path=MECHANISMS / "hexaglide.toml")
     made, _ = unit(study, tmp_path, step=STEP)
     one, start = Instance(made), made.start("drive_command")
     home = study.robot.home_carriages

@@ -2,10 +2,10 @@
 
 import subprocess
 import zipfile
-from pathlib import Path
 
 import pytest
 from tests.helpers.robot_c import STRICT
+from tests.helpers.samples import MECHANISMS
 
 import flexapod as fx
 from flexapod.mechanics.symbolic.compiler import compiler
@@ -13,7 +13,7 @@ from flexapod.model import PRESETS, ActuatorStudy
 from flexapod.output.exchange.c_source import FLAGS
 
 pytestmark = [pytest.mark.consistency, pytest.mark.skipif(compiler() is None, reason="there is no C compiler")]
-SAMPLES = {path.stem: path for path in sorted((Path(__file__).parents[2] / "examples" / "mechanisms").glob("*.toml"))}
+SAMPLES = {path.stem: path for path in sorted(MECHANISMS.glob("*.toml"))}
 ROBOTS = [name for name in PRESETS if not isinstance(fx.preset(name), ActuatorStudy)]
 
 

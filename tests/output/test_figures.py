@@ -3,7 +3,6 @@
 import re
 from collections import Counter
 from itertools import pairwise
-from pathlib import Path
 
 import matplotlib
 import numpy as np
@@ -15,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.legend import Legend
 from matplotlib.text import Text
+from tests.helpers.samples import sample_study
 
 from flexapod import plot
 from flexapod.analysis import modes, simulate, simulate_actuator
@@ -22,7 +22,7 @@ from flexapod.analysis.results.attributes import motion_end, robot_study
 from flexapod.app.browser.charts import charts
 from flexapod.common.errors import InputError
 from flexapod.design.maps import workspace_map
-from flexapod.model import load, preset
+from flexapod.model import preset
 from flexapod.output.figures import style
 from flexapod.output.figures.column_width import resize_figure
 from flexapod.output.figures.fast_axes import Panel, _Plain, rc_settings
@@ -35,8 +35,6 @@ from flexapod.output.scene.robot_scene import mode_scene, scene
 from flexapod.output.scene.style import ENERGIES
 
 pytestmark = pytest.mark.unit
-
-SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 
 
 @pytest.fixture(scope="module")
@@ -480,7 +478,7 @@ def test_words_of_a_wide_robot_stay_in_its_picture(name, width):
 
 def test_words_and_numbers_of_a_robot_along_one_axis_stand_apart():
     # One actuator along x: of the other two directions there is no room for numbers.
-    data = simulate(load(SAMPLES / "strut.toml"), fidelity="lumped", duration=0.002, step=1e-3)
+    data = simulate(sample_study("strut"), fidelity="lumped", duration=0.002, step=1e-3)
     drawn = plot.robot_3d(data)
     drawn.canvas.draw()
     for axes in drawn.axes:

@@ -12,6 +12,7 @@ from threading import Thread
 import numpy as np
 import pytest
 from tests.helpers.fmi_importer import Instance, Unit
+from tests.helpers.samples import sample_study
 
 import flexapod as fx
 from flexapod.common.errors import InputError
@@ -25,7 +26,6 @@ from flexapod.solve.time.robot_march import prepare
 
 pytestmark = [pytest.mark.consistency, pytest.mark.skipif(compiler() is None, reason="there is no C compiler")]
 STEP = 5e-4
-EXAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 
 
 @pytest.fixture(scope="module")
@@ -257,7 +257,7 @@ def test_c_of_other_mechanisms_is_their_march(tmp_path, name):
 
     Compiled without optimising: the same numbers, as products and sums are not contracted.
     """
-    study = fx.load(EXAMPLES / f"{name}.toml")
+    study = sample_study(name)
     fx.export(study, "c", tmp_path / "c", commands="motion", step=2e-4)
     subprocess.run(
         [*compiler(), *FLAGS, "-O0", "robot.c", "main.c", "-lm", "-o", "run"], cwd=tmp_path / "c", check=True
@@ -340,7 +340,7 @@ def test_a_unit_begins_when_it_is_told_and_again_at_nothing_after_a_reset(units)
 
 def test_carriages_that_keep_their_first_command_stay_where_they_are(tmp_path):
     """Commands of a hexaglide count from the feet of its rails: told what it starts with it does not move."""
-    study = fx.load(EXAMPLES / "hexaglide.toml")
+    study = sample_study("hexaglide")
     found = fx.export(study, "fmu", tmp_path / "robot.fmu", commands="inputs", step=STEP)
     one = Instance(Unit(found.path, tmp_path / "unpacked"))
     assert np.abs(one.unit.start("drive_command")).min() > 0.1

@@ -2,7 +2,6 @@
 
 import json
 import subprocess
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +9,7 @@ from tests.helpers.machines import BASE, TOP
 from tests.helpers.machines import study as machine_study
 from tests.helpers.mechanisms import ROBOTS as KINDS
 from tests.helpers.readers import GlbReader, z_up
+from tests.helpers.samples import MECHANISMS, sample_study
 from tests.helpers.stepped import section
 
 import flexapod as fx
@@ -21,7 +21,6 @@ from flexapod.output.scene.style import LEG_COLORS
 
 pytestmark = pytest.mark.consistency
 
-SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 SIDES, STATIONS = 16, 25
 FLOAT32 = 2.0**-23  # of a number: what its storage may lose; half of it by rounding
 ROBOTS = ("paper-robot", "tripod", "hexaglide", "delta", "planar", "in bushings", "on mounts")
@@ -35,7 +34,7 @@ def study_of(name):
         return override(study.replace(robot=robot.replace(legs=legs)), output_step=0.05)
     if name == "on mounts":
         return override(study.replace(robot=robot.replace(base_mount=BASE, platform_mount=TOP)), output_step=0.05)
-    study = fx.load(SAMPLES / f"{name}.toml") if (SAMPLES / f"{name}.toml").exists() else fx.preset(name)
+    study = sample_study(name) if (MECHANISMS / f"{name}.toml").exists() else fx.preset(name)
     return override(study, output_step=0.02)
 
 

@@ -3,11 +3,11 @@
 MuJoCo alone loads the file and finds equilibria and forces; of the product come the file and the numbers compared.
 """
 
-from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from tests.helpers.samples import known, sample_study
 
 import flexapod as fx
 from flexapod.analysis.results.variables import VARIABLES
@@ -30,14 +30,9 @@ pytestmark = pytest.mark.consistency
 
 mujoco = pytest.importorskip("mujoco")
 
-SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 PRESETS = ("paper-robot", "machine-hexapod", "tripod", "flight-simulator", "nano-hexapod", "small-hexapod")
 FILES = ("delta", "eight-legs", "flexures", "hexaglide", "planar", "tricept")
 GUIDE = Guide(gland=2e8, head=2e8)
-
-
-def study_of(name):
-    return fx.preset(name) if name in PRESETS else fx.load(SAMPLES / f"{name}.toml")
 
 
 def model_of(found):
@@ -62,7 +57,7 @@ def test_static_stiffness_is_that_of_the_study(name, tmp_path):
     Loops are springs in MuJoCo, 2 steps fast, 1e-4 of them lost (its hardest): parts in 1e5 of a leg; a prescribed
     carriage adds 1e-4 of a strut's. Springs stand at home, the equilibrium is micrometres away: 1e-5 of a free part.
     """
-    study = study_of(name)
+    study = known(name)
     free = ~rigid_limbs(study.robot).hub_held
     ours = fx.stiffness(study, load=np.zeros(6)).stiffness.values[np.ix_(free, free)]
     expected = np.zeros(6)
@@ -79,7 +74,7 @@ def test_rigid_robots_come_to_rest_on_the_forces_of_inverse_dynamics(name, tmp_p
 
     Without that servos give by micrometres of a metre, which turns legs and moves forces by as much.
     """
-    study = study_of(name)
+    study = known(name)
     model = model_of(fx.export(study, "mjcf", tmp_path / "robot.xml", fidelity="rigid"))
     data, slopes, q = model.data, model.force_gradient(model.home), model.home
     joints = model.model.jnt_qposadr[model.model.actuator_trnid[:, 0]]
@@ -104,7 +99,7 @@ def test_rigid_robots_come_to_rest_on_the_forces_of_inverse_dynamics(name, tmp_p
 
 def leaning_hinges():
     """A tripod whose legs do not stand square on their hinges: they go round on cones."""
-    study = fx.load(SAMPLES / "tripod.toml")
+    study = sample_study("tripod")
     axes = np.array([[0.2, 1.0, 0.15], [-0.866, -0.5, 0.2], [0.9, -0.5, -0.15]])
     legs = [
         leg.replace(base_joint=leg.base_joint.replace(axis=x)) for leg, x in zip(study.robot.legs, axes, strict=True)
@@ -118,7 +113,7 @@ def test_rigid_trees_need_the_forces_of_inverse_dynamics_in_motion(name, tmp_pat
 
     What turns between pistons and platform without mass has a ten-millionth of the payload's inertia there.
     """
-    study = leaning_hinges() if name == "leaning" else study_of(name)
+    study = leaning_hinges() if name == "leaning" else known(name)
     motion = CombinedMotion(
         amplitudes={"heave": 0.02, "roll": 0.1, "pitch": -0.08}, duration=0.4, independent=study.motion.independent
     )
@@ -153,7 +148,7 @@ def test_lowest_mode_is_that_of_the_study(name, tmp_path):
 
     A piston's mass, some per cent of what a leg carries, stands in two pieces in place of a beam.
     """
-    study = study_of(name)
+    study = known(name)
     model = model_of(fx.export(study, "mjcf", tmp_path / "robot.xml"))
     q = model.equilibrium(model.home, np.zeros(6), model.force_gradient(model.home))
     slopes, M = model.force_gradient(q), np.zeros((model.model.nv, model.model.nv))
@@ -213,7 +208,7 @@ def test_joints_that_give_way_differently_across_and_along(tmp_path):
 
     It carries forces across, so that what gives way there counts: twice as stiff below is 2 % of a stiffness.
     """
-    study = study_of("tricept")
+    study = known("tricept")
     legs = tuple(
         leg if leg.driven else leg.replace(
             base_joint=leg.base_joint.replace(stiffness=np.diag([2e6, 2e6, 2e7, 0, 0, 0]), leg_axes=True),

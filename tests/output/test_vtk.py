@@ -1,11 +1,11 @@
 """Motions as time series for ParaView, read by another reader: points, displacements and results are the Dataset's."""
 
-from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from tests.helpers.readers import VtuReader
+from tests.helpers.samples import MECHANISMS
 
 import flexapod as fx
 from flexapod.analysis.results.variables import VARIABLES
@@ -14,14 +14,13 @@ from flexapod.model import override
 
 pytestmark = pytest.mark.consistency
 
-SAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 LINE, TRIANGLE, STATIONS = 4, 5, 25
 
 
 @pytest.fixture(scope="module", params=["tripod", "hexaglide"])
 def series(request, tmp_path_factory):
     """A study, its result, and the files of both by instant."""
-    sample = SAMPLES / f"{request.param}.toml"
+    sample = MECHANISMS / f"{request.param}.toml"
     study = override(fx.load(sample), output_step=0.1)
     data = fx.simulate(study)
     found = fx.export(study, "vtk", tmp_path_factory.mktemp("vtk") / "motion.pvd", data=data)

@@ -42,7 +42,7 @@ def servos(study, which=range(1, 7)):
 
 
 def no_stretch(study):
-    return with_legs(study, lambda leg: leg.replace(axial_modes=0))
+    return with_legs(study, axial_modes=0)
 
 
 @cache
@@ -293,7 +293,7 @@ def test_poses_that_are_none(pose, words):
 
 
 def test_poses_without_mass_are_marked():
-    study = with_legs(paper_robot(), lambda leg: leg.replace(cylinder=Cylinder(mass=0, com=0, inertia=0, mouth=0)))
+    study = paper_robot(leg={"cylinder": Cylinder(mass=0, com=0, inertia=0, mouth=0)})
     data = fx.modes(study, POSES[:3])
     assert set(data.reason.values.tolist()) <= {0, 12}
     assert 12 in data.reason.values

@@ -40,9 +40,7 @@ def bare(leg):
 
 
 def study_for(fidelity, modes, axial_modes, drive, cylinder):
-    study = with_legs(
-        paper_robot(start="moving"), lambda leg: leg.replace(drive=DRIVES[drive], axial_modes=axial_modes)
-    )
+    study = paper_robot(leg={"drive": DRIVES[drive], "axial_modes": axial_modes}, start="moving")
     if not cylinder:
         study = with_legs(study, lambda leg: bare(leg).replace(piston=leg.piston.replace(length=1.2)))
     settings = {"modes": modes} if fidelity not in ("rigid", "lumped") else {}

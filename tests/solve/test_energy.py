@@ -42,8 +42,7 @@ def test_free_vibration_of_the_actuator(mode):
 
 def test_free_vibration_of_the_robot():
     # The lowest mode of the locked robot, started by its velocities, so that the closures hold exactly.
-    study = with_legs(paper_robot(), lambda leg: leg.replace(damping=0.0))
-    study = study.replace(motion=study.motion.replace(amplitude=0.0))
+    study = paper_robot(motion={"amplitude": 0.0}, leg={"damping": 0.0})
     found = robot_modes(study.robot, study.simulation)
     period, omega = 1 / found.frequency[0], 2 * np.pi * found.frequency[0]
     study = override(study, step=period / STEPS, output_step=period, duration=PERIODS * period)
@@ -57,7 +56,7 @@ def test_free_vibration_of_the_robot():
 def test_damped_and_driven_motion_closes_the_balance_at_second_order(drive):
     study = paper_robot(profile="smooth")
     if drive == "servo":
-        study = with_legs(study, lambda leg: leg.replace(drive=ServoDrive(stiffness=5e7, damping=2e4)))
+        study = with_legs(study, drive=ServoDrive(stiffness=5e7, damping=2e4))
     study = study.replace(load=study.load.replace(wrench={"law": "constant", "value": [50, -30, 20, 4, 5, -6]}))
     drift = []
     for h in (2e-3, 1e-3, 5e-4):
@@ -85,11 +84,9 @@ def test_momentum_of_a_payload_pulled_by_free_legs():
     # Pure force drives with zero force and no gravity: nothing works on the robot, its energy stays.
     from flexapod.model import ForceDrive
 
-    study = with_legs(
-        paper_robot(start="moving"),
-        lambda leg: leg.replace(
-            damping=0.0, drive=ForceDrive(law="csv", file="none", time=[0.0, 1.0], force=[0.0, 0.0])
-        ),
+    study = paper_robot(
+        leg={"damping": 0.0, "drive": ForceDrive(law="csv", file="none", time=[0.0, 1.0], force=[0.0, 0.0])},
+        start="moving",
     )
     study = study.replace(
         robot=study.robot.replace(gravity=[0, 0, 0]), motion=study.motion.replace(profile="smooth", duration=1.0)

@@ -2,18 +2,16 @@
 
 import re
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
 from tests.helpers.runs import paper_robot
+from tests.helpers.samples import sample_study
 
 from flexapod import simulate
-from flexapod.model import load, override, preset
+from flexapod.model import override, preset
 
 pytestmark = pytest.mark.convergence
-
-EXAMPLES = Path(__file__).parents[2] / "examples/mechanisms"
 
 
 def quick(study, **motion):
@@ -26,7 +24,7 @@ STUDIES = {
     "paper-robot": lambda: quick(paper_robot()),
     "paper-robot, jumps": lambda: quick(paper_robot(profile="trapezoid")),
     "tripod": lambda: quick(preset("tripod")),
-    "tricept": lambda: override(load(EXAMPLES / "tricept.toml"), duration=0.5),
+    "tricept": lambda: override(sample_study("tricept"), duration=0.5),
     "machine": lambda: override(preset("machine-hexapod"), duration=0.5),
 }
 

@@ -46,7 +46,7 @@ def robot(profile="smooth", amplitude=0.0, duration=0.08, drive=None, fidelity="
     study = study.replace(motion=study.motion.replace(amplitude=amplitude, duration=duration))
     payload = study.robot.payload.replace(tool=[0.1, 0.2, 0.3])
     study = study.replace(robot=study.robot.replace(payload=payload))
-    return with_legs(study, lambda leg: leg.replace(damping=0.1, **({"drive": drive} if drive else {})))
+    return with_legs(study, damping=0.1, **{"drive": drive} if drive else {})
 
 
 def errors(study, run, names, steps=STEPS, fine=FINE):

@@ -108,7 +108,7 @@ def test_no_mass_in_time():
 @pytest.mark.parametrize("rhoA", [1e-6, 1e-9, 1e-12, 0.0])
 def test_damping_beside_overdamped_light_parts(rhoA):
     """A servo's damper of 10 kN s/m holds a piston of micrograms: its rate of 1e16 1/s hid the payload's 10 rad/s."""
-    study = with_legs(robot_study(rhoA, servo=True, fidelity="lumped"), lambda leg: leg.replace(damping=0.0))
+    study = with_legs(robot_study(rhoA, servo=True, fidelity="lumped"), damping=0.0)
     piston, found = study.robot.legs[0].piston, fx.modes(study)
     k = piston.EA / piston.length
     series = 1 / (1 / k + 1 / SERVO.stiffness)

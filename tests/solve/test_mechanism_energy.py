@@ -33,7 +33,7 @@ def test_legs_on_flexures_close_the_balance_as_others_do(joint):
     # Springs on angles, and places that give way without any mass of their own.
     study, drift = moving("6-FPF", SOFT, axial_modes=0, modes=2), []
     for h in (5e-4, 2.5e-4):
-        study = override(with_legs(study, lambda leg: leg.replace(base_joint=joint, platform_joint=joint)), step=h)
+        study = override(with_legs(study, base_joint=joint, platform_joint=joint), step=h)
         run = run_robot(study)
         drift.append(np.ptp(balance(run)))
         assert run["closure"].max() < 1e-13

@@ -1,7 +1,5 @@
 """Frequencies and stiffness of robots of many kinds: exact dynamic stiffness, and closed forms."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
@@ -9,6 +7,7 @@ from scipy.linalg import eigh, null_space
 from tests.helpers.beam_frames import as_frame
 from tests.helpers.chains import NAMED
 from tests.helpers.mechanisms import AMPLITUDES, OWN, PISTON, ROBOTS, THREE, built, hexapod, leg, ring, tangents
+from tests.helpers.samples import sample_study
 from tests.oracles import frames
 
 import flexapod as fx
@@ -101,7 +100,7 @@ def test_closed_forms_of_a_tripod():
 
 def test_struts_of_the_planar_sample_are_beams_between_pins():
     """Modes 4 to 6, two half-waves, are off by what polynomials of that parity leave out, at k = 6 still 2.3e-5."""
-    robot = fx.load(Path(__file__).parents[2] / "examples" / "mechanisms" / "planar.toml").robot
+    robot = sample_study("planar").robot
     exact = frames.frequencies(*as_frame(robot), 6, digits=1e-10)
     for k in (6, 7):
         found = fx.modes(robot, modes=k)["frequency"].values[:6] / exact - 1

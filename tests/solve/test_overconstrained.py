@@ -1,11 +1,10 @@
 """Robots whose joints say twice what they hold: settled by elasticity; where nothing yields, shared or refused."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from tests.helpers.mechanisms import ROBOTS, built, leg
 from tests.helpers.moving import moving
+from tests.helpers.samples import sample_study
 
 import flexapod as fx
 from flexapod.model import AxisMotion, CombinedMotion, Simulation, Study, override
@@ -61,7 +60,7 @@ def test_a_missing_motion_of_an_ordinary_robot_has_no_such_cause():
 
 
 def test_rigid_legs_between_fixed_points_are_refused():
-    study = override(fx.load(Path(__file__).parents[2] / "examples" / "mechanisms" / "strut.toml"), fidelity="rigid")
+    study = override(sample_study("strut"), fidelity="rigid")
     with pytest.raises(fx.InputError, match="robot 1-UPS does not say what forces"):
         fx.run(study)
 

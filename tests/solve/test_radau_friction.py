@@ -30,7 +30,7 @@ def roll(friction):
     study = paper_robot(duration=0.4, output_step=1e-3)
     motion = study.motion.replace(amplitude=np.radians(5.0), duration=0.2, hold=0.2)
     drive = ServoDrive(stiffness=2e7, damping=1e4, friction=StrokeFriction(**FRICTIONS[friction]))
-    study = with_legs(study.replace(motion=motion), lambda leg: leg.replace(drive=drive))
+    study = with_legs(study.replace(motion=motion), drive=drive)
     coarse, fine = (run_robot(override(study, step=h, output_step=1e-3))["pose"][:, :3] for h in (1e-5, 5e-6))
     return study, fine + (fine - coarse) / 3
 

@@ -1,13 +1,11 @@
 """Rigid robots on more legs than they need, in time."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from tests.helpers.moving import moving
 from tests.helpers.runs import balance, run_robot
+from tests.helpers.samples import sample_study
 
-import flexapod as fx
 from flexapod import kinematics
 from flexapod.common.errors import ComputationError
 from flexapod.solve.statics.ideal_robot import rigid_forces
@@ -42,7 +40,7 @@ def test_a_welded_robot_of_rigid_legs_cannot_move():
 
 def test_drives_with_a_force_of_their_own_have_it():
     """Gas springs of 500 N were shown with the 114 N of stiffnesses that share; now no force is left open."""
-    study = fx.load(Path(__file__).parents[2] / "examples" / "mechanisms" / "eight-legs.toml")
+    study = sample_study("eight-legs")
     home = kinematics.home_pose(study.robot)
     forces = rigid_forces(kinematics.RigidPoses(study.robot, home), np.zeros(6))
     np.testing.assert_allclose(forces.drive_force[0, 6:], 500.0, rtol=1e-12)

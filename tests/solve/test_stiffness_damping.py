@@ -44,7 +44,7 @@ def test_ratio_of_the_modes_of_elements(fidelity):
 
 def test_matrices_of_a_leg_in_stretch_and_bending():
     """D = time K without gravity and force, in every elastic coordinate: K of another function than D."""
-    study = with_legs(paper_robot(), lambda leg: leg.replace(damping=Damping(stiffness=1e-4)))
+    study = paper_robot(leg={"damping": Damping(stiffness=1e-4)})
     system = prepare(override(study, duration=1e-3, step=1e-3)).system
     p = system.leg_p[0].copy()
     p[columns(LEG_PARAMETERS, "gravity")] = 0.0
@@ -79,7 +79,7 @@ def test_energy_lost_by_a_ringing_beam():
 
 def test_robot_loses_what_its_pistons_rates_say():
     """Power time * rates^T K rates of the elastic coordinates, summed from stored rates, is the energy lost."""
-    study = with_legs(paper_robot(start="straight"), lambda leg: leg.replace(damping=Damping(stiffness=3e-5)))
+    study = paper_robot(leg={"damping": Damping(stiffness=3e-5)}, start="straight")
     study = override(study.replace(motion=study.motion.replace(amplitude=0.0)), duration=0.02, step=2e-5)
     run = run_robot(override(study, output_step=2e-5))
     shapes, leg = prepare(study).system.kernel.shapes, study.robot.legs[0]
@@ -170,7 +170,7 @@ def test_sweeps_reach_both_parts():
 
 
 def test_words():
-    study = with_legs(paper_robot(), lambda leg: leg.replace(damping=Damping(ratio=0.005, stiffness=1e-4)))
+    study = paper_robot(leg={"damping": Damping(ratio=0.005, stiffness=1e-4)})
     assert _damping(study.robot.legs[0].damping, "piston") == (
         "damping of 0.5 % of the critical one in every mode of the bare piston and "
         "damping of 0.1 ms times the stiffness of the piston"

@@ -32,10 +32,10 @@ def test_its_rotary_inertia_is_that_of_a_ring():
 def test_straight_pistons_turn_as_cylinders_with_that_inertia(kind, fidelity):
     """The other side: a slender piston beside a cylinder with so much more inertia about its centre of mass."""
     given = moving(kind, step=None, tolerance=1e-8)
-    thick = with_legs(given, lambda leg: leg.replace(piston=bar(shear=True)))
+    thick = with_legs(given, piston=bar(shear=True))
     inertia = given.robot.legs[0].cylinder.inertia + ROTARY
     other = with_legs(given, lambda leg: leg.replace(piston=bar(), cylinder=leg.cylinder.replace(inertia=inertia)))
-    slender = with_legs(given, lambda leg: leg.replace(piston=bar()))
+    slender = with_legs(given, piston=bar())
     found, right, without = (fx.simulate(x, fidelity=fidelity, duration=0.06) for x in (thick, other, slender))
     off = 1e-8 if fidelity == "rigid" else 1e-7  # stretch rings: steps of the two runs are not the same
     for name in ("joint_force", "energy_kinetic", "actuator_force_rigid"):
