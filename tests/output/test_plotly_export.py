@@ -8,7 +8,8 @@ import pytest
 from matplotlib.figure import Figure
 
 from flexapod.output.report.plotly_export import plotly_figure
-from flexapod.output.report.replay import MOST_POINTS, decimate_curve, plotly_array
+from flexapod.output.report.replay import MOST_POINTS, plotly_array
+from flexapod.output.scene.geometry import decimation_indices
 
 pytestmark = pytest.mark.unit
 
@@ -99,18 +100,19 @@ def test_thinning_keeps_ends_and_extremes():
     x = np.linspace(0, 10, 10_001)
     y = np.sin(40 * x)
     y[3333], y[7777] = 5.0, -5.0  # spikes of a single sample
-    short_x, short_y = decimate_curve(x, y)
+    kept = decimation_indices(y[None], MOST_POINTS)
+    short_x, short_y = x[kept], y[kept]
     assert len(short_x) <= MOST_POINTS + 2
     assert {x[0], x[-1], x[3333], x[7777]} <= set(short_x)
     assert (short_y.max(), short_y.min()) == (5.0, -5.0)
     np.testing.assert_array_equal(np.interp(short_x, x, y), short_y)
-    assert len(decimate_curve(x[:100], y[:100])[0]) == 100
+    assert len(decimation_indices(y[None, :100], MOST_POINTS)) == 100
 
 
 def test_thinning_bears_gaps():
     y = np.full(4000, np.nan)
     y[100] = 1.0
-    assert np.nanmax(decimate_curve(np.arange(4000.0), y)[1]) == 1.0
+    assert 100 in decimation_indices(y[None], MOST_POINTS)
 
 
 def test_numbers_are_packed_with_their_shape():

@@ -148,7 +148,7 @@ def _refuse_unknown(table: model.FileControl, robot: model.Robot) -> None:
                 plant_channels(channel, robot, known)
             except InputError as error:
                 error.key = name
-                raise error.located(file=table.file) from None
+                raise error.with_location(file=table.file) from None
 
 
 def _made(

@@ -111,7 +111,7 @@ class InputError(FlexapodError):
             return None
         return self.key if self.value is None else f"{self.key} = {_short(self.value)}"
 
-    def located(self, *, file: str | Path | None = None, prefix: str = "") -> InputError:
+    def with_location(self, *, file: str | Path | None = None, prefix: str = "") -> InputError:
         """The same error with its file and the path of the section that holds the key."""
         key = ".".join(part for part in (prefix, self.key) if part) or None
         return type(self)(

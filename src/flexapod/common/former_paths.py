@@ -121,8 +121,8 @@ MODULES = (
         "paper",
         "verification.paper",
         "claims_welded>claims_variants cost>computing_time light>variants printed>printed_figures "
-        "printed_lines>printed_equations solid_figure>figures variant_figures>engine_figures welded>clamped_legs "
-        "welded_figure>clamped_legs",
+        "printed_lines>printed_equations readings>variants solid_figure>figures variant_figures>engine_figures "
+        "welded>clamped_legs welded_figure>clamped_legs",
     ),
     (
         "plot",

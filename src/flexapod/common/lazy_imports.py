@@ -66,9 +66,7 @@ class LazyModule(ModuleType):
     """A module that is imported with the first name that is asked of it."""
 
     def __getattr__(self, name: str) -> Any:
-        value = getattr(load_module(self.__name__), name)
-        setattr(self, name, value)
-        return value
+        return getattr(sys.modules.get(self.__name__) or load_module(self.__name__), name)
 
 
 class FormerPaths:

@@ -251,7 +251,7 @@ class DelayedLoop:
         """Complex response (outputs, inputs, frequencies) at frequencies [Hz], Eq. (T21.22)."""
         s = 2j * np.pi * frequencies(hz)
         late = np.exp(-s * self.delay)[:, None, None]
-        G, read, K = self.opened(hz)
+        G, read, K = self.without_loop(hz)
         names, m = self.inputs, len(self.system.inputs)
         puts = np.eye(len(names))[:, self._actuators()]
         more = np.zeros((len(G), 1, len(names) - m))
@@ -266,7 +266,7 @@ class DelayedLoop:
         found[:, : G.shape[1]] += G @ u
         return np.moveaxis(found, 0, 2)
 
-    def opened(self, hz: ArrayLike) -> tuple[Complex, Complex, Complex]:
+    def without_loop(self, hz: ArrayLike) -> tuple[Complex, Complex, Complex]:
         """Responses (f, any, any) without the loop: of the system, of what is read of it, of the controller."""
         s = 2j * np.pi * frequencies(hz)
         G, K = (np.moveaxis(part.at(hz), 2, 0) for part in (self.system, self.controller))

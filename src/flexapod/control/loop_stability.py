@@ -93,7 +93,7 @@ def _loop_gains(loop: DelayedLoop) -> Gains:
     at = [loop.system.inputs.index(name) for name in loop.controller.outputs]
 
     def around(hz: Array) -> Complex:
-        _, read, K = loop.opened(hz)
+        _, read, K = loop.without_loop(hz)
         return K @ read[:, :, at]
 
     return around

@@ -76,7 +76,7 @@ def read_frf(path: str | Path) -> Dataset:
     try:
         found = reader(content)
     except InputError as error:
-        raise error.located(file=path) from None
+        raise error.with_location(file=path) from None
     except (ValueError, IndexError, KeyError) as error:
         raise InputError(f"cannot be understood: {error}", file=path) from None
     if not found:
@@ -115,7 +115,7 @@ def _together(found: list[Response], path: Path) -> Dataset:
     try:
         return frf_dataset(f, values, outputs, inputs)
     except InputError as error:
-        raise error.located(file=path) from None
+        raise error.with_location(file=path) from None
 
 
 def _units(found: list[Response], side: str, path: Path) -> dict[str, str]:

@@ -3,9 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from flexapod import model
 from flexapod.common.files import RESULTS, path_of
+from flexapod.common.lazy_imports import LazyModule
+
+if TYPE_CHECKING:
+    from flexapod.analysis import store
+    from flexapod.analysis.results import attributes
+    from flexapod.design.sweeps import result
+else:
+    attributes = LazyModule("flexapod.analysis.results.attributes")
+    store = LazyModule("flexapod.analysis.store")
+    result = LazyModule("flexapod.design.sweeps.result")
 
 _SWEEPS = (".sqlite", ".zarr")
 
@@ -44,14 +55,9 @@ def load(path: str | Path) -> model.Study | model.ActuatorStudy:
     ending = path_of(path, "path").suffix.lower()
     if ending not in (*RESULTS, *_SWEEPS):
         return model.load(path)
-    from flexapod.analysis.results.attributes import study_from_attributes
 
     if ending in RESULTS:
-        from flexapod.analysis.store import stored_attributes
-
-        attrs = stored_attributes(path)
+        attrs = store.stored_attributes(path)
     else:
-        from flexapod.design.sweeps.result import open_sweep
-
-        attrs = dict(open_sweep(path).attrs)
-    return study_from_attributes(attrs, str(path))
+        attrs = dict(result.open_sweep(path).attrs)
+    return attributes.study_from_attributes(attrs, str(path))

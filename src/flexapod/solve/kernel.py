@@ -12,13 +12,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexapod.common.arrays import Array
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.mechanics import elements, leg, symbolic
 from flexapod.mechanics.elements.element import source_of
 from flexapod.mechanics.leg.layout import Shapes, leg_parameters
 from flexapod.mechanics.symbolic.compiler import CompiledFunction, compiled_library, compiler
 
 if TYPE_CHECKING:
+    from flexapod.mechanics.leg import kernel_functions, sliding
+    from flexapod.mechanics.symbolic import c_source
+    from flexapod.mechanics.symbolic import functions as symbolic_functions
     from flexapod.mechanics.symbolic.functions import NamedFunction
+else:
+    kernel_functions = LazyModule("flexapod.mechanics.leg.kernel_functions")
+    sliding = LazyModule("flexapod.mechanics.leg.sliding")
+    c_source = LazyModule("flexapod.mechanics.symbolic.c_source")
+    symbolic_functions = LazyModule("flexapod.mechanics.symbolic.functions")
 
 Function = Callable[..., tuple[Array, ...]]
 #: Functions that the time loops call, in the order of ``native/system.h``.
@@ -85,9 +94,7 @@ def _warn_interpreted() -> None:
 
 def interpreted_kernel(shapes: Shapes) -> Kernel:
     """Kernel evaluated by casadi, without a C compiler."""
-    from flexapod.mechanics.symbolic.functions import Interpreted
-
-    functions: dict[str, Any] = {f.name: Interpreted(f) for f in _functions(shapes)}
+    functions: dict[str, Any] = {f.name: symbolic_functions.Interpreted(f) for f in _functions(shapes)}
     return Kernel(shapes=shapes, library=None, **functions)
 
 
@@ -135,23 +142,21 @@ def loaded_kernel(
 
 def generated_text(shapes: Shapes) -> dict[str, str]:
     """C text of each function of the equations, by name."""
-    from flexapod.mechanics.symbolic.c_source import c_source
-
-    return {function.name: c_source(function) for function in _functions(shapes)}
+    return {function.name: c_source.c_source(function) for function in _functions(shapes)}
 
 
 def text_of_one_unit(shapes: Shapes) -> str:
     """C text of all functions that time loops call, for one unit with these."""
-    from flexapod.mechanics.symbolic.c_source import unit_source
-
-    return "\n".join(unit_source(function) for function in _functions(shapes) if function.name in FOR_LOOPS)
+    return "\n".join(c_source.unit_source(function) for function in _functions(shapes) if function.name in FOR_LOOPS)
 
 
 def _functions(shapes: Shapes) -> "list[NamedFunction]":
-    from flexapod.mechanics.leg.kernel_functions import joint_functions, leg_functions, payload_functions
-    from flexapod.mechanics.leg.sliding import friction_functions
-
-    return [*leg_functions(shapes), *friction_functions(shapes), *joint_functions(), *payload_functions(shapes)]
+    return [
+        *kernel_functions.leg_functions(shapes),
+        *sliding.friction_functions(shapes),
+        *kernel_functions.joint_functions(),
+        *kernel_functions.payload_functions(shapes),
+    ]
 
 
 def fingerprint(shapes: Shapes) -> list[object]:

@@ -62,7 +62,7 @@ def check_path(study: Study, path: RigidPath | None = None) -> list[str]:
             refuse_pure_force(study.robot, "the equilibrium start")
             refuse_taut(study.robot, study.simulation)
     except InputError as error:
-        raise error.located(file=study.path) from None
+        raise error.with_location(file=study.path) from None
     path = path or RigidPath(study)
     return [*check_geometry(study, path), *_rigid_remarks(path)]
 
@@ -110,7 +110,7 @@ def check_geometry(study: Study, path: RigidPath | None = None) -> list[str]:
         _refuse_turned(path)
         _refuse_singular(t, path.nearest)
     except InputError as error:
-        raise error.located(file=study.path) from None
+        raise error.with_location(file=study.path) from None
     return remarks + _remarks(robot, t, found.length, path.nearest) + _touching(path)
 
 
@@ -337,7 +337,7 @@ def check_actuator_path(study: ActuatorStudy) -> list[str]:
     try:
         remarks = check_outputs(study)
     except InputError as error:
-        raise error.located(file=study.path) from None
+        raise error.with_location(file=study.path) from None
     actuator, law = study.actuator, study.motion.extension
     spins = actuator.axial_inertia + actuator.tip_axial_inertia + actuator.hub_axial_inertia
     if study.motion.rotation is None and actuator.space and not spins and abs(np.cos(actuator.elevation)) < UPRIGHT:

@@ -12,12 +12,22 @@ from flexapod import model
 from flexapod.app.browser import markup
 from flexapod.app.browser.background import Debouncer, Threads
 from flexapod.common.errors import FlexapodError
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.output.scene.style import ERRORS
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from flexapod import analysis
+    from flexapod.analysis.error_budget import text
     from flexapod.analysis.error_budget.text import Bar
+    from flexapod.common import quantities
+    from flexapod.output.text import budget
+else:
+    analysis = LazyModule("flexapod.analysis")
+    text = LazyModule("flexapod.analysis.error_budget.text")
+    quantities = LazyModule("flexapod.common.quantities")
+    budget = LazyModule("flexapod.output.text.budget")
 
 CHANGED = 0.3  # after a change of the study, before its budget is computed [s]
 
@@ -61,36 +71,30 @@ class BudgetPanel:
 
 def budget_html(study: model.Study | model.ActuatorStudy, data: Dataset | None = None) -> str:
     """A budget in sentences, as a chart and as a table."""
-    from flexapod.analysis import budget
-    from flexapod.analysis.error_budget.text import bars
-    from flexapod.output.text.budget import peak_budget, table
-
     if not isinstance(study, model.Study):
         return markup.block("Error budgets are those of robots: a single actuator has no tool to place.", "soft")
-    found = None if data is None else peak_budget(data)
+    found = None if data is None else budget.peak_budget(data)
     where = (
         "at home" if found is None else f"at the pose of t = {found.attrs['pose_time']:.4g} s, the largest deviation"
     )
-    found = budget(study) if found is None else found
+    found = analysis.budget(study) if found is None else found
     first, *more = found.attrs["summary"].splitlines()
     note = f"At rest, {where}; world axes. What is dynamic: flexapod budget FILE --motion."
     sentences = markup.block(first, "good") + "".join(markup.block(line) for line in more)
     return (
         sentences
-        + chart_html(bars(found))
-        + markup.scrollable_html(markup.table_html(*table(found)))
+        + chart_html(text.bars(found))
+        + markup.scrollable_html(markup.table_html(*budget.table(found)))
         + markup.block(note, "soft")
     )
 
 
 def chart_html(rows: list[Bar]) -> str:
     """Bars of the parts, of each kind in its colour, with a legend."""
-    from flexapod.common.quantities import scale
-
     most = max((sum(row.sizes.values()) for row in rows), default=0.0)
     if not most:
         return ""
-    small = scale([sum(row.sizes.values()) for row in rows], "m")
+    small = quantities.scale([sum(row.sizes.values()) for row in rows], "m")
     lines = []
     for row in rows:
         pieces = "".join(

@@ -15,7 +15,7 @@ from flexapod.analysis.results.element_outputs import element_names
 from flexapod.analysis.results.summary import POINT_WORDS, tip_size
 from flexapod.common.arrays import Array
 from flexapod.common.quantities import NOTHING, capital, number, scale, zero_rounding_lines
-from flexapod.output.scene.geometry import nearest_index
+from flexapod.output.scene.geometry import decimation_indices, nearest_index
 from flexapod.output.scene.style import AXIS_COLORS, ENERGIES, colors_of_legs, drives
 
 if TYPE_CHECKING:
@@ -134,16 +134,6 @@ def _energies(data: Dataset) -> Chart:
     )
 
 
-def decimation_indices(values: Array, most: int = MOST) -> NDArray[np.intp]:
-    """Indices of the instants to draw: extremes of every line (lines, T) in each piece of the time, ascending."""
-    count = values.shape[1]
-    if count <= most:
-        return np.arange(count)
-    pieces = np.array_split(np.arange(count), max(1, most // (2 * len(values))))
-    kept = [piece[0] + at for piece in pieces for line in values for at in (line[piece].argmin(), line[piece].argmax())]
-    return np.unique([0, *kept, count - 1])
-
-
 class ChartView:
     """One chart in the panel, its cursor, and below it the values at the cursor."""
 
@@ -162,7 +152,7 @@ class ChartView:
         self._chart, self._plot, self._values = chart, None, None
         if chart is None:
             return
-        self._drawn = decimation_indices(chart.values)
+        self._drawn = decimation_indices(chart.values, MOST)
         with self._place:
             self._plot = self._gui.add_uplot(
                 self._lines(chart, time),

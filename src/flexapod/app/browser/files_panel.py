@@ -18,50 +18,50 @@ from flexapod.app.browser.document import Document, read
 from flexapod.app.browser.uploads import LARGEST, UploadFolder, limit_uploads, read_upload, store_table, study_download
 from flexapod.common.errors import FlexapodError
 from flexapod.common.files import temporary_folder
+from flexapod.common.lazy_imports import LazyModule
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from flexapod.analysis import store
     from flexapod.model import ActuatorStudy, Study
+    from flexapod.output.report import figures as report_figures
+    from flexapod.output.report import report as report_report
+else:
+    store = LazyModule("flexapod.analysis.store")
+    report_figures = LazyModule("flexapod.output.report.figures")
+    report_report = LazyModule("flexapod.output.report.report")
 
 _ONE_AT_A_TIME = threading.Lock()  # neither NetCDF nor the drawing of figures promises to work in parallel
 
 
 def netcdf(data: Dataset) -> bytes:
     """``results.nc``; of the study file it keeps the name, not the folders of whoever runs the server."""
-    from flexapod.analysis.store import save
-
     named = data.assign_attrs(study_file=Path(str(data.attrs.get("study_file", ""))).name)
     with _ONE_AT_A_TIME, temporary_folder() as folder:
-        return save(named, folder / "results.nc").read_bytes()
+        return store.save(named, folder / "results.nc").read_bytes()
 
 
 def csv(data: Dataset) -> bytes:
     """``results.csv``."""
-    from flexapod.analysis.store import save_csv
-
     with temporary_folder() as folder:
-        return save_csv(data, folder / "results.csv").read_bytes()
+        return store.save_csv(data, folder / "results.csv").read_bytes()
 
 
 def figures(data: Dataset) -> bytes:
     """A ZIP archive of the standard figures, PNG."""
-    from flexapod.output.report.figures import draw_figures
-
     with _ONE_AT_A_TIME, temporary_folder() as folder:
         archive = io.BytesIO()
         with zipfile.ZipFile(archive, "w", zipfile.ZIP_STORED) as files:
-            for figure in draw_figures(data, folder, ("png",)):
+            for figure in report_figures.draw_figures(data, folder, ("png",)):
                 files.write(figure.png, figure.png.name)
         return archive.getvalue()
 
 
 def report(study: Study | ActuatorStudy, data: Dataset) -> bytes:
     """``report.html``, one file."""
-    from flexapod.output.report.report import robot_report
-
     with _ONE_AT_A_TIME:
-        return robot_report(study, data).encode()
+        return report_report.robot_report(study, data).encode()
 
 
 ACKNOWLEDGED = 0.5  # time in which the browser shows that a file has arrived, before the page is built anew [s]

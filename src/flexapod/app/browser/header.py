@@ -21,13 +21,21 @@ from flexapod.app.browser import markup
 from flexapod.app.browser.document import Document
 from flexapod.common.errors import InputError
 from flexapod.common.files import RESULTS
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.common.tables.named_files import NamedFiles
 from flexapod.model.stored_tables import stored_tables
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from flexapod.analysis import store
+    from flexapod.analysis.results import stored_run
     from flexapod.app.browser.scene import PageScene
+    from flexapod.output.scene import geometry
+else:
+    stored_run = LazyModule("flexapod.analysis.results.stored_run")
+    store = LazyModule("flexapod.analysis.store")
+    geometry = LazyModule("flexapod.output.scene.geometry")
 
 
 class Header:
@@ -129,11 +137,9 @@ def open_source(file: Path) -> StudySource:
     if file.suffix.lower() not in RESULTS:
         study = model.load(file)
         return StudySource(document=_document(study, str(file)), study=study)
-    from flexapod.analysis.results.stored_run import check_run
-    from flexapod.analysis.store import open_results
 
-    data = open_results(file)
-    check_run(data, str(file))
+    data = store.open_results(file)
+    stored_run.check_run(data, str(file))
     path, text = data.attrs.get("study_file") or str(file), str(data.attrs["study"])
     try:
         study = study_from_attributes(data.attrs, str(file))
@@ -148,8 +154,6 @@ def open_source(file: Path) -> StudySource:
 
 def _check_kind(study: model.Study | model.ActuatorStudy, data: Dataset, file: str) -> None:
     """Refuse results whose study is of something else, or does not know the shapes they were computed with."""
-    from flexapod.output.scene.geometry import computed_study
-
     if isinstance(study, model.Study) != ("com_deviation" in data):
         raise InputError("holds a study of something else than its results", file=file, key="study")
     if isinstance(study, model.Study) and len(study.robot.legs) != data.sizes["leg"]:
@@ -160,11 +164,11 @@ def _check_kind(study: model.Study | model.ActuatorStudy, data: Dataset, file: s
             value=len(study.robot.legs),
             allowed=str(data.sizes["leg"]),
         )
-    match_shapes: Any = computed_study  # of one kind or the other
+    match_shapes: Any = geometry.computed_study  # of one kind or the other
     try:
         match_shapes(study, data)
     except InputError as error:
-        raise error.located(file=file) from None
+        raise error.with_location(file=file) from None
 
 
 def _without_tables(data: Dataset, text: str, file: str) -> model.Study:

@@ -10,6 +10,7 @@ import numpy as np
 import viser
 from viser import Icon
 
+from flexapod import analysis as fx
 from flexapod import kinematics, model
 from flexapod.analysis.results.idealizations import soft_drives
 from flexapod.app.browser import markup
@@ -18,13 +19,19 @@ from flexapod.app.browser.listed_modes import ModeControls, ModeTable
 from flexapod.app.browser.robot_scene import pose_words
 from flexapod.app.browser.scene import PageScene
 from flexapod.app.browser.text_fields import NumberField
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.common.quantities import number, text
 from flexapod.output.scene.geometry import BEAM_POINTS
 from flexapod.output.scene.skeleton import Skeleton
 from flexapod.output.text.description import locked_drive_words
 
 if TYPE_CHECKING:
+    from flexapod.analysis.description import actuator_description
+    from flexapod.output.scene import robot_scene
     from flexapod.output.scene.robot_scene import BeamModes as Shapes
+else:
+    actuator_description = LazyModule("flexapod.analysis.description.actuator_description")
+    robot_scene = LazyModule("flexapod.output.scene.robot_scene")
 
 
 LISTED = 24  # modes in the list
@@ -63,8 +70,6 @@ class RobotModeControls(ModeControls[model.Study]):
             self._pose[name].value *= moves
 
     def _listed(self, study: model.Study) -> ModeTable:
-        from flexapod import analysis as fx
-
         pose = self._at()
         found = fx.modes(study, pose)
         rows = [
@@ -132,10 +137,8 @@ class BeamModeControls(ModeControls[model.ActuatorStudy]):
         self._count.value = min(MOST, max(1, study.simulation.modes))
 
     def _listed(self, study: model.ActuatorStudy) -> ModeTable:
-        from flexapod.output.scene.robot_scene import beam_modes
-
         still = _still(study, self._length.value, int(self._count.value))
-        found = beam_modes(still, BEAM_POINTS)
+        found = robot_scene.beam_modes(still, BEAM_POINTS)
         kinds = [f", {kind}" if study.actuator.space else "" for kind in found.kind]
         names = [
             f"{i}: {number(f, 4)} Hz{kind}" for i, (f, kind) in enumerate(zip(found.frequency, kinds, strict=True), 1)
@@ -164,13 +167,11 @@ def _still(study: model.ActuatorStudy, length: float, count: int) -> model.Actua
 
 def _beam_table(modes: Shapes, study: model.ActuatorStudy) -> str:
     """Frequencies and damping as HTML, and the sag where the beam lies level."""
-    from flexapod.analysis.description.actuator_description import describe_actuator
-
     rows = [
         [str(i), number(f, 4), number(100 * d, 3), kind]
         for i, (f, d, kind) in enumerate(zip(modes.frequency, modes.damping_ratio, modes.kind, strict=True), start=1)
     ]
-    sag = describe_actuator(study).beam[0].sag
+    sag = actuator_description.describe_actuator(study).beam[0].sag
     level = f"The tip sags by {text(sag, 'm')} where the beam lies level. " if sag else ""
     note = level + "Hub and extension held, about the straight beam at rest."
     return markup.table_html(["Mode", "frequency [Hz]", "damping [%]", "what moves"], rows) + markup.block(note, "soft")

@@ -16,10 +16,15 @@ from typing import TYPE_CHECKING, Protocol
 from flexapod import model
 from flexapod.analysis.checks.resource_limits import available_memory
 from flexapod.app.browser.background import Threads
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.design.sweeps.executors import local_cores
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+    from flexapod import analysis
+else:
+    analysis = LazyModule("flexapod.analysis")
 
 TOLD = 0.3  # time after which somebody who waits is told so [s]
 SLICE = 1.0  # time for which somebody computes before others may have the place [s]
@@ -173,10 +178,8 @@ class Run:
             self._has_place = self._cores.acquire(self._turn, self._cancelled.is_set, _nothing)
 
     def _computed(self) -> Dataset | BaseException:
-        from flexapod import analysis as study
-
         try:
-            return study.run(self.study, progress=self._progress).load()  # the page shows all of it
+            return analysis.run(self.study, progress=self._progress).load()  # the page shows all of it
         except BaseException as error:
             return error
 

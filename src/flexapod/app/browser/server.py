@@ -16,13 +16,16 @@ from flexapod.app.browser.access import AccessControl
 from flexapod.app.browser.background import LOG, Debouncer, Threads
 from flexapod.app.browser.client_limits import CallbackPool
 from flexapod.app.browser.running import CorePool, ResultMemory
-from flexapod.common.lazy_imports import load_module
+from flexapod.common.lazy_imports import LazyModule, load_module
 from flexapod.common.resources import limit_arenas, release_memory
 
 if TYPE_CHECKING:
+    from flexapod.app.browser import session as browser_session
     from flexapod.app.browser.client_limits import ClientConnection
     from flexapod.app.browser.header import StudySource
     from flexapod.app.browser.session import Session
+else:
+    browser_session = LazyModule("flexapod.app.browser.session")
 
 GONE = "Queued a .* on a closed connection"
 """What viser remarks where somebody leaves while their page is being drawn: nothing is wrong then."""
@@ -81,9 +84,8 @@ class View:
 
     def _connected(self, client: viser.ClientHandle) -> None:
         self._loading.join()
-        from flexapod.app.browser.session import Session
 
-        session = Session(client, self._source, self._cores, self._results)
+        session = browser_session.Session(client, self._source, self._cores, self._results)
         with self._lock:
             self._sessions[client.client_id] = session
         session.start()

@@ -33,10 +33,19 @@ from flexapod.app.browser.running import CorePool, ResultMemory, Run
 from flexapod.app.browser.study_panel import StudyPanel
 from flexapod.app.browser.uploads import UploadFolder, refuse_length
 from flexapod.common.errors import FlexapodError
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.output.text.parts import warning_lines
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+    from flexapod.analysis.results import summary
+    from flexapod.app.browser import budget_panel, modes_panel, time_panel
+else:
+    summary = LazyModule("flexapod.analysis.results.summary")
+    budget_panel = LazyModule("flexapod.app.browser.budget_panel")
+    modes_panel = LazyModule("flexapod.app.browser.modes_panel")
+    time_panel = LazyModule("flexapod.app.browser.time_panel")
 
 LONGEST = 2_000
 """Longest text that is taken from a field [characters]."""
@@ -248,10 +257,6 @@ class Session:
                 self.header.fault(html)
 
     def _build(self, document: Document) -> None:
-        from flexapod.app.browser.budget_panel import BudgetPanel
-        from flexapod.app.browser.modes_panel import ModesPanel
-        from flexapod.app.browser.time_panel import TimePanel
-
         gui = self.client.gui
         run_script(self.client, "view", f"{_name(document)} - flexapod")
         self.header = Header(self.client, _name(document), self.simulate, self.cancel)
@@ -260,13 +265,15 @@ class Session:
         self._picture = SceneCaption(gui, self._back, self.scene.reset_view)
         tabs = gui.add_tab_group()
         with tabs.add_tab("Time"):
-            self.time_panel: TimePanel = TimePanel(self.client, self.scene, self._threads, self._point_chosen)
+            self.time_panel: time_panel.TimePanel = time_panel.TimePanel(
+                self.client, self.scene, self._threads, self._point_chosen
+            )
         with tabs.add_tab("Study"):
             self.study_panel: StudyPanel = StudyPanel(self.client, document, self._threads, self._edited)
         with tabs.add_tab("Modes"):
-            self.modes_panel: ModesPanel = ModesPanel(self.client, self.scene, self._threads)
+            self.modes_panel: modes_panel.ModesPanel = modes_panel.ModesPanel(self.client, self.scene, self._threads)
         with tabs.add_tab("Budget"):
-            self.budget_panel: BudgetPanel = BudgetPanel(self.client, self._threads)
+            self.budget_panel: budget_panel.BudgetPanel = budget_panel.BudgetPanel(self.client, self._threads)
         with tabs.add_tab("Files"):
             self.files_panel: FilesPanel = FilesPanel(
                 self.client,
@@ -382,9 +389,7 @@ def _preview(study: model.Study | model.ActuatorStudy, data: Dataset) -> str:
 
 def _answer(data: Dataset, point: str) -> str:
     """The deviation of a point in a sentence, of the others below it, and what the result warns of."""
-    from flexapod.analysis.results.summary import summaries
-
-    said = sorted(summaries(data), key=lambda s: getattr(s, "point", point) != point)
+    said = sorted(summary.summaries(data), key=lambda s: getattr(s, "point", point) != point)
     html = "".join(markup.block(s.sentence, "soft" if i else "good") for i, s in enumerate(said))
     if data.attrs["partial"]:
         reached = f"Stopped at t = {float(data.time[-1]):.6g} s: {data.attrs.get('failure', '')}"

@@ -22,11 +22,20 @@ from flexapod.app.cli.options import (
     robot_study,
 )
 from flexapod.common.errors import InputError
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.output.text.parts import Bullets
 from flexapod.output.text.terminal import print_answer
 
 if TYPE_CHECKING:
+    from flexapod.app.cli import pose_options
+    from flexapod.common import units
+    from flexapod.output.exchange import formats, pose_deck
     from flexapod.output.exchange.formats import Exported
+else:
+    pose_options = LazyModule("flexapod.app.cli.pose_options")
+    units = LazyModule("flexapod.common.units")
+    formats = LazyModule("flexapod.output.exchange.formats")
+    pose_deck = LazyModule("flexapod.output.exchange.pose_deck")
 
 OPTIONS = {"modes": "--count"} | {
     name: f"--{name}"
@@ -92,35 +101,31 @@ def export(
     json: Json = False,
 ) -> None:
     """Write the robot for other programs: a deck, a unit that runs, a model, its motion to look at, matrices."""
-    from flexapod.app.cli.pose_options import parse_pose
-    from flexapod.common.units import quantity
-    from flexapod.output.exchange.formats import FORMATS, check_options, check_place, format_of, write_format
-
     given: dict[str, object] = {
-        "pose": parse_pose(pose),
+        "pose": pose_options.parse_pose(pose),
         "elements": elements,
         "modes": count,
         "fidelity": fidelity,
         "magnify": magnify,
         "commands": commands,
-        "step": None if step is None else quantity(step, "time", key="--step"),
+        "step": None if step is None else units.quantity(step, "time", key="--step"),
     }
     channels = {"inputs": inputs, "outputs": outputs}
     given |= {name: [x.strip() for x in COMMA.split(text)] for name, text in channels.items() if text is not None}
     given = {name: value for name, value in given.items() if value is not None}
     with as_options(**OPTIONS):
-        kind = format_of(format)
-        check_options(format, given)
+        kind = formats.format_of(format)
+        formats.check_options(format, given)
         study = robot_study(file)
         path = file.with_name(file.stem + (*kind.endings, "")[0]) if out is None else out
-        check_place(format, path)
+        formats.check_place(format, path)
         if format == "abaqus":
             _check_name(path)
         refuse_existing(path, force)
         check_writable(path.parent if kind.endings else path)
-        if "title" in FORMATS[format].options:
+        if "title" in formats.FORMATS[format].options:
             given["title"] = f"{file.stem}: robot with locked drives"
-        found = write_format(study, format, path, given)
+        found = formats.write_format(study, format, path, given)
     print_answer(_words(file, pose, format, found), lambda: _as_dict(format, found, elements, count), json=json)
 
 
@@ -149,9 +154,12 @@ def _written(found: Exported) -> list[str]:
 
 def _as_dict(format: str, found: Exported, elements: int | None, count: int | None) -> dict[str, object]:
     if format == "abaqus":
-        from flexapod.output.exchange.pose_deck import ELEMENTS, MODES
-
-        return {"file": found.path, "format": format, "elements": elements or ELEMENTS, "modes": count or MODES}
+        return {
+            "file": found.path,
+            "format": format,
+            "elements": elements or pose_deck.ELEMENTS,
+            "modes": count or pose_deck.MODES,
+        }
     return {"file": found.path, "format": format, "files": list(found.files), "left_out": list(found.left_out)}
 
 

@@ -24,14 +24,31 @@ from flexapod.app.cli.options import (
 )
 from flexapod.common.errors import InputError
 from flexapod.common.files import write_text
-from flexapod.common.lazy_imports import hide_package
+from flexapod.common.lazy_imports import LazyModule, hide_package
 from flexapod.output.text.terminal import print_answer
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from flexapod.analysis import linear as analysis_linear
+    from flexapod.analysis import store
     from flexapod.analysis.linear import LinearModel
+    from flexapod.app.cli import pose_options
+    from flexapod.common import units
     from flexapod.common.arrays import Array
+    from flexapod.output import figures
+    from flexapod.output.exchange import formats
+    from flexapod.output.figures import linear as figures_linear
+    from flexapod.output.text import linear
+else:
+    analysis_linear = LazyModule("flexapod.analysis.linear")
+    store = LazyModule("flexapod.analysis.store")
+    pose_options = LazyModule("flexapod.app.cli.pose_options")
+    units = LazyModule("flexapod.common.units")
+    formats = LazyModule("flexapod.output.exchange.formats")
+    figures = LazyModule("flexapod.output.figures")
+    figures_linear = LazyModule("flexapod.output.figures.linear")
+    linear = LazyModule("flexapod.output.text.linear")
 
 OPTIONS = {"pose": "--pose", "drives": "--drives", "friction": "--friction", "inputs": "--input", "outputs": "--output"}
 
@@ -70,13 +87,11 @@ def frf(
             _check_file(path, key, force)
     hz = _frequencies(lowest, highest, points)
     with hide_package("dask"):
-        from flexapod.output.text.linear import frf_as_dict, frf_items
-
         model = _model(file, pose, drives, friction, (input, output))
         data = model.frequency_response(hz)
         files = _write(model, data, out, uff, mat, figure=not no_figures)
-        items = chain(frf_items(data, pose, drives), map("Written: {}".format, files))
-        print_answer(items, lambda: frf_as_dict(data, files), json=json)
+        items = chain(linear.frf_items(data, pose, drives), map("Written: {}".format, files))
+        print_answer(items, lambda: linear.frf_as_dict(data, files), json=json)
 
 
 @report_failures
@@ -86,19 +101,14 @@ def damp(
 ) -> None:  # fmt: skip
     """Poles about the static equilibrium at a pose: frequencies, damping, and whether they grow."""
     with hide_package("dask"):
-        from flexapod.output.text.linear import damp_as_dict, damp_items
-
         data = _model(file, pose, drives, friction).damp()
-        print_answer(damp_items(data, pose, drives, count), lambda: damp_as_dict(data), json=json)
+        print_answer(linear.damp_items(data, pose, drives, count), lambda: linear.damp_as_dict(data), json=json)
 
 
 def _model(
     file: Path, pose: str | None, drives: str, friction: str | None, channels: tuple[str, str] | None = None
 ) -> LinearModel:
     """The model with these channels; without any such that every robot has."""
-    from flexapod.analysis.linear import linearize
-    from flexapod.app.cli.pose_options import parse_pose
-
     with as_options(**OPTIONS):
         if friction not in (None, "sliding", "stuck"):
             raise InputError("is not known", key="friction", value=friction, allowed="sliding, stuck")
@@ -106,16 +116,16 @@ def _model(
         own = ("floor", "stroke") if study.robot.platform_fixed else ("wrench", "tool")
         names = [[name.strip() for name in COMMA.split(text)] for text in channels or own]
         kinds: Any = {"drives": drives, "friction": friction}  # whatever was typed
-        return linearize(study, parse_pose(pose), inputs=names[0], outputs=names[1], **kinds)
+        return analysis_linear.linearize(
+            study, pose_options.parse_pose(pose), inputs=names[0], outputs=names[1], **kinds
+        )
 
 
 def _frequencies(lowest: str, highest: str, points: int) -> Array:
     import numpy as np
 
-    from flexapod.common.units import DIMENSIONS, quantity
-
-    low, high = (quantity(text, "frequency", key=key) for text, key in ((lowest, "--from"), (highest, "--to")))
-    least, most = DIMENSIONS["frequency"].least, DIMENSIONS["frequency"].most
+    low, high = (units.quantity(text, "frequency", key=key) for text, key in ((lowest, "--from"), (highest, "--to")))
+    least, most = units.DIMENSIONS["frequency"].least, units.DIMENSIONS["frequency"].most
     if not 0 < low < high:
         raise InputError("are no range", key="--from, --to", value=f"{lowest}, {highest}", allowed="0 < --from < --to")
     if low < least or high > most:
@@ -140,22 +150,17 @@ def _write(
 ) -> Sequence[Path]:
     files: list[Path] = []
     if folder is not None:
-        from flexapod.analysis.store import save
-
-        files.append(save(data, folder / "frf.nc"))
+        files.append(store.save(data, folder / "frf.nc"))
         files += _figure(data, folder) if figure else ()
     if uff is not None:
-        from flexapod.output.exchange.formats import uff as text_of
-
-        write_text(uff, text_of(data), encoding="ascii", errors="replace")
+        write_text(uff, formats.uff(data), encoding="ascii", errors="replace")
         files.append(uff)
     return [*files, *([] if mat is None else [model.save(mat)])]
 
 
 def _figure(data: Dataset, folder: Path) -> Sequence[Path]:
     """The figure, of the first inputs where all of them are too many curves."""
-    from flexapod.output import figures
-    from flexapod.output.figures.linear import MOST
-
-    first = data.isel(output=slice(0, MOST))
-    return figures.save(figures.bode(first.isel(input=slice(0, max(1, MOST // first.sizes["output"])))), folder / "frf")
+    first = data.isel(output=slice(0, figures_linear.MOST))
+    return figures.save(
+        figures.bode(first.isel(input=slice(0, max(1, figures_linear.MOST // first.sizes["output"])))), folder / "frf"
+    )

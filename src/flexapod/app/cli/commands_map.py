@@ -11,12 +11,31 @@ import typer
 from flexapod.app.cli.failures import report_failures
 from flexapod.app.cli.options import Json, NoFigures, Out, Quiet, StudyFile, as_options, results_folder, robot_study
 from flexapod.common.errors import InputError
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.output.text import terminal
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from flexapod.analysis import store
+    from flexapod.analysis.checks import resource_limits
     from flexapod.analysis.results.time_history import Report
+    from flexapod.app.cli import pose_options
+    from flexapod.design import maps
+    from flexapod.design.maps import findings, grid
+    from flexapod.design.maps import maps as maps_maps
+    from flexapod.output import figures as output_figures
+    from flexapod.output.text import answers
+else:
+    resource_limits = LazyModule("flexapod.analysis.checks.resource_limits")
+    store = LazyModule("flexapod.analysis.store")
+    pose_options = LazyModule("flexapod.app.cli.pose_options")
+    maps = LazyModule("flexapod.design.maps")
+    findings = LazyModule("flexapod.design.maps.findings")
+    grid = LazyModule("flexapod.design.maps.grid")
+    maps_maps = LazyModule("flexapod.design.maps.maps")
+    output_figures = LazyModule("flexapod.output.figures")
+    answers = LazyModule("flexapod.output.text.answers")
 
 COMPUTING = 0.7  # share of the bar for the poses; the rest is for figures
 _FORM = '"surge=-100..100mm:41"'
@@ -52,24 +71,19 @@ def workspace_map(
     no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Map frequencies, stiffness, deviations, forces and margins over poses: map.nc and figures."""
-    from flexapod.analysis.checks.resource_limits import check_map
-    from flexapod.app.cli.pose_options import parse_acceleration, parse_at, parse_axes, parse_direction
-    from flexapod.design.maps import workspace_map as compute
-    from flexapod.design.maps.findings import map_findings
-    from flexapod.design.maps.grid import build_grid, usual_axes
-    from flexapod.design.maps.maps import FREQUENCIES
-    from flexapod.output.text.answers import map_items
-
     study = robot_study(file)
-    axes = parse_axes({"--x": x, "--y": y, "--z": z}, count, usual_axes(study.robot))
-    fixed = parse_at(at, axes)
-    settings = {"direction": parse_direction(direction), "acceleration": parse_acceleration(acceleration)}
+    axes = pose_options.parse_axes({"--x": x, "--y": y, "--z": z}, count, grid.usual_axes(study.robot))
+    fixed = pose_options.parse_at(at, axes)
+    settings = {
+        "direction": pose_options.parse_direction(direction),
+        "acceleration": pose_options.parse_acceleration(acceleration),
+    }
     folder = results_folder(file, "map", out)
     with terminal.progress_bar(quiet=quiet or json) as report:
         with as_options(axes="--x", at="--at", direction="--direction", acceleration="--acceleration"):
-            poses, frequencies = build_grid(study.robot, axes, fixed), max(mode, FREQUENCIES)
-            check_map(poses.size, frequencies, folder)
-            data = compute(
+            poses, frequencies = grid.build_grid(study.robot, axes, fixed), max(mode, maps_maps.FREQUENCIES)
+            resource_limits.check_map(poses.size, frequencies, folder)
+            data = maps.workspace_map(
                 study, poses.values, at=fixed, frequencies=frequencies, budget=budget, **settings,
                 progress=lambda words, share: report(words, COMPUTING * share),
             )  # fmt: skip
@@ -78,22 +92,20 @@ def workspace_map(
                 "is not a mode of this robot", key="--mode", value=mode, allowed=f"1 to {data.sizes['mode']}"
             )
         files = _write(data, folder, mode, report, figures=not no_figures)
-    found = map_findings(data, mode)
+    found = findings.map_findings(data, mode)
     drawn = " and a figure of each quantity" if len(files) > 1 else ""
     where = f"In {folder}: map.nc{drawn}. ({data.attrs['wall_time']:.2g} s of computation)"
     more = {"wall_time": data.attrs["wall_time"], "folder": folder, "files": files}
-    terminal.print_answer(chain(map_items(data, found), [where]), lambda: found.as_dict() | more, json=json)
+    terminal.print_answer(chain(answers.map_items(data, found), [where]), lambda: found.as_dict() | more, json=json)
 
 
 def _write(data: Dataset, folder: Path, mode: int, report: Report, *, figures: bool) -> list[Path]:
     """The map, and where they are wanted a figure of each quantity, of frequencies that of this `mode`."""
-    from flexapod.analysis.store import save
-    from flexapod.design.maps.findings import scalars_with_values
-    from flexapod.output import figures as plot
-
     report("writing the map", COMPUTING)
-    files, names = [save(data, folder / "map.nc")], scalars_with_values(data) if figures else ()
+    files, names = [store.save(data, folder / "map.nc")], findings.scalars_with_values(data) if figures else ()
     for k, name in enumerate(names):
         report(f"drawing {name.replace('_', ' ')}", COMPUTING + (1 - COMPUTING) * k / len(names))
-        files += plot.save(plot.workspace_map(data, name, mode=mode), folder / f"map-{name.replace('_', '-')}")
+        files += output_figures.save(
+            output_figures.workspace_map(data, name, mode=mode), folder / f"map-{name.replace('_', '-')}"
+        )
     return files

@@ -13,12 +13,34 @@ import typer
 
 from flexapod.app.cli.failures import report_failures
 from flexapod.app.cli.options import Json, NoFigures, Pose, Quiet, StudyFile, Verbose, as_options, check_writable
-from flexapod.output.text.terminal import print_answer
+from flexapod.common.lazy_imports import LazyModule
+from flexapod.output.text.terminal import print_answer, progress_bar
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from flexapod import analysis, model
+    from flexapod.analysis import store
+    from flexapod.analysis.pose_errors import disturbances
+    from flexapod.analysis.results import idealizations
+    from flexapod.app.cli import pose_options
+    from flexapod.common import errors
     from flexapod.model import Study
+    from flexapod.output import figures
+    from flexapod.output.text import answers, description
+    from flexapod.output.text import budget as text_budget
+else:
+    analysis = LazyModule("flexapod.analysis")
+    disturbances = LazyModule("flexapod.analysis.pose_errors.disturbances")
+    idealizations = LazyModule("flexapod.analysis.results.idealizations")
+    store = LazyModule("flexapod.analysis.store")
+    pose_options = LazyModule("flexapod.app.cli.pose_options")
+    errors = LazyModule("flexapod.common.errors")
+    model = LazyModule("flexapod.model")
+    figures = LazyModule("flexapod.output.figures")
+    answers = LazyModule("flexapod.output.text.answers")
+    text_budget = LazyModule("flexapod.output.text.budget")
+    description = LazyModule("flexapod.output.text.description")
 
 Folder = Annotated[
     Path | None,
@@ -38,46 +60,33 @@ def modes(
 
     Of a single actuator those of its straight beam at t = 0.
     """
-    from flexapod import model
-    from flexapod.analysis import modes as compute
-    from flexapod.app.cli.pose_options import parse_pose
-    from flexapod.output.text.answers import modes_as_dict, modes_items
-
     study = model.load(file)
     check_writable(out)
     with as_options(pose="--pose"):
-        data = compute(study, parse_pose(pose))
+        data = analysis.modes(study, pose_options.parse_pose(pose))
     of_robot = isinstance(study, model.Study)
-    shaken, sentences = _shaken(study, parse_pose(pose)) if of_robot else (None, ())
+    shaken, sentences = _shaken(study, pose_options.parse_pose(pose)) if of_robot else (None, ())
     files = [] if out is None else _write_modes(data, shaken, out, figure=of_robot and not no_figures)
-    items = chain(modes_items(study, data, pose, count, sentences), map("Written: {}".format, files))
-    print_answer(items, lambda: modes_as_dict(data, shaken, files), json=json)
+    items = chain(answers.modes_items(study, data, pose, count, sentences), map("Written: {}".format, files))
+    print_answer(items, lambda: answers.modes_as_dict(data, shaken, files), json=json)
 
 
 def _shaken(study: Study, pose: dict[str, float] | None) -> tuple[Dataset | None, tuple[str, ...]]:
     """Vibration by the study's disturbances, and in words, or why it has none."""
-    from flexapod.analysis import vibration
-    from flexapod.analysis.pose_errors.disturbances import shaking
-    from flexapod.common.errors import FlexapodError
-    from flexapod.output.text.description import vibration_words
-
     if study.disturbance is None:
         return None, ()
     try:
-        data = vibration(study, pose)
-    except FlexapodError as error:
+        data = analysis.vibration(study, pose)
+    except errors.FlexapodError as error:
         return None, (f"vibration by disturbances cannot be said: {error}",)
-    return data, vibration_words(shaking(data), "there")
+    return data, description.vibration_words(disturbances.shaking(data), "there")
 
 
 def _write_modes(data: Dataset, shaken: Dataset | None, folder: Path, *, figure: bool) -> list[Path]:
-    from flexapod.analysis.store import save
-    from flexapod.output import figures
-
-    files = [save(data, folder / "modes.nc")]
+    files = [store.save(data, folder / "modes.nc")]
     files += figures.save(figures.modes_3d(data), folder / "modes") if figure else ()
     if shaken is not None:
-        files.append(save(shaken, folder / "vibration.nc"))
+        files.append(store.save(shaken, folder / "vibration.nc"))
         files += figures.save(figures.vibration(shaken), folder / "vibration") if figure else ()
     return files
 
@@ -94,34 +103,31 @@ def budget(
     quiet: Quiet = False, verbose: Verbose = False, json: Json = False,
 ) -> None:  # fmt: skip
     """Error budget of the tool: which part adds what, and what halving the largest error would bring."""
-    from flexapod import model
-    from flexapod.analysis import budget as compute
-    from flexapod.analysis.results.idealizations import idealization
-    from flexapod.app.cli.pose_options import parse_pose
-    from flexapod.common.errors import InputError
-    from flexapod.output.text.budget import budget_as_dict, budget_counts, budget_items
-    from flexapod.output.text.description import ideal_words
-    from flexapod.output.text.terminal import print_answer, progress_bar
-
     study = model.load(file)
     if isinstance(study, model.ActuatorStudy):
-        raise InputError("is the study of a single actuator", file=file, allowed="the study of a robot")
+        raise errors.InputError("is the study of a single actuator", file=file, allowed="the study of a robot")
     check_writable(out)
     with as_options(pose="--pose"), progress_bar(quiet=quiet or json) as report:
-        data = compute(
-            study, parse_pose(pose), motion=motion, progress=lambda now, end: report("simulating", now / end)
+        data = analysis.budget(
+            study,
+            pose_options.parse_pose(pose),
+            motion=motion,
+            progress=lambda now, end: report("simulating", now / end),
         )
     files = [] if out is None else _write(data, out, figure=not no_figures)
-    ideal, counts = ideal_words(idealization(study.robot)), None if motion else budget_counts(study.robot)
-    items = chain(budget_items(data, (ideal, counts)), map("Written: {}".format, files))
+    ideal, counts = (
+        description.ideal_words(idealizations.idealization(study.robot)),
+        None if motion else text_budget.budget_counts(study.robot),
+    )
+    items = chain(text_budget.budget_items(data, (ideal, counts)), map("Written: {}".format, files))
     print_answer(
-        items, lambda: {**budget_as_dict(data, files), "ideal": ideal, "counts": counts}, json=json, verbose=verbose
+        items,
+        lambda: {**text_budget.budget_as_dict(data, files), "ideal": ideal, "counts": counts},
+        json=json,
+        verbose=verbose,
     )
 
 
 def _write(data: Dataset, folder: Path, *, figure: bool) -> list[Path]:
-    from flexapod.analysis.store import save
-    from flexapod.output import figures
-
-    files = [save(data, folder / "budget.nc")]
+    files = [store.save(data, folder / "budget.nc")]
     return [*files, *(figures.save(figures.budget(data), folder / "budget") if figure else ())]

@@ -12,12 +12,25 @@ import typer
 from flexapod.app.cli.failures import report_failures
 from flexapod.app.cli.options import Json, NoFigures, Quiet, check_writable
 from flexapod.common.files import write_text
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.output.text import terminal
 from flexapod.output.text.parts import Bullets, Chapter, Item, TextTable
 
 if TYPE_CHECKING:
+    from flexapod.analysis.results import summary
+    from flexapod.output.text import html as text_html
+    from flexapod.verification import pack
     from flexapod.verification.pack import Outcome
+    from flexapod.verification.paper import claims, outputs
+    from flexapod.verification.paper import engines as paper_engines
     from flexapod.verification.paper.study import PaperStudy
+else:
+    summary = LazyModule("flexapod.analysis.results.summary")
+    text_html = LazyModule("flexapod.output.text.html")
+    pack = LazyModule("flexapod.verification.pack")
+    claims = LazyModule("flexapod.verification.paper.claims")
+    paper_engines = LazyModule("flexapod.verification.paper.engines")
+    outputs = LazyModule("flexapod.verification.paper.outputs")
 
 Folder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the results.")]
 Engines = Annotated[
@@ -31,15 +44,14 @@ def replicate(
     quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Repeat the paper's whole study: figures, data, table of its claims, report."""
-    from flexapod.analysis.results.summary import summary
-    from flexapod.verification.paper.claims import claims, group_by_owner, verdict_summary
-    from flexapod.verification.paper.engines import agreements
-    from flexapod.verification.paper.outputs import replicate as repeat
-
     check_writable(out)
     with terminal.progress_bar(quiet=quiet or json) as report:
-        result = repeat(out, engines=engines, figures=not no_figures, progress=report)
-    found, table, agreed = summary(result["robot"]), claims(result), agreements(result.parts)
+        result = outputs.replicate(out, engines=engines, figures=not no_figures, progress=report)
+    found, table, agreed = (
+        summary.summary(result["robot"]),
+        claims.claims(result),
+        paper_engines.agreements(result.parts),
+    )
 
     def data() -> dict[str, object]:
         files = sorted(path for path in out.rglob("*") if path.is_file())
@@ -47,9 +59,9 @@ def replicate(
         return {"summary": found.as_dict(), "claims": [asdict(claim) for claim in table], **more, "files": files}
 
     items: list[Item] = [found.sentence, "The paper prints about 5 mm in Y and 10 mm in Z."]
-    for title, some in group_by_owner(table).items():
+    for title, some in claims.group_by_owner(table).items():
         told = [f"{claim.where}: {claim.says}: {claim.verdict} ({claim.ours})" for claim in some]
-        items.append(Chapter(f"{title} ({verdict_summary(some)[:-1]}):", told))
+        items.append(Chapter(f"{title} ({claims.verdict_summary(some)[:-1]}):", told))
     if agreed:
         theirs = [f"{row.quantity}: {row.words}" for row in agreed]
         items += [Chapter("Exudyn, an independent engine, against us (largest values):", theirs, close=True)]
@@ -81,15 +93,13 @@ def verify(
     quiet: Quiet = False,
 ) -> None:
     """Compute cases with published or closed-form answers: reference, ours, tolerance, verdict, time."""
-    from flexapod.verification.pack import verify as compute
-
     for key, file in (("--html", html), ("--markdown", markdown)):
         check_writable(None if file is None else file.parent, key)
     outcomes: list[Outcome] = []
     interrupted = False
     with terminal.progress_bar(quiet=quiet or json) as report:
         try:
-            compute(only or (), slow=slow, progress=report, keep=outcomes.append)
+            pack.verify(only or (), slow=slow, progress=report, keep=outcomes.append)
         except KeyboardInterrupt:
             interrupted = True
     passed = not interrupted and all(o.is_verified or o.not_run for o in outcomes)
@@ -105,8 +115,6 @@ def verify(
 
 def _verified(outcomes: list[Outcome]) -> Iterator[Item]:
     """The table of the cases, sources of their references, how many agree."""
-    from flexapod.verification import pack
-
     yield TextTable(pack.HEAD, pack.rows(outcomes), left=(0, 1))
     yield ""
     yield "Sources of the references"
@@ -118,20 +126,16 @@ def _verified(outcomes: list[Outcome]) -> Iterator[Item]:
 
 
 def _write(outcomes: list[Outcome], html: Path | None, markdown: Path | None) -> None:
-    from flexapod.output.text.html import page as whole
-    from flexapod.output.text.html import section
-    from flexapod.verification import pack
-
     if markdown is not None:
         write_text(markdown, pack.verification_markdown(outcomes))
     if html is not None:
         marks = {"pass": "good", "fail": "bad", "not computed": "bad", "not run": "open"}
         cases = [
-            section(o.case.name, o.case.name, [f"{o.case.statement}.", Bullets(pack.notes(o)), _checks(o)])
+            text_html.section(o.case.name, o.case.name, [f"{o.case.statement}.", Bullets(pack.notes(o)), _checks(o)])
             for o in outcomes
         ]
         table = TextTable(pack.HEAD, pack.rows(outcomes), marks=marks)
-        write_text(html, whole("flexapod: verification", pack.sentence(outcomes), [table, *cases]))
+        write_text(html, text_html.page("flexapod: verification", pack.sentence(outcomes), [table, *cases]))
 
 
 def _checks(outcome: Outcome) -> TextTable:

@@ -24,14 +24,24 @@ from flexapod.app.cli.options import (
     write_data,
 )
 from flexapod.common.errors import ComputationError, InputError
-from flexapod.common.lazy_imports import hide_package
+from flexapod.common.lazy_imports import LazyModule, hide_package
 from flexapod.output.text import terminal
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from flexapod import analysis, model
+    from flexapod.analysis.checks import resource_limits
+    from flexapod.mechanics.symbolic import cache as symbolic_cache
     from flexapod.mechanics.symbolic.cache import CacheContent
     from flexapod.model import ActuatorStudy, Study
+    from flexapod.output.text import answers
+else:
+    analysis = LazyModule("flexapod.analysis")
+    resource_limits = LazyModule("flexapod.analysis.checks.resource_limits")
+    symbolic_cache = LazyModule("flexapod.mechanics.symbolic.cache")
+    model = LazyModule("flexapod.model")
+    answers = LazyModule("flexapod.output.text.answers")
 
 COMPUTING = 0.88  # share of the bar for the simulation; the rest is for files
 Format = Annotated[
@@ -46,10 +56,8 @@ def run(
     quiet: Quiet = False, verbose: Verbose = False,
 ) -> None:  # fmt: skip
     """Simulate a study, rigid and flexible: results.nc, results.csv, figures, report.html."""
-    from flexapod.model import load
-
     drawn = () if no_figures else parse_formats(formats)
-    _run(load(file), results_folder(file, "run", out), drawn, json=json, quiet=quiet, verbose=verbose)
+    _run(model.load(file), results_folder(file, "run", out), drawn, json=json, quiet=quiet, verbose=verbose)
 
 
 @report_failures
@@ -58,10 +66,8 @@ def actuator(
     quiet: Quiet = False, verbose: Verbose = False,
 ) -> None:  # fmt: skip
     """Simulate the study of a single actuator; writes what `run` writes."""
-    from flexapod.model import ActuatorStudy, load
-
-    study = load(file)
-    if not isinstance(study, ActuatorStudy):
+    study = model.load(file)
+    if not isinstance(study, model.ActuatorStudy):
         raise InputError(
             "is the study of a robot",
             file=file,
@@ -75,16 +81,12 @@ def actuator(
 def _run(
     study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, json: bool, quiet: bool, verbose: bool
 ) -> None:
-    from flexapod.analysis import Interrupted
-    from flexapod.analysis import run as simulate
-    from flexapod.analysis.checks.resource_limits import check_disk
-
-    check_disk(study, folder)
+    resource_limits.check_disk(study, folder)
     interrupted = False
     with hide_package("dask"), hide_package("pint"), terminal.progress_bar(quiet=quiet or json) as report:
         try:
-            data = simulate(study, progress=lambda time, end: report("simulating", COMPUTING * time / end))
-        except Interrupted as stop:
+            data = analysis.run(study, progress=lambda time, end: report("simulating", COMPUTING * time / end))
+        except analysis.Interrupted as stop:
             data, interrupted = stop.dataset, True
         try:
             files = write_data(data, folder) if interrupted else write_all(data, folder, report, formats)
@@ -102,11 +104,9 @@ def _run(
 def _say(
     study: Study | ActuatorStudy, data: Dataset, folder: Path, files: list[Path], *, json: bool, verbose: bool
 ) -> None:
-    from flexapod.output.text.answers import run_as_dict, run_items
-
-    items = chain(run_items(study, data), ["", _where(data, folder, files)])
+    items = chain(answers.run_items(study, data), ["", _where(data, folder, files)])
     places = {"folder": folder, "files": files}
-    terminal.print_answer(items, lambda: run_as_dict(study, data) | places, json=json, verbose=verbose)
+    terminal.print_answer(items, lambda: answers.run_as_dict(study, data) | places, json=json, verbose=verbose)
 
 
 def _where(data: Dataset, folder: Path, files: Sequence[Path]) -> str:
@@ -141,9 +141,7 @@ def cache(clear: Clear = False, json: Json = False) -> None:
 
     FLEXAPOD_CACHE chooses another folder, FLEXAPOD_CACHE_MEGABYTES another bound.
     """
-    from flexapod.mechanics.symbolic.cache import cache_content, clear_cache
-
-    found = clear_cache() if clear else cache_content()
+    found = symbolic_cache.clear_cache() if clear else symbolic_cache.cache_content()
     kernels = f"{found.kernels} compiled kernel{'s' * (found.kernels != 1)}"
     if clear:
         items = [f"Removed {kernels} ({_megabytes(found.size)}) from {found.folder}."]

@@ -23,10 +23,26 @@ from flexapod.output.text import parts
 from flexapod.output.text.terminal import print_answer
 
 if TYPE_CHECKING:
+    from flexapod import model
+    from flexapod.analysis import predicted_damping
+    from flexapod.analysis.description import robot_description
     from flexapod.common.tables import reference
     from flexapod.common.tables.reference import Entry
+    from flexapod.design import first_robot
+    from flexapod.model.file import json_schema, page
     from flexapod.model.file.page import ListedEntry
+    from flexapod.output.text import answers, description
+    from flexapod.output.text import check as text_check
 else:
+    robot_description = LazyModule("flexapod.analysis.description.robot_description")
+    predicted_damping = LazyModule("flexapod.analysis.predicted_damping")
+    first_robot = LazyModule("flexapod.design.first_robot")
+    model = LazyModule("flexapod.model")
+    json_schema = LazyModule("flexapod.model.file.json_schema")
+    page = LazyModule("flexapod.model.file.page")
+    answers = LazyModule("flexapod.output.text.answers")
+    text_check = LazyModule("flexapod.output.text.check")
+    description = LazyModule("flexapod.output.text.description")
     reference = LazyModule("flexapod.common.tables.reference")
 
 Name = Annotated[Path | None, typer.Argument(metavar="NAME.toml", help="File to write.")]
@@ -103,10 +119,8 @@ def new(
 
 
 def _list(*, json: bool) -> None:
-    from flexapod.model import PRESETS
-
     found = {
-        "--preset": dict.fromkeys(PRESETS, ""),
+        "--preset": dict.fromkeys(model.PRESETS, ""),
         **{option: titles(option) for option in ("--example", "--notebook")},
     }
     items = [f"{option} {name}".ljust(40) + title for option, names in found.items() for name, title in names.items()]
@@ -122,26 +136,21 @@ def _example(option: str, wanted: str, name: Path | None, *, force: bool, json: 
 
 
 def _preset(name: str) -> tuple[str, dict[str, object], list[str]]:
-    from flexapod.model import preset_text
-
     with as_options(preset="--preset"):
-        return preset_text(name), {"preset": name}, []
+        return model.preset_text(name), {"preset": name}, []
 
 
 def _first_robot(request: str, preset: str | None, *, ideal: bool) -> tuple[str, dict[str, object], list[str]]:
     """Text of a first robot, what it is from, and what there is to say about it."""
-    from flexapod.design.first_robot import IDEAL, first_robot, parse_request
-    from flexapod.output.text.answers import first_robot_sentences
-
     if preset is not None:
         raise InputError("is given together with --from", key="--preset", value=preset, allowed="one of the two")
-    wanted = parse_request(request)
-    if ideal and wanted.texts.get("drive", IDEAL) != IDEAL:
+    wanted = first_robot.parse_request(request)
+    if ideal and wanted.texts.get("drive", first_robot.IDEAL) != first_robot.IDEAL:
         raise InputError(
             "is given together with --from drive", key="--ideal", value=wanted.drive, allowed="one of the two"
         )
-    text = first_robot(replace(wanted, drive=IDEAL) if ideal else wanted)
-    return text, {"from": request}, first_robot_sentences(text)
+    text = first_robot.first_robot(replace(wanted, drive=first_robot.IDEAL) if ideal else wanted)
+    return text, {"from": request}, answers.first_robot_sentences(text)
 
 
 Table = Annotated[str | None, typer.Argument(metavar="[TABLE]", help="Only this table and those in it: leg.drive")]
@@ -165,14 +174,11 @@ def keys(table: Table = None, markdown: Markdown = None, schema: Schema = None, 
         raise InputError(words, key="TABLE", value=table, allowed="one of the two")
     if len(set(files)) < len(files):
         raise InputError("is that of --markdown, too", key="--schema", value=files[0], allowed="another file")
-    from flexapod.model.file import page
 
     if markdown is not None:
         write_text(markdown, page.study_file_page())
     if schema is not None:
-        from flexapod.model.file.json_schema import json_schema
-
-        write_text(schema, json_schema())
+        write_text(schema, json_schema.json_schema())
     found = page.list_entries(table)
     written = [f"{' and '.join(files)} written."] if files else None
     told = (_key_chapter(item, page.HEAD, alone=table is not None) for item in found)
@@ -194,18 +200,11 @@ def _key_chapter(found: ListedEntry, head: Sequence[str], *, alone: bool) -> par
 @report_failures
 def check(file: StudyFile, verbose: Verbose = False, json: Json = False) -> None:
     """Validate a study and say in words what it asks of its legs: lengths, strokes, loads, stiffness, frequencies."""
-    from flexapod.analysis.description.robot_description import describe
-    from flexapod.model import Study, load
-    from flexapod.output.text.check import check_items
-    from flexapod.output.text.description import control_words, description_as_dict
-
-    found, control = describe(study := load(file)), ()
-    if isinstance(study, Study) and study.control is not None:
-        from flexapod.analysis.predicted_damping import control_effect
-
-        control = control_words(control_effect(study))
-    data = lambda: description_as_dict(found) | ({"control": control} if control else {})  # noqa: E731
-    print_answer(check_items(found, control), data, json=json, verbose=verbose)
+    found, control = robot_description.describe(study := model.load(file)), ()
+    if isinstance(study, model.Study) and study.control is not None:
+        control = description.control_words(predicted_damping.control_effect(study))
+    data = lambda: description.description_as_dict(found) | ({"control": control} if control else {})  # noqa: E731
+    print_answer(text_check.check_items(found, control), data, json=json, verbose=verbose)
 
 
 _FOLDERS = {"--example": "examples/gallery", "--notebook": "examples/notebooks"}

@@ -12,13 +12,29 @@ import typer
 
 from flexapod.app.cli.failures import INTERRUPTED, print_parts, report_failures, stop_words
 from flexapod.app.cli.options import Json, NoFigures, Out, Quiet, StudyFile, as_options, results_folder
-from flexapod.common.lazy_imports import hide_package
+from flexapod.common.lazy_imports import LazyModule, hide_package
 from flexapod.output.text import terminal
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from flexapod.design.convergence import Trials
+    from flexapod import model
+    from flexapod.analysis import store as analysis_store
+    from flexapod.design import convergence, sweeps
+    from flexapod.design.convergence import Trials, plan, table
+    from flexapod.design.convergence import ladder as convergence_ladder
+    from flexapod.output import figures
+    from flexapod.output.text import surveys
+else:
+    analysis_store = LazyModule("flexapod.analysis.store")
+    convergence = LazyModule("flexapod.design.convergence")
+    convergence_ladder = LazyModule("flexapod.design.convergence.ladder")
+    plan = LazyModule("flexapod.design.convergence.plan")
+    table = LazyModule("flexapod.design.convergence.table")
+    sweeps = LazyModule("flexapod.design.sweeps")
+    model = LazyModule("flexapod.model")
+    figures = LazyModule("flexapod.output.figures")
+    surveys = LazyModule("flexapod.output.text.surveys")
 
 SweepFile = Annotated[Path, typer.Argument(metavar="SWEEP", help="Sweep file (TOML): what varies, what is kept.")]
 SweepOut = Annotated[
@@ -44,20 +60,17 @@ def sweep(
     quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Compute many variants of a study: grids, lists, Latin hypercubes, random tolerances. Run again, it continues."""
-    from flexapod.design.sweeps import SweepStopped
-    from flexapod.design.sweeps import sweep as compute
-
     folder = results_folder(file, sweep_file.stem, out)
     store = folder / ("sweep.zarr" if zarr else "sweep.sqlite")
     options = as_options(workers="--workers", scheduler="--scheduler")
     with hide_package("dask.array"), options, terminal.progress_bar(quiet=quiet or json) as report:
         try:
-            data = compute(
+            data = sweeps.sweep(
                 file, sweep_file, store=store, scheduler=scheduler, workers=workers, retry_failed=retry_failed,
                 progress=report,
             )  # fmt: skip
             interrupted = False
-        except SweepStopped as stop:
+        except sweeps.SweepStopped as stop:
             data, interrupted = stop.dataset, True
         files = [folder / "sweep.sqlite", *[store] * zarr, *_write_sweep(data, folder, figure=not no_figures)]
     _say_sweep(data, folder, files, json=json)
@@ -70,22 +83,18 @@ def sweep(
 
 def _write_sweep(data: Dataset, folder: Path, *, figure: bool) -> list[Path]:
     """The table, and the figure where it is wanted and there is something to see."""
-    from flexapod.design.sweeps import save_table, scalar_names
-    from flexapod.output import figures
-    from flexapod.output.figures.sweep import sweep as draw
-
-    files = [save_table(data, folder / "sweep.csv")]
-    if figure and any(data[name].notnull().any() for name in scalar_names(data)):
-        files += figures.save(draw(data), folder / "sweep")
+    files = [sweeps.save_table(data, folder / "sweep.csv")]
+    if figure and any(data[name].notnull().any() for name in sweeps.scalar_names(data)):
+        files += figures.save(figures.sweep(data), folder / "sweep")
     return files
 
 
 def _say_sweep(data: Dataset, folder: Path, files: list[Path], *, json: bool) -> None:
-    from flexapod.output.text.surveys import sweep_as_dict, sweep_items
-
     where = f"In {folder}: {', '.join(path.name for path in files)}."
     places = {"folder": folder, "files": files}
-    terminal.print_answer(chain(sweep_items(data), ["", where]), lambda: sweep_as_dict(data) | places, json=json)
+    terminal.print_answer(
+        chain(surveys.sweep_items(data), ["", where]), lambda: surveys.sweep_as_dict(data) | places, json=json
+    )
 
 
 def _stopped_sweep(data: Dataset, *, json: bool) -> None:
@@ -113,13 +122,10 @@ def converge(
     no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Vary step, shapes and elements of a study: errors, orders, cost, and the cheapest setting that will do."""
-    from flexapod.design.convergence.plan import checked_trials, estimate
-    from flexapod.model import load
-
-    trials = checked_trials(load(file), None)
+    trials = plan.checked_trials(model.load(file), None)
     folder = results_folder(file, "converge", out)
     with as_options(accuracy="--accuracy"):
-        count, seconds = estimate(trials, accuracy)
+        count, seconds = plan.estimate(trials, accuracy)
     if not (json or quiet):
         terminal.print_text(
             f"About {count} settings, {_rough(seconds)}; the first time a few seconds more for each number of "
@@ -135,19 +141,15 @@ def converge(
 
 def _computed(trials: Trials, accuracy: float, *, ladder: bool, quiet: bool) -> tuple[dict[str, Dataset], bool]:
     """Tables by the names of their files, and whether the user stopped."""
-    from flexapod.design.convergence import ConvergenceStopped
-    from flexapod.design.convergence import converge as compute
-    from flexapod.design.convergence.ladder import ladder as climb
-
     tables: dict[str, Dataset] = {}
     name = "convergence"
     with terminal.progress_bar(quiet=quiet) as report:
         try:
-            tables[name] = compute(trials.study, accuracy=accuracy, progress=report, trials=trials)
+            tables[name] = convergence.converge(trials.study, accuracy=accuracy, progress=report, trials=trials)
             if ladder:
                 name, step = "ladder", float(tables[name].attrs["shape_step"])
-                tables[name] = climb(trials.study, step=step, progress=report, trials=trials)
-        except ConvergenceStopped as stop:
+                tables[name] = convergence_ladder.ladder(trials.study, step=step, progress=report, trials=trials)
+        except convergence.ConvergenceStopped as stop:
             tables[name] = stop.dataset
             return tables, True
         except KeyboardInterrupt:
@@ -164,24 +166,17 @@ def _rough(seconds: float) -> str:
 
 def _write(data: Dataset, folder: Path, name: str, *, figure: bool) -> list[Path]:
     """The table as NetCDF and CSV, and its figure where it is wanted."""
-    from flexapod.analysis.store import save
-    from flexapod.design.convergence.table import save_table
-    from flexapod.output import figures
-    from flexapod.output.figures.convergence import convergence, ladder
-
-    draw = {"convergence": convergence, "ladder": ladder}[name]
-    files = [save(data, folder / f"{name}.nc"), save_table(data, folder / f"{name}.csv")]
+    draw = {"convergence": figures.convergence, "ladder": figures.ladder}[name]
+    files = [analysis_store.save(data, folder / f"{name}.nc"), table.save_table(data, folder / f"{name}.csv")]
     return [*files, *(figures.save(draw(data), folder / name) if figure else ())]
 
 
 def _say(tables: dict[str, Dataset], folder: Path, files: list[Path], *, json: bool) -> None:
-    from flexapod.output.text.surveys import convergence_as_dict, convergence_items, ladder_items
-
     def data() -> dict[str, object]:
-        found = {name: convergence_as_dict(data) for name, data in tables.items()}
+        found = {name: surveys.convergence_as_dict(data) for name, data in tables.items()}
         return {**found.get("convergence", {}), "ladder": found.get("ladder"), "folder": folder, "files": files}
 
-    said = {"convergence": convergence_items, "ladder": ladder_items}
+    said = {"convergence": surveys.convergence_items, "ladder": surveys.ladder_items}
     where = f"In {folder}: {', '.join(path.name for path in files)}."
     items = (item for name, data in tables.items() for item in said[name](data))
     terminal.print_answer(chain(items, ["", where]), data, json=json)

@@ -7,14 +7,22 @@ import socket
 from importlib.util import find_spec
 from pathlib import Path
 from types import FrameType
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from flexapod.app.cli.failures import report_failures
 from flexapod.app.cli.options import Json
 from flexapod.common.errors import InputError
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.output.text.terminal import print_answer
+
+if TYPE_CHECKING:
+    from flexapod.app.browser import header, network, server
+else:
+    header = LazyModule("flexapod.app.browser.header")
+    network = LazyModule("flexapod.app.browser.network")
+    server = LazyModule("flexapod.app.browser.server")
 
 LOCAL = "127.0.0.1"
 PACKAGES = ("msgspec", "tomlkit", "viser", "websockets")  # what the page alone needs
@@ -46,16 +54,13 @@ def view(
 ) -> None:
     """Look at a study or its results in the browser: 3D, charts, modes, every number to turn. Ctrl-C ends it."""
     _check_packages()
-    from flexapod.app.browser.header import open_source
-    from flexapod.app.browser.network import address, free_port
 
-    source, free = open_source(file), free_port(host, port)
-    from flexapod.app.browser.server import View
+    source, free = header.open_source(file), network.free_port(host, port)
 
     _end_by_signals()
-    running = View(source, host, free, name)
+    running = server.View(source, host, free, name)
     try:
-        page = address(host, running.port)
+        page = network.address(host, running.port)
         _say(page, host, json=json)
         if not no_browser:
             import webbrowser
@@ -110,9 +115,7 @@ def _wait_for_a_signal() -> None:
 
 
 def _say(page: str, host: str, *, json: bool) -> None:
-    from flexapod.app.browser.network import is_local
-
-    local = is_local(host)
+    local = network.is_local(host)
     said = f"The page is at {page} ; Ctrl-C ends it."
     if not local:
         said += (

@@ -96,7 +96,7 @@ def _placed(error: FlexapodError, given: Mapping[str, object]) -> FlexapodError:
     file = given.get("file")
     if not isinstance(error, InputError) or error.file or not isinstance(file, Path) or "sweep_file" in given:
         return error
-    return error.located(file=file) if re.split(r"[.\[]", error.key or "")[0] in _TABLES else error
+    return error.with_location(file=file) if re.split(r"[.\[]", error.key or "")[0] in _TABLES else error
 
 
 def print_error(error: FlexapodError, *, as_json: bool) -> None:

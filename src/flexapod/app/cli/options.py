@@ -12,12 +12,24 @@ import typer
 
 from flexapod.common.errors import InputError
 from flexapod.common.files import check_name, temporary_folder
+from flexapod.common.lazy_imports import LazyModule
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from flexapod import model
+    from flexapod.analysis import store
     from flexapod.analysis.results.time_history import Report
     from flexapod.model import Study
+    from flexapod.output.report import figures as report_figures
+    from flexapod.output.report import report as report_report
+    from flexapod.output.text import html
+else:
+    store = LazyModule("flexapod.analysis.store")
+    model = LazyModule("flexapod.model")
+    report_figures = LazyModule("flexapod.output.report.figures")
+    report_report = LazyModule("flexapod.output.report.report")
+    html = LazyModule("flexapod.output.text.html")
 
 StudyFile = Annotated[Path, typer.Argument(metavar="FILE", help="Study file (TOML); `flexapod new` writes one.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON on stdout and nothing else; errors as JSON on stderr.")]
@@ -50,10 +62,8 @@ def as_options(**options: str) -> Iterator[None]:
 
 def robot_study(file: Path) -> Study:
     """The study of a robot; refuses that of a single actuator."""
-    from flexapod.model import ActuatorStudy, load
-
-    study = load(file)
-    if isinstance(study, ActuatorStudy):
+    study = model.load(file)
+    if isinstance(study, model.ActuatorStudy):
         raise InputError("is the study of a single actuator", file=file, allowed="the study of a robot")
     return study
 
@@ -109,34 +119,32 @@ def check_writable(folder: Path | None, key: str = "--out") -> None:
 
 def write_data(data: Dataset, folder: Path) -> list[Path]:
     """``results.nc`` and ``results.csv``, each whole or not at all."""
-    from flexapod.analysis.store import save, save_csv
-
-    return [save(data, folder / "results.nc"), save_csv(data, folder / "results.csv")]
+    return [store.save(data, folder / "results.nc"), store.save_csv(data, folder / "results.csv")]
 
 
 def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str]) -> list[Path]:
     """Data, figures in the formats asked for (none: no figures), ``report.html``; `report` is told what is written."""
-    from flexapod.output.report.figures import StoredFigure, concurrent_drawing
-    from flexapod.output.report.report import write_report
-    from flexapod.output.text import html
-
     if formats:
         _without_help()
     data.load()  # what nobody has asked for yet each copy of this process would make for itself
-    figures: list[StoredFigure] = []
+    figures: list[report_figures.StoredFigure] = []
     processes = PROCESSES if data.sizes["time"] >= MANY else 1
-    with concurrent_drawing(data, folder, formats, processes) if formats else nullcontext(list[StoredFigure]) as drawn:
+    with (
+        report_figures.concurrent_drawing(data, folder, formats, processes)
+        if formats
+        else nullcontext(list[report_figures.StoredFigure]) as drawn
+    ):
         report("writing results", 0.90)
         files = write_data(data, folder)
 
-        def finish_figures() -> list[StoredFigure]:
+        def finish_figures() -> list[report_figures.StoredFigure]:
             if formats:
                 html.library()  # while others draw
             report("drawing figures", 0.94)
             figures.extend(drawn())
             return figures
 
-        page = write_report(data, folder, finish_figures)
+        page = report_report.write_report(data, folder, finish_figures)
     return [*files, *(path for figure in figures for path in figure.files), page]
 
 

@@ -130,7 +130,7 @@ def _header(path: Path, line: int, cells: list[str], dimensions: Mapping[str, st
         try:
             factors[name] = to_si(f"1 {unit}", dimensions[name], key=f"line {line}, column {name!r}")
         except InputError as error:
-            raise error.located(file=path) from None
+            raise error.with_location(file=path) from None
     return factors
 
 

@@ -43,7 +43,7 @@ def read_system(path: Path) -> dict[str, Any]:
     try:
         return _checked(data)
     except InputError as error:
-        raise error.located(file=path) from None
+        raise error.with_location(file=path) from None
 
 
 def system_text(content: Content) -> str:

@@ -222,7 +222,7 @@ class Values:
             error.value = self.data[error.key]
         if error.what == "is missing" and error.key:
             error.next_step = self._add(error.key)
-        return error.located(file=self.file, prefix=self.path)
+        return error.with_location(file=self.file, prefix=self.path)
 
     def _add(self, name: str) -> str:
         line = example_line(self.path, name, self.data)

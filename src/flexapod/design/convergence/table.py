@@ -12,12 +12,17 @@ import numpy as np
 
 from flexapod.analysis.results.attributes import attributes
 from flexapod.common.files import replace_file
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.design.convergence.family import FAMILIES, Family, Findings
 from flexapod.design.convergence.trials import QUANTITIES, Setting, Trial
 from flexapod.model import ActuatorStudy, Study
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+    from flexapod.common import datasets
+else:
+    datasets = LazyModule("flexapod.common.datasets")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +81,6 @@ def _family_rows(found: Findings, name: str) -> list[SettingRow]:
 
 def rows_dataset(rows: list[SettingRow], quantities: Iterable[str], attrs: Mapping[str, object]) -> Dataset:
     """Rows as a Dataset along ``setting``."""
-    from flexapod.common.datasets import build_dataset
 
     def column(values: Iterable[object], unit: str, words: str) -> tuple[str, object, dict[str, str]]:
         return "setting", np.array(list(values)), {"units": unit, "long_name": words}
@@ -101,13 +105,11 @@ def rows_dataset(rows: list[SettingRow], quantities: Iterable[str], attrs: Mappi
         data[f"peak_{q}"] = column((t.peak(q) for t in trials), "m", f"largest {words}")
         data[f"error_{q}"] = column((row.error[q] for row in rows), "1", f"relative error of the {words}")
         data[f"order_{q}"] = column((row.order[q] for row in rows), "1", f"observed order of the {words}")
-    return build_dataset(data, attrs=attrs)
+    return datasets.build_dataset(data, attrs=attrs)
 
 
 def _groups(found: Findings) -> Dataset:
     """Findings of each family along ``group``: reference, rate, order, error of the reference."""
-    from flexapod.common.datasets import build_dataset
-
     families = [found.family(name) for name in FAMILIES if found.trials.get(name)]
     main = found.quantities[0]
     data = {
@@ -118,7 +120,7 @@ def _groups(found: Findings) -> Dataset:
     for q in found.quantities:
         own = np.array([f.own_error(q) for f in families])
         data[f"own_error_{q}"] = ("group", own, {"units": "1", "long_name": f"{QUANTITIES[q]}: error of the reference"})
-    return build_dataset(data, {"group": [f.name for f in families]})
+    return datasets.build_dataset(data, {"group": [f.name for f in families]})
 
 
 def _reference(family: Family) -> str:

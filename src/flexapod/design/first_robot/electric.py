@@ -9,7 +9,7 @@ from flexapod.common.quantities import number
 from flexapod.design.first_robot import sizing
 from flexapod.design.first_robot.catalogue import BORE, FASTEST, Screw, joint_stiffness, motor_inertia, motor_mass
 from flexapod.design.first_robot.sizing import Joints, SizedLeg
-from flexapod.design.first_robot.study_text import Plan, comment_lines, length_text, material_words, value_origin
+from flexapod.design.first_robot.study_text import LEG, Plan, comment_lines, length_text, material_words, value_origin
 from flexapod.design.first_robot.warm import accuracy_tables
 from flexapod.model import MATERIALS
 
@@ -110,8 +110,7 @@ class ElectricActuator:
 
     def leg(self, plan: Plan) -> list[str]:
         """The table of the legs."""
-        return ["[leg]                        # all six legs alike; write [[leg]] six times for unequal ones",
-                *_joints(self, plan), *_bodies(self, plan), "", *_drive(self)]  # fmt: skip
+        return [LEG, *_joints(self, plan), *_bodies(self, plan), "", *_drive(self)]
 
     def tables(self, plan: Plan) -> list[str]:
         """Tables of temperatures and tolerances of the machine."""
@@ -124,8 +123,8 @@ def stiffness_text(stiffness: float, digits: int = 3) -> str:
     return f"{number(1e-6 * stiffness, digits)} N/um"
 
 
-def joint_lines(bore: float, load: float, friction: str) -> tuple[list[str], float]:
-    """Joints on needle bearings, with `friction` at the base; the stiffness of one along the leg [N/m]."""
+def joint_lines(bore: float, load: float, friction: str) -> list[str]:
+    """Joints on needle bearings, with `friction` at the base."""
     bearings, whole = joint_stiffness(bore, load)
     along, across = stiffness_text(whole, 2), stiffness_text(0.75 * whole, 2)
     stiffness = f'stiffness = {{ axial = "{along}", radial = "{across}", loss = 0.03 }}'
@@ -137,7 +136,7 @@ def joint_lines(bore: float, load: float, friction: str) -> tuple[list[str], flo
             f"{stiffness_text(bearings)} along the leg under the {number(load, 3)} N at rest ({SECANT}); "
             "pins, forks and bolts give way as much again; across the leg it is three quarters"
         ),
-    ], whole
+    ]
 
 
 def plate_lines(plan: Plan) -> list[str]:
@@ -160,9 +159,8 @@ def _joints(self: ElectricActuator, plan: Plan) -> list[str]:
     bore = self.screw.bore
     seals = 0.1 * (bore / 0.03) ** 2
     friction = f', friction = {{ M0 = "{number(seals, 2)} N m", f1 = 0.0005, diameter = "{length_text(1.2 * bore)}" }}'
-    lines, _ = joint_lines(bore, self.load, friction)
     return [
-        *lines,
+        *joint_lines(bore, self.load, friction),
         *comment_lines(
             "friction: f1 of needle bearings (HR 1, p. 55); M0 chosen for seals and preload, 0.1 N m at a bore of 30 "
             "mm, as its square; joints at the platform would add as much again"

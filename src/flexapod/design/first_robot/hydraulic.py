@@ -18,6 +18,7 @@ from flexapod.design.first_robot.catalogue import CYLINDERS
 from flexapod.design.first_robot.electric import SLENDER, joint_lines, plate_lines
 from flexapod.design.first_robot.sizing import OPTION, SizedLeg
 from flexapod.design.first_robot.study_text import (
+    LEG,
     Plan,
     comment_lines,
     length_text,
@@ -63,8 +64,7 @@ class HydraulicActuator:
 
     def leg(self, plan: Plan) -> list[str]:
         """The table of the legs."""
-        return ["[leg]                        # all six legs alike; write [[leg]] six times for unequal ones",
-                *_leg(self, plan), "", *_drive(self)]  # fmt: skip
+        return [LEG, *_leg(self, plan), "", *_drive(self)]
 
     def tables(self, plan: Plan) -> list[str]:
         """Tables of temperatures and tolerances of the machine."""
@@ -140,7 +140,6 @@ def _slowed(plan: Plan) -> Plan:
 def _leg(self: HydraulicActuator, plan: Plan) -> list[str]:
     leg, request = self.leg_, plan.request
     mass, com, across, along = self.cylinder()
-    joints, _ = joint_lines(max(round(JOINT * self.bore, 3), 0.003), self.load, "")
     shear = leg.shortest - leg.mouth < SLENDER * leg.diameter
     diameter = value_origin(
         request.diameter,
@@ -148,7 +147,7 @@ def _leg(self: HydraulicActuator, plan: Plan) -> list[str]:
         f"{sizing.SLENDER:g} times its width",
     )
     return [
-        *joints,
+        *joint_lines(max(round(JOINT * self.bore, 3), 0.003), self.load, ""),
         *plate_lines(plan),
         f'cylinder = {{ mass = "{mass:.4g} kg", com = "{length_text(com)}", inertia = {across:.4g}, '
         f'mouth = "{length_text(leg.mouth)}", axial_inertia = {along:.3g} }}',

@@ -13,6 +13,7 @@ from flexapod.design.first_robot.sizing import Body, Joints, Request, SizedLeg
 from flexapod.model import MATERIALS
 
 WIDTH = 110  # of a comment
+LEG = "[leg]                        # all six legs alike; write [[leg]] six times for unequal ones"
 
 
 class Parts(Protocol):
@@ -117,7 +118,7 @@ def _leg(plan: Plan) -> list[str]:
     )
     stroke = value_origin(request.stroke, f"{sizing.STROKE:g} of the home height")
     return [
-        "[leg]                        # all six legs alike; write [[leg]] six times for unequal ones",
+        LEG,
         f'cylinder = {{ mass = "{mass:.4g} kg", com = "{length_text(com)}", inertia = {inertia:.4g}, '
         f'mouth = "{length_text(leg.mouth)}" }}',
         *comment_lines(

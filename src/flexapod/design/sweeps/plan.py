@@ -174,7 +174,7 @@ def _plan(top: Section, text: str) -> SweepPlan:
             file=top.file,
         )
     except InputError as error:
-        raise error.located(file=top.file) from None
+        raise error.with_location(file=top.file) from None
     if not plan.shape:
         raise InputError(
             "varies nothing", file=top.file or "sweep", allowed="[[vary]], [latin_hypercube], [random], or several"
@@ -228,7 +228,7 @@ def _block(section: Section) -> Block:
     spaced = Spaced(
         start=section.data["start"],
         stop=section.data["stop"],
-        count=_count(section, least=2),
+        count=_whole(section, "count", 2),
         logarithmic=spacing == "logarithmic",
     )
     return Block(keys=(key,), spaced=spaced)
@@ -254,26 +254,18 @@ def _list(section: Section, name: str) -> tuple[object, ...]:
     return tuple(value)
 
 
-def _count(section: Section, *, least: int = 1) -> int:
-    section.require_keys("count")
-    count = section.integer("count")
-    if count is None or count < least:
-        raise section.error("is out of range", "count", allowed=f"at least {least}")
-    return count
-
-
-def _seed(section: Section) -> int:
-    seed = section.integer("seed")
-    if seed is not None and seed < 0:
-        raise section.error("is out of range", "seed", allowed="at least 0")
-    return seed or 0
+def _whole(section: Section, name: str, least: int) -> int:
+    value = section.integer(name) or 0
+    if value < least:
+        raise section.error("is out of range", name, allowed=f"at least {least}")
+    return value
 
 
 def _hypercube(section: Section | None) -> Hypercube | None:
     if section is None:
         return None
     section.check_keys("count", "seed", "ranges")
-    section.require_keys("ranges")
+    section.require_keys("ranges", "count")
     inner, ranges = section.child(section.data["ranges"], "ranges"), []
     for name, value in inner.data.items():
         if not isinstance(value, list) or len(value) != 2:
@@ -281,18 +273,22 @@ def _hypercube(section: Section | None) -> Hypercube | None:
         ranges.append(KeyRange(key=parse_key(name, what=inner.path), low=value[0], high=value[1]))
     if not ranges:
         raise section.error("names no key", "ranges", allowed='such as { "payload.mass" = ["50 kg", "150 kg"] }')
-    return Hypercube(count=_count(section), seed=_seed(section), ranges=tuple(ranges))
+    return Hypercube(count=_whole(section, "count", 1), seed=_whole(section, "seed", 0), ranges=tuple(ranges))
 
 
 def _draws(section: Section | None) -> Draws | None:
     if section is None:
         return None
     section.check_keys("count", "seed", "tolerance")
-    section.require_keys("tolerance")
+    section.require_keys("tolerance", "count")
     entries = [section.child(entry, f"tolerance[{i}]") for i, entry in enumerate(_tables(section, "tolerance"), 1)]
     if not entries:
         raise section.error("names no key", "tolerance", allowed="[[random.tolerance]]")
-    return Draws(count=_count(section), seed=_seed(section), tolerances=tuple(_tolerance(entry) for entry in entries))
+    return Draws(
+        count=_whole(section, "count", 1),
+        seed=_whole(section, "seed", 0),
+        tolerances=tuple(_tolerance(entry) for entry in entries),
+    )
 
 
 def _tolerance(section: Section) -> Tolerance:

@@ -10,12 +10,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexapod.common.files import replace_file
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.design.sweeps.refusals import other_format
 from flexapod.design.sweeps.store import COMPUTED, FAILED, FLOAT, FORMAT, PENDING, SweepStore
 from flexapod.design.sweeps.zarr_folder import read_zarr
 
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset
+
+    from flexapod.common import datasets
+    from flexapod.design.sweeps import records
+else:
+    datasets = LazyModule("flexapod.common.datasets")
+    records = LazyModule("flexapod.design.sweeps.records")
 
 
 def open_sweep(path: str | Path) -> Dataset:
@@ -50,9 +57,6 @@ def store_file(path: Path) -> Path:
 
 def as_dataset(store: SweepStore) -> Dataset:
     """The Dataset of an open store: whole records of one on disk stay there until they are used."""
-    from flexapod.common.datasets import build_dataset
-    from flexapod.design.sweeps.records import lazy_record
-
     known = store.layout
     made: dict[str, Any] = {}
     states = np.full(known.size, PENDING, dtype="U8")
@@ -68,7 +72,7 @@ def as_dataset(store: SweepStore) -> Dataset:
         made[name] = (dims, np.ascontiguousarray(numbers[:, begin:end]).reshape(shape), attributes)
     for name, (dims, shape, attributes, _) in known.result_arrays(records=True).items():
         if store.path:
-            made[name] = lazy_record(store.path, name, dims, shape, attributes)
+            made[name] = records.lazy_record(store.path, name, dims, shape, attributes)
         else:
             made[name] = (dims, store.record(name, range(known.size), shape[1:]), attributes)
     made["status"] = ("point", states, {"long_name": "state of the point"})
@@ -79,7 +83,7 @@ def as_dataset(store: SweepStore) -> Dataset:
         for name, (dims, _, attributes, values) in known.arrays.items()
         if values is not None
     }
-    return build_dataset(made, coordinates, known.header)
+    return datasets.build_dataset(made, coordinates, known.header)
 
 
 def unstacked(data: Dataset) -> Dataset:
@@ -101,10 +105,9 @@ def unstacked(data: Dataset) -> Dataset:
             at = tuple(slice(None) if axis == own else 0 for axis in names)
             whole, dims = whole[at], [own, *array.dims[1:]]
         made[str(name)] = (dims, whole, array.attrs)
-    from flexapod.common.datasets import build_dataset
 
     coords = {name: made.pop(str(name)) for name in data.coords}
-    return build_dataset(made, coords, data.attrs)
+    return datasets.build_dataset(made, coords, data.attrs)
 
 
 def save_table(data: Dataset, path: str | Path) -> Path:

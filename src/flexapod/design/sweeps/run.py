@@ -159,7 +159,7 @@ def _select_outputs(points: Points, resolved: Resolved) -> OutputSelection:
     try:
         return select_outputs(points.plan.keep, points.nominal, resolved)
     except InputError as error:
-        raise error.located(file=points.plan.file) from None
+        raise error.with_location(file=points.plan.file) from None
 
 
 def _check_room(points: Points, resolved: Resolved, keep: OutputSelection, path: Path | None, workers: int) -> None:
@@ -167,7 +167,7 @@ def _check_room(points: Points, resolved: Resolved, keep: OutputSelection, path:
     try:
         check_memory(points.study(resolved.largest), max(1, min(workers, len(points))))
     except InputError as error:
-        raise error.located(file=points.nominal.path) from None
+        raise error.with_location(file=points.nominal.path) from None
     check_room(
         sum(8.0 * math.prod(array.shape) for array in keep.arrays.values()),
         None if path is None else path.parent,

@@ -123,7 +123,7 @@ class Points:
             cube = plan.hypercube
             self.cube: Array | None = None if cube is None else hypercube_values(cube, self.dimensions)
         except InputError as error:
-            raise error.located(file=plan.file) from None
+            raise error.with_location(file=plan.file) from None
         self.draws: tuple[Array, ...] = standard_draws(plan.draws, tuple(map(len, self.leaves))) if plan.draws else ()
         self._packed: dict[int, bytes] = {}
         self._room = MEMORY
@@ -183,13 +183,13 @@ class Points:
                     array[point] = row
                 self._note(found, point, study_from_tables(tables, self.files))
             except Malformed as error:
-                raise error.located(file=self.plan.file) from None
+                raise error.with_location(file=self.plan.file) from None
             except InputError as error:
                 last = error
                 found.first.append(point)
                 found.refused[point] = str(error)
         if last is not None and len(found.refused) == len(self):
-            raise last.located(file=self.plan.file)
+            raise last.with_location(file=self.plan.file)
         digest = hashlib.sha256(b"".join(found.known))
         digest.update(np.array(found.first).tobytes())
         return Resolved(

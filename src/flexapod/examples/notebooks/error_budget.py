@@ -62,3 +62,6 @@ for name, text in variants.items():
     found = fx.budget(fx.loads(text))
     left = np.linalg.norm(found.pose_accuracy.sel(state="calibrated")[:3])
     print(f"{name}: {1e6 * left:.1f} um after calibration")
+
+# %% [markdown]
+# In one file each, with a number by hand: `flexapod new --example better_joint`, `tolerances`, `warm_machine`.

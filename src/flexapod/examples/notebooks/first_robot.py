@@ -60,3 +60,6 @@ figure
 light = fx.loads(study.source_text.replace('material = "steel"', 'material = "aluminium"'))
 for name, one in (("steel", study), ("aluminium", light)):
     print(name, f"{float(fx.modes(one).frequency[0]):.1f} Hz")
+
+# %% [markdown]
+# `flexapod new --example paper_robot` and `better_joint` go on from here: problems solved in one file each.

@@ -41,7 +41,7 @@ def _checked(value: object) -> float | Damping:
         try:
             return Damping(**value)
         except InputError as error:
-            raise error.located(prefix="damping") from None
+            raise error.with_location(prefix="damping") from None
     try:
         return Damping(ratio=value).ratio  # type: ignore[arg-type]
     except InputError as error:

@@ -214,7 +214,7 @@ class Leg(Table):
         try:
             letters = self.letters
         except InputError as error:
-            raise error.located(prefix="chain") from None
+            raise error.with_location(prefix="chain") from None
         if not letters.stroke and self.strut is None:
             raise _misfit(self.chain, "strut", "is missing: without P or C the leg is a rod of fixed length")
         if letters.stroke and self.strut is not None:

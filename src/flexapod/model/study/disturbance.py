@@ -228,7 +228,7 @@ def _spectrum(section: Section, model: type[M], columns: dict[str, str], names: 
         try:
             check_density(frequency, density)
         except InputError as error:
-            raise error.located(file=section.files.folder / str(section.text("spectrum"))) from None
+            raise error.with_location(file=section.files.folder / str(section.text("spectrum"))) from None
         return {"frequency": frequency, "density": density}
 
     return section.read(model, then=table)

@@ -301,7 +301,7 @@ def read_robot(top: Section) -> Robot:
     try:
         chains = chains_of(kind)
     except InputError as error:
-        raise error.located(file=top.file, prefix="robot.type") from None
+        raise error.with_location(file=top.file, prefix="robot.type") from None
     top.leg = (1, len(chains))
     tables = _leg_tables(top, chains, kind)
     base, platform = (read_places(section, end, tables, kind) for end in _ENDS)

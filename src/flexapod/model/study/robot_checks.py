@@ -24,7 +24,7 @@ def check_counts(robot: Robot) -> None:
     try:
         chains = chains_of(robot.type)
     except InputError as error:
-        raise error.located(prefix="robot.type") from None
+        raise error.with_location(prefix="robot.type") from None
     found = tuple(leg.chain for leg in robot.legs)
     if found != chains:
         words = f"says {', '.join(chains)}; the legs are {', '.join(found)}"

@@ -171,7 +171,7 @@ class Simulation(Table):
             )
 
     @property
-    def unused(self) -> tuple[str, ...]:
+    def unused_keys(self) -> tuple[str, ...]:
         """Words for those of the settings that have no effect."""
         if self.tolerance is None or self.rho_inf == type(self).model_fields["rho_inf"].default:
             return ()

@@ -195,7 +195,7 @@ class Study(_Documented):
         return (
             *robot_remarks(self.robot),
             *settings_remarks(self.robot, self.simulation),
-            *self.simulation.unused,
+            *self.simulation.unused_keys,
             *self.notes,
         )
 
@@ -289,7 +289,7 @@ class ActuatorStudy(_Documented):
     def warnings(self) -> tuple[str, ...]:
         """Remarks on what is legal but doubtful."""
         basis = self.simulation.lateral_basis if self.simulation.lateral_shapes else None
-        return (*actuator_remarks(self.actuator, basis), *self._ignored, *self.simulation.unused, *self.notes)
+        return (*actuator_remarks(self.actuator, basis), *self._ignored, *self.simulation.unused_keys, *self.notes)
 
     @property
     def _ignored(self) -> tuple[str, ...]:

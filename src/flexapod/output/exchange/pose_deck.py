@@ -69,7 +69,7 @@ def abaqus_deck(
         return _written(study, pose, elements, modes, title)
     except InputError as error:
         if (error.key or "").startswith(("leg", "robot")):
-            raise error.located(file=study.path) from None
+            raise error.with_location(file=study.path) from None
         raise
 
 

@@ -13,6 +13,7 @@ from flexapod.analysis.results.attributes import carried_study, robot_of
 from flexapod.analysis.results.element_outputs import element_names
 from flexapod.analysis.results.summary import has_separate_tool
 from flexapod.common.files import temporary_folder
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.common.processes import forked_map
 from flexapod.common.quantities import capital
 from flexapod.output.scene.geometry import BeamMotion
@@ -22,6 +23,12 @@ from flexapod.output.text.budget import peak_budget
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from xarray import Dataset
+
+    from flexapod.output import figures
+    from flexapod.output.report import plotly_export
+else:
+    figures = LazyModule("flexapod.output.figures")
+    plotly_export = LazyModule("flexapod.output.report.plotly_export")
 
 FAST = 3  # level of deflating: half the time of the usual one, a quarter more bytes
 _Plan = tuple[str, str, Callable[[], "Figure"]]
@@ -67,14 +74,11 @@ def concurrent_drawing(
 
 def store_figure(figure: Figure, title: str, stem: Path, formats: Sequence[str] = ("png", "svg")) -> StoredFigure:
     """Write a figure as ``stem.png``, ``stem.svg``, ``stem.pdf``, as asked for."""
-    from flexapod.output import figures as plot
-    from flexapod.output.report.plotly_export import plotly_figure
-
-    files = plot.save(figure, stem, formats=formats)
+    files = figures.save(figure, stem, formats=formats)
     if "png" not in formats:
         with temporary_folder() as folder:
-            plot.save(figure, folder / stem.name, formats=("png",))
-    return StoredFigure(stem.name, title, _picture(figure), plotly_figure(figure), files)
+            figures.save(figure, folder / stem.name, formats=("png",))
+    return StoredFigure(stem.name, title, _picture(figure), plotly_export.plotly_figure(figure), files)
 
 
 def _picture(figure: Figure) -> bytes:
@@ -106,47 +110,47 @@ def _picture(figure: Figure) -> bytes:
 def _robot(data: Dataset) -> Iterator[_Plan]:
     import numpy as np
 
-    from flexapod.output import figures as plot
-
     found = drives(data)
     elastic = bool(np.abs(data.com_deviation).max() > 0)
     axes, held = ("x", "y", "z"), robot_of(data).platform_fixed
     words = "rigid legs against flexible ones, and the deviation on its own scale"
     if has_separate_tool(data):
-        yield "tool-path", f"Path of the tool: {words}", lambda: plot.com_path(data, axes, "tool")
+        yield "tool-path", f"Path of the tool: {words}", lambda: figures.com_path(data, axes, "tool")
     if not held:
-        yield "com-path", f"Path of the centre of mass: {words}", lambda: plot.com_path(data, axes)
+        yield "com-path", f"Path of the centre of mass: {words}", lambda: figures.com_path(data, axes)
     if elastic:
-        yield "deviation-by-cause", "Deviation of the centre of mass by cause", lambda: plot.deviation_by_cause(data)
+        yield "deviation-by-cause", "Deviation of the centre of mass by cause", lambda: figures.deviation_by_cause(data)
     budget = peak_budget(data)
     if budget is not None:
-        yield "error-budget", "Error budget at rest, at the pose of the largest deviation", lambda: plot.budget(budget)
+        yield (
+            "error-budget",
+            "Error budget at rest, at the pose of the largest deviation",
+            lambda: figures.budget(budget),
+        )
     method = "Newton-Euler" if found.plain else "rigid robot"
     forces = f"Drive {found.word}s: {method} with rigid legs against the multibody model, and their difference"
-    yield "actuator-forces", forces, lambda: plot.actuator_forces(data)
+    yield "actuator-forces", forces, lambda: figures.actuator_forces(data)
     place = found.place
     words = "Leg lengths, and how far the flexible legs are off"
     words = words if place == "length" else f"{place[0].upper()}{place[1:]}, as commanded"
-    yield "leg-lengths", words, lambda: plot.leg_lengths(data)
+    yield "leg-lengths", words, lambda: figures.leg_lengths(data)
     if np.abs(data.tip_deflection).max() > 0:
-        yield "tip-deflections", "Deflection of the tips across the legs", lambda: plot.tip_deflections(data)
+        yield "tip-deflections", "Deflection of the tips across the legs", lambda: figures.tip_deflections(data)
     for own in element_names(data):
-        yield own.replace("_", "-"), capital(data[own].attrs["long_name"]), lambda own=own: plot.by_leg(data, own)
+        yield own.replace("_", "-"), capital(data[own].attrs["long_name"]), lambda own=own: figures.by_leg(data, own)
     if not held:
-        yield "motion", "Commanded motion", lambda: plot.motion_law(data)
-    yield "energies", "Energies and their balance", lambda: plot.energies(data)
-    yield "robot", "The robot at the end of the motion; pale: at the start", lambda: plot.robot_3d(data)
+        yield "motion", "Commanded motion", lambda: figures.motion_law(data)
+    yield "energies", "Energies and their balance", lambda: figures.energies(data)
+    yield "robot", "The robot at the end of the motion; pale: at the start", lambda: figures.robot_3d(data)
 
 
 def _actuator(data: Dataset) -> Iterator[_Plan]:
-    from flexapod.output import figures as plot
-
     drawn = _seen(data)
     if drawn is not None and "direction" not in data.tip_deflection.dims:
-        yield "path", "The tip in the plane of motion", lambda: plot.actuator_path(data, *drawn)
-    yield "response", "Deflection of the tip, and the length outside the hub", lambda: plot.actuator_response(data)
+        yield "path", "The tip in the plane of motion", lambda: figures.actuator_path(data, *drawn)
+    yield "response", "Deflection of the tip, and the length outside the hub", lambda: figures.actuator_response(data)
     if "mode_amplitude" in data:
-        yield "amplitudes", "Amplitudes of the shapes", lambda: plot.actuator_modes(data)
+        yield "amplitudes", "Amplitudes of the shapes", lambda: figures.actuator_modes(data)
 
 
 def _seen(data: Dataset) -> tuple[float, float] | None:

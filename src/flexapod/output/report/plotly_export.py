@@ -17,7 +17,8 @@ from matplotlib.patches import Rectangle
 from matplotlib.text import Annotation
 from matplotlib.ticker import FixedLocator
 
-from flexapod.output.report.replay import decimate_curve, plotly_array
+from flexapod.output.report.replay import MOST_POINTS, plotly_array
+from flexapod.output.scene.geometry import decimation_indices
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -178,12 +179,11 @@ def _lines(axes: Axes, k: int) -> Iterator[dict[str, Any]]:
     for line in sorted(axes.get_lines(), key=lambda line: line.get_zorder()):
         if _ties(axes, line) != (True, True) or not line.get_visible():
             continue
-        x, y = (np.ma.filled(np.ma.asarray(v, dtype=float), np.nan) for v in line.get_data())
-        x, y = decimate_curve(np.atleast_1d(x), np.atleast_1d(y))
-        name = str(line.get_label())
+        x, y = (np.ma.filled(np.ma.asarray(np.atleast_1d(v), dtype=float), np.nan) for v in line.get_data())
+        seen, name = decimation_indices(y[None], MOST_POINTS), str(line.get_label())
         yield {
-            "type": "scatter", "xaxis": _key("x", k), "yaxis": _key("y", k), "x": plotly_array(x), "y": plotly_array(y),
-            "name": "" if name.startswith("_") else name, **_look(line),
+            "type": "scatter", "xaxis": _key("x", k), "yaxis": _key("y", k), "x": plotly_array(x[seen]),
+            "y": plotly_array(y[seen]), "name": "" if name.startswith("_") else name, **_look(line),
             "hovertemplate": f"%{{y:.5g}} {unit.group(1) if unit else ''}",
         }  # fmt: skip
 

@@ -13,6 +13,7 @@ from flexapod import model
 from flexapod.analysis.results.summary import POINT_WORDS, has_separate_tool
 from flexapod.common.arrays import Array
 from flexapod.common.errors import FlexapodError
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.common.quantities import number, scale, zero_rounding_lines
 from flexapod.common.resources import one_thread
 from flexapod.output.scene.geometry import BeamMotion, RobotMotion
@@ -23,7 +24,10 @@ from flexapod.output.scene.style import FLEXIBLE, RIGID, colors_of_legs
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from flexapod import analysis
     from flexapod.model import ActuatorStudy, Study
+else:
+    analysis = LazyModule("flexapod.analysis")
 
 MOST_POINTS = 1500  # of a curve: more than a page is wide
 
@@ -58,10 +62,9 @@ def locked_modes(study: Study | ActuatorStudy) -> Dataset | None:
     """Modes of a robot at home while its commands stand still; None for an actuator, and where there are none."""
     if isinstance(study, model.ActuatorStudy):
         return None
-    from flexapod.analysis import modes
 
     try:
-        return modes(study)
+        return analysis.modes(study)
     except FlexapodError:
         return None
 
@@ -304,18 +307,3 @@ def plotly_array(values: Array) -> dict[str, str]:
     flat = np.ascontiguousarray(values, dtype="<f4")
     made = {"dtype": "f4", "bdata": base64.b64encode(flat.tobytes()).decode("ascii")}
     return made | ({"shape": ", ".join(map(str, flat.shape))} if flat.ndim > 1 else {})
-
-
-def decimate_curve(x: Array, y: Array, most: int = MOST_POINTS) -> tuple[Array, Array]:
-    """A curve (n,), (n,) of at most about `most` points: both ends, least and largest of each interval between."""
-    if len(x) <= most:
-        return x, y
-    edges = np.linspace(0, len(x), most // 2 + 1).astype(int)
-    begins, interval = edges[:-1], np.repeat(np.arange(len(edges) - 1), np.diff(edges))
-    keep = [np.array([0, len(x) - 1])]
-    for extreme, none in ((np.minimum, np.inf), (np.maximum, -np.inf)):
-        known = np.where(np.isfinite(y), y, none)
-        hit = np.flatnonzero(known == extreme.reduceat(known, begins)[interval])
-        keep.append(hit[np.searchsorted(hit, begins)])  # the first of each interval
-    chosen = np.unique(np.concatenate(keep))
-    return x[chosen], y[chosen]

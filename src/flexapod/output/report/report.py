@@ -16,9 +16,10 @@ from flexapod.analysis.results.attributes import carried_study
 from flexapod.analysis.results.summary import POINT_WORDS, RobotSummary, summaries
 from flexapod.common.errors import FlexapodError
 from flexapod.common.files import temporary_folder, write_text
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.common.quantities import column, sentence, text
 from flexapod.model import ActuatorStudy
-from flexapod.output.report.replay import MOST_POINTS
+from flexapod.output.report.replay import MOST_POINTS, locked_modes, replay
 from flexapod.output.text import html
 from flexapod.output.text.answers import bodies_words, distances_table, idealization_remarks
 from flexapod.output.text.budget import peak_budget, peak_items
@@ -30,11 +31,22 @@ from flexapod.output.text.study import modes_section, study_items
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from flexapod import analysis
+    from flexapod.analysis import predicted_damping
     from flexapod.analysis.description.actuator_description import ActuatorDescription
     from flexapod.analysis.description.robot_description import RobotDescription
+    from flexapod.analysis.pose_errors import disturbances
     from flexapod.analysis.results.summary import ActuatorSummary
     from flexapod.model import ActuatorStudy, Study
+    from flexapod.output import figures as output_figures
+    from flexapod.output.report import figures as report_figures
     from flexapod.output.report.figures import StoredFigure
+else:
+    analysis = LazyModule("flexapod.analysis")
+    disturbances = LazyModule("flexapod.analysis.pose_errors.disturbances")
+    predicted_damping = LazyModule("flexapod.analysis.predicted_damping")
+    output_figures = LazyModule("flexapod.output.figures")
+    report_figures = LazyModule("flexapod.output.report.figures")
 
 
 def linear_section(study: Study | ActuatorStudy | None) -> list[Html]:
@@ -49,20 +61,19 @@ def _vibration_section(study: Study) -> Iterator[Item]:
     """Words and figure of the vibration by disturbances."""
     if study.disturbance is None:
         return
-    from flexapod.analysis import vibration
-    from flexapod.analysis.pose_errors.disturbances import shaking
-    from flexapod.output import figures
-    from flexapod.output.report.figures import store_figure
 
     try:
-        data = vibration(study)
+        data = analysis.vibration(study)
     except FlexapodError as error:
         yield Text(f"The vibration by disturbances cannot be said: {error}", "bad")
         return
-    yield from map(sentence, vibration_words(shaking(data), "at home"))
+    yield from map(sentence, vibration_words(disturbances.shaking(data), "at home"))
     with temporary_folder() as folder:
-        drawn = store_figure(
-            figures.vibration(data), "Rms of the tool by frequencies from here up", folder / "vibration", ("png",)
+        drawn = report_figures.store_figure(
+            output_figures.vibration(data),
+            "Rms of the tool by frequencies from here up",
+            folder / "vibration",
+            ("png",),
         )
     yield html.figure(drawn.title, drawn.picture, drawn.plot)
 
@@ -71,10 +82,9 @@ def _damping_table(study: Study) -> Iterator[Item]:
     """A table of damping without the controller and with it."""
     if study.control is None:
         return
-    from flexapod.analysis.predicted_damping import control_effect, predicted_damping
 
     try:
-        found = predicted_damping(study)
+        found = predicted_damping.predicted_damping(study)
     except FlexapodError as error:
         yield Text(f"What the controller does to damping cannot be said: {error}", "bad")
         return
@@ -85,7 +95,7 @@ def _damping_table(study: Study) -> Iterator[Item]:
     head = ["frequency [Hz]", "damping [%]", "with the controller [Hz]", "its damping [%]"]
     yield TextTable(head, list(zip(*columns, strict=True)), left=())
     yield Text("Predicted by the linear model, from sample to sample, without noise and limits.", "soft")
-    yield from map(sentence, control_words(control_effect(study)))
+    yield from map(sentence, control_words(predicted_damping.control_effect(study)))
 
 
 SOLVER = {
@@ -120,10 +130,8 @@ _PACKAGES = ("flexapod", "numpy", "scipy", "casadi", "xarray", "matplotlib", "pl
 
 def robot_report(study: Study | ActuatorStudy, data: Dataset) -> str:
     """The report of a robot's or an actuator's run, whole or partial, as text, with figures drawn for it."""
-    from flexapod.output.report.figures import draw_figures
-
     with temporary_folder() as folder:
-        return _page(study, data, lambda: draw_figures(data, folder, ("png",)))
+        return _page(study, data, lambda: report_figures.draw_figures(data, folder, ("png",)))
 
 
 def write_report(data: Dataset, folder: str | Path, figures: Callable[[], Sequence[StoredFigure]] = tuple) -> Path:
@@ -188,7 +196,6 @@ def _replay(
     """The replay, with the figure that stands for it on paper, and the other figures."""
     if study is None:
         return [], list(figures())
-    from flexapod.output.report.replay import locked_modes, replay
 
     told = replay(study, data, locked_modes(study))
     drawn = figures()

@@ -288,3 +288,19 @@ def path_segments(points: Array, most: int = 400) -> Array:
         return np.stack([points, points], axis=1)
     chosen = points[np.unique(np.linspace(0, len(points) - 1, min(len(points), most + 1)).astype(int))]
     return np.stack([chosen[:-1], chosen[1:]], axis=1)
+
+
+def decimation_indices(values: Array, most: int) -> NDArray[np.intp]:
+    """Indices of about `most` instants that show lines (lines, T): both ends, and extremes of each line by interval."""
+    count = values.shape[1]
+    if count <= most:
+        return np.arange(count)
+    edges = np.linspace(0, count, max(1, most // (2 * len(values))) + 1).astype(int)
+    begins, interval = edges[:-1], np.repeat(np.arange(len(edges) - 1), np.diff(edges))
+    keep = [np.array([0, count - 1])]
+    for line in values:
+        for extreme, none in ((np.minimum, np.inf), (np.maximum, -np.inf)):
+            known = np.where(np.isfinite(line), line, none)
+            hit = np.flatnonzero(known == extreme.reduceat(known, begins)[interval])
+            keep.append(hit[np.searchsorted(hit, begins)])  # the first of each interval
+    return np.unique(np.concatenate(keep))

@@ -11,11 +11,20 @@ import numpy as np
 from flexapod import model
 from flexapod.analysis.results.attributes import robot_of
 from flexapod.common.arrays import Array
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.kinematics.rotations import exponential, matrix
 from flexapod.output.scene.skeleton import STATIONS, Scene, Skeleton
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+    from flexapod.solve import sections
+    from flexapod.solve import shapes as solve_shapes
+    from flexapod.solve.modal import actuator_modes
+else:
+    actuator_modes = LazyModule("flexapod.solve.modal.actuator_modes")
+    sections = LazyModule("flexapod.solve.sections")
+    solve_shapes = LazyModule("flexapod.solve.shapes")
 
 
 def scene(data: Dataset, time: float = 0.0, magnify: float = 1.0) -> Scene:
@@ -31,20 +40,15 @@ def scene(data: Dataset, time: float = 0.0, magnify: float = 1.0) -> Scene:
 
 def beam_values(study: model.ActuatorStudy, zeta: Array) -> Array:
     """Lateral shapes of a study's beam from mouth (0) to tip (1), (k, n)."""
-    from flexapod.solve.shapes import beam_shapes
-
-    return beam_shapes(study.actuator, study.simulation).values(zeta)
+    return solve_shapes.beam_shapes(study.actuator, study.simulation).values(zeta)
 
 
 def leg_lines(study: model.Study, amplitude: Array, lengths: Array, zeta: Array) -> Array:
     """Deflection of the pistons from mouth (0) to tip (1), (legs, 2, n) [m]; amplitudes (legs, 2, k), lengths [m]."""
-    from flexapod.solve.sections import leg_values
-    from flexapod.solve.shapes import leg_shapes
-
-    basis, legs = leg_shapes(study.robot, study.simulation), study.robot.legs
+    basis, legs = solve_shapes.leg_shapes(study.robot, study.simulation), study.robot.legs
     free, lines = lengths - np.array([leg.cylinder.mouth for leg in legs]), np.empty((len(legs), 2, len(zeta)))
     for leg, alike in _distinct_legs(legs):
-        lines[alike] = np.einsum("ndk,dkpn->ndp", amplitude[alike], leg_values(leg, basis, free[alike], zeta))
+        lines[alike] = np.einsum("ndk,dkpn->ndp", amplitude[alike], sections.leg_values(leg, basis, free[alike], zeta))
     return lines
 
 
@@ -103,17 +107,14 @@ def beam_modes(study: model.ActuatorStudy, points: int) -> BeamModes:
 
     InputError: a rigid beam; ComputationError: the straight beam has buckled under its own load.
     """
-    from flexapod.solve.modal.actuator_modes import actuator_modes, amplitude_groups
-    from flexapod.solve.shapes import actuator_shapes
-
     actuator, simulation = study.actuator, study.simulation
-    found, zeta = actuator_modes(actuator, simulation), np.linspace(0.0, 1.0, points)
+    found, zeta = actuator_modes.actuator_modes(actuator, simulation), np.linspace(0.0, 1.0, points)
     eta = 1 - (1 - zeta) * actuator.free_length / actuator.length
-    shapes = actuator_shapes(actuator, simulation)
+    shapes = solve_shapes.actuator_shapes(actuator, simulation)
     lateral = shapes.beam.a.values(zeta)
     values = {"c": (0, shapes.beam.axial.values(eta)), "b": (1, -lateral), "a": (2, lateral), "t": (3, eta[None])}
     moved = np.zeros((len(found.kind), points, 4))
-    for name, at in amplitude_groups(shapes).items():
+    for name, at in actuator_modes.amplitude_groups(shapes).items():
         k, shape = values[name]
         moved[:, :, k] = found.shapes[:, at] @ shape
     flat = moved.reshape(len(moved), -1)

@@ -13,6 +13,7 @@ from flexapod.analysis.error_budget.rules import PLACE
 from flexapod.analysis.error_budget.text import KIND_WORDS, part_words, per_cent
 from flexapod.analysis.results.attributes import carried_study
 from flexapod.common.errors import FlexapodError
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.common.quantities import column, zero_rounding
 from flexapod.common.ranking import descending_order, first_largest
 from flexapod.output.text.parts import Item, Remarks, Text, TextTable, warning_lines
@@ -20,28 +21,34 @@ from flexapod.output.text.parts import Item, Remarks, Text, TextTable, warning_l
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from flexapod import analysis
+    from flexapod.analysis.pose_errors import home_accuracy
+    from flexapod.analysis.results import cause_labels, causes
+else:
+    analysis = LazyModule("flexapod.analysis")
+    home_accuracy = LazyModule("flexapod.analysis.pose_errors.home_accuracy")
+    cause_labels = LazyModule("flexapod.analysis.results.cause_labels")
+    causes = LazyModule("flexapod.analysis.results.causes")
+
 
 def peak_budget(data: Dataset) -> Dataset | None:
     """Budget at the pose of a result's largest deviation of the tool; None of a robot of ideal parts.
 
     None also where there is none: the study cannot be read any more, the platform is fixed, drives are pure forces.
     """
-    from flexapod.analysis import budget
-    from flexapod.analysis.pose_errors.home_accuracy import differs_from_drawing
-    from flexapod.analysis.results.cause_labels import CAUSES
-    from flexapod.analysis.results.causes import cause_names
-
     study = carried_study(data)
     if not isinstance(study, model.Study) or study.robot.platform_fixed:
         return None
-    ideal = not differs_from_drawing(study.robot) and len(cause_names(study.robot)) == len(CAUSES)
+    ideal = not home_accuracy.differs_from_drawing(study.robot) and len(causes.cause_names(study.robot)) == len(
+        cause_labels.CAUSES
+    )
     if ideal and study.disturbance is None:
         return None
     size = np.linalg.norm(data.tool_deviation.values, axis=1)
     t = data.time.values[[first_largest(size)]]
     path = kinematics.poses(study.robot, study.motion, t)
     try:
-        found = budget(study, kinematics.Poses.at_rest(path.position, path.rotation))
+        found = analysis.budget(study, kinematics.Poses.at_rest(path.position, path.rotation))
     except FlexapodError:
         return None
     where = f"at the pose of t = {t[0]:.4g} s"

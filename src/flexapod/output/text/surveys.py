@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.common.quantities import column, text
 from flexapod.common.ranking import first_largest, first_least
 from flexapod.output.text.parts import Item, Lines, TextTable
@@ -16,21 +17,23 @@ from flexapod.output.text.parts import Item, Lines, TextTable
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from flexapod.design import sweeps
+else:
+    sweeps = LazyModule("flexapod.design.sweeps")
+
 MESSAGES = 3  # different ones that are shown
 EXTREMES = ("median", "smallest", "largest")
 
 
 def sweep_as_dict(data: Dataset) -> dict[str, Any]:
     """Counts, messages, and the extremes of every scalar of a point."""
-    from flexapod.design.sweeps import scalar_names
-
     states = Counter(data.status.values.tolist())
     return {
         "points": data.sizes["point"],
         **{state: states[state] for state in ("computed", "failed", "pending")},
         "failures": [{"message": m, "points": n, "first": first} for m, n, first in _failures(data)],
         "remarks": [{"remark": m, "points": n} for m, n in _remarks(data)],
-        "scalars": {name: _extremes(data, name) for name in scalar_names(data) if data[name].notnull().any()},
+        "scalars": {name: _extremes(data, name) for name in sweeps.scalar_names(data) if data[name].notnull().any()},
     }
 
 

@@ -9,10 +9,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.output.text.parts import Bullets, Chapter, Item, Lines, Remarks, Text, TextTable
 
 if TYPE_CHECKING:
     from flexapod.analysis.results.time_history import Report
+    from flexapod.common import quantities
+else:
+    quantities = LazyModule("flexapod.common.quantities")
 
 
 def print_answer(items: Iterable[Item], data: Callable[[], object], *, json: bool, verbose: bool = False) -> None:
@@ -83,9 +87,7 @@ def print_text(text: str = "", *, indent: int = 0) -> None:
 
 def _print_remarks(remarks: Remarks, *, verbose: bool, indent: int) -> None:
     """A line for each remark; its explanation with `verbose`, and otherwise how to get it, once."""
-    from flexapod.common.quantities import brief
-
-    parts = [brief(remark) for remark in remarks.lines]
+    parts = [quantities.brief(remark) for remark in remarks.lines]
     for remark, (first, _) in zip(remarks.lines, parts, strict=True):
         print_text(f"{remarks.title}{remark if verbose else first}", indent=indent)
     if not verbose and any(rest for _, rest in parts):

@@ -25,7 +25,6 @@ from flexapod.output.scene.style import LEG_COLORS
 from flexapod.verification.paper import clamped_legs, engine_figures, outlook_figures, printed_figures
 from flexapod.verification.paper.claim import HEIGHT, PAPER_DEVIATION, WIDTH, force_gaps
 from flexapod.verification.paper.claims_actuator import LINEAR
-from flexapod.verification.paper.readings import actuator_preset, robot_preset
 from flexapod.verification.paper.study import PaperStudy
 
 _Plan = tuple[str, str, str, Callable[[], Figure]]
@@ -56,7 +55,7 @@ def _actuator(result: PaperStudy) -> Iterator[_Plan]:
         "behind; its deflection u(x, t) in the axes x, y of the hub; a tip body (m_e, J)"
     )
     yield ACTUATOR, "actuator-symbols", title, printed_figures.actuator_symbols
-    beam, robot = actuator_preset().actuator, robot_preset("paper-robot").robot
+    beam, robot = model.preset("paper-actuator").actuator, model.preset("paper-robot").robot
     title = (
         "Fig. 2: the actuator as a solid beam that slides through a rigid hub (A; 0.5 m of hub are ours), and the leg "
         "of the robot that it stands for (B; the cylinder is ours), to scale but for the beam's depth"
