@@ -40,6 +40,7 @@ from pathlib import Path
 from types import CodeType
 
 import pytest
+
 from tools.nearness import Nearness
 
 ROOT = Path(__file__).parents[1]

@@ -32,7 +32,7 @@ def test_every_public_name_is_on_a_page_and_nothing_else_is_public():
 def test_every_command_has_a_page():
     assert len(commands.pages()) == len(HOMES) + 1
     text = commands.pages()[commands.FOLDER / "run.md"]
-    assert "`--format FORMATS`" in text and "[default: png,svg]" in text
+    assert "`--format FORMATS`" in text and "[default: png]" in text
 
 
 def test_every_table_of_the_study_file_is_on_one_page():

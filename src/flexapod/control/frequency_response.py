@@ -14,10 +14,8 @@ import scipy.linalg
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from flexapod.common.arrays import Array, Mask
+from flexapod.common.arrays import Array, Complex, Mask
 from flexapod.common.errors import ComputationError
-
-Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.linalg
-from numpy.typing import NDArray
 
 from flexapod.common.arguments import flag, number
-from flexapod.common.arrays import Array, Mask
+from flexapod.common.arrays import Array, Complex, Mask
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.control.frequency_response import (
     INTEGRATES,
@@ -93,8 +92,6 @@ def _edge(frequency: Array, modes: int) -> float:
         return float("inf")
     return float(0.5 * (frequency[modes] + (frequency[modes - 1] if modes else 0.0)))
 
-
-Complex = NDArray[np.complex128]
 
 LASTS = 1e-9  # damping ratio, and size of a pole over the middle one, below which nothing decays
 OPPOSITE = 0.1  # of the size of two poles beside 0: so near their sum is to it

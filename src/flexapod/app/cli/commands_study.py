@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.cli.failures import report_failures
-from flexapod.app.cli.options import Force, Json, StudyFile, Verbose, as_options, refuse_existing
+from flexapod.app.cli.options import Force, Json, Settings, StudyFile, Verbose, as_options, load_study, refuse_existing
 from flexapod.common.errors import InputError, closest_word, suggest_word
 from flexapod.common.files import write_text
 from flexapod.common.lazy_imports import LazyModule
@@ -198,9 +198,9 @@ def _key_chapter(found: ListedEntry, head: Sequence[str], *, alone: bool) -> par
 
 
 @report_failures
-def check(file: StudyFile, verbose: Verbose = False, json: Json = False) -> None:
+def check(file: StudyFile, settings: Settings = None, verbose: Verbose = False, json: Json = False) -> None:
     """Validate a study and say in words what it asks of its legs: lengths, strokes, loads, stiffness, frequencies."""
-    found, control = robot_description.describe(study := model.load(file)), ()
+    found, control = robot_description.describe(study := load_study(file, settings)), ()
     if isinstance(study, model.Study) and study.control is not None:
         control = description.control_words(predicted_damping.control_effect(study))
     data = lambda: description.description_as_dict(found) | ({"control": control} if control else {})  # noqa: E731

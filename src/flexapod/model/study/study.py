@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Self, TypeVar
 from pydantic import field_validator, model_validator
 
 from flexapod.common.errors import InputError, check_kind
+from flexapod.common.lazy_imports import LazyModule
 from flexapod.common.tables.axes import plane_order
 from flexapod.common.tables.table import Table, to_plain_data
 from flexapod.common.tables.toml import toml_text
@@ -28,6 +29,7 @@ _OUT_OF_PLANE = {
     "initial": ("elevation_displacement", "elevation_rate"),
 }
 
+variants = LazyModule("flexapod.model.file.variants")  # reads what is written here
 _ANEW = "-"  # for the text of a study that is to be written
 
 
@@ -76,6 +78,34 @@ class _Documented(Table):
         if changed.source_text == _ANEW:  # with what the text of the parts that stay was
             object.__setattr__(changed, "source_text", to_toml(changed))
         return changed
+
+    def with_values(self, values: Mapping[str, object]) -> Self:
+        """Read the study again with other values at some keys of its file; all that follows from them follows.
+
+        Parameters
+        ----------
+        values : Mapping
+            Values by key path, as the file would hold them: ``{"leg.piston.diameter": "70 mm"}``, numbers in SI; a key
+            without the number of a leg means all legs, ``"leg[3].piston.diameter"`` one. Whole tables too:
+            ``{"motion": {"type": "heave", "amplitude": "5 mm", "duration": "1 s"}}``.
+
+        Returns
+        -------
+        Study or ActuatorStudy
+            Its `source_text` is the file with these values in it, comments kept; files that it names are found as
+            before.
+
+        Raises
+        ------
+        InputError
+            No such key or item, a value that is not allowed there, or two keys of which one holds the other.
+
+        Examples
+        --------
+        >>> fx.preset("paper-robot").with_values({"payload.mass": "50 kg"}).robot.payload.mass
+        50.0
+        """
+        return variants.with_values(self, values)
 
 
 class Study(_Documented):

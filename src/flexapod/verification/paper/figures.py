@@ -5,7 +5,7 @@ The actuator is drawn in a rigid hub, beside the leg of the robot that it stands
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -33,14 +33,16 @@ OUTLOOK = "What the paper asks for next"
 ENGINE = "Independent engine"
 
 
-def paper_figures(result: PaperStudy, folder: Path, progress: Report | None = None) -> dict[str, list[StoredFigure]]:
+def paper_figures(
+    result: PaperStudy, folder: Path, formats: Sequence[str], progress: Report | None = None
+) -> dict[str, list[StoredFigure]]:
     """Draw all figures of the paper's study, by group."""
     plans = [*_actuator(result), *_robot(result), *_outlook(result), *_variants(result), *_engine(result)]
     drawn: dict[str, list[StoredFigure]] = {}
     for i, (group, name, title, make) in enumerate(plans):
         if progress is not None:
             progress(f"figure {i + 1} of {len(plans)}", i / len(plans))
-        drawn.setdefault(group, []).append(store_figure(make(), title, folder / name))
+        drawn.setdefault(group, []).append(store_figure(make(), title, folder / name, formats))
     if progress is not None:
         progress("report", 1.0)
     return drawn
