@@ -13,7 +13,7 @@ from flexapod.common.tables.reference import reference
 from flexapod.common.units import to_si
 from flexapod.model import PRESETS, Study, loads, preset_text
 from flexapod.model.file.fields import read_fields
-from flexapod.model.file.page import study_data
+from flexapod.model.file.key_trials import study_data
 from flexapod.model.leg.circle import Circle
 from flexapod.model.study.tolerances import RatioSpread
 
