@@ -19,6 +19,7 @@ from flexapod.solve.modal.modes import ManyModes, modes_of
 from flexapod.solve.rigid_motion import rigid_rest
 from flexapod.solve.statics.locked_robot import LockedPoses
 from flexapod.solve.statics.stiffness import tool_motion
+from flexapod.solve.time.modal_march import STAGES, cubic_pieces, modal_march
 
 POSES = 25  # along a path, between which matrices follow cubic splines
 FINE, OF = 24, 3  # steps in a period of the third mode: the first may be far below what a path shakes
@@ -26,18 +27,13 @@ LEAST, MOST = 100, 20_000  # steps
 LOOKS = 100  # in a period, once the path is over
 PERIODS = 6  # of the first mode that a residual vibration is looked at, at least
 
-_GAUSS = np.array([[1 / 4, 1 / 4 - np.sqrt(3) / 6], [1 / 4 + np.sqrt(3) / 6, 1 / 4]])
-_NODE = np.sqrt(3) / 6
-_ROOT, _AXES = np.linalg.eig(_GAUSS)
-_TURN, _WEIGHT, _ROOT = np.linalg.inv(_AXES)[0], 0.5 * _AXES[:, 0].sum(), _ROOT[0]  # the other stage is its conjugate
-
 
 @dataclass(frozen=True, kw_only=True)
 class LinearPath:
     """A robot about its equilibria at P instants ``time`` (P,) of a path, in d independent motions.
 
     ``M``, ``D``, ``K`` (P, d, d); ``flat`` (P, N, d): these motions in all coordinates; ``tool`` (P, 3, d): of the
-    tool; ``modes``: with damping ratios.
+    tool; ``modes``: their frequencies, and shapes where these were asked for.
     """
 
     time: Array
@@ -67,8 +63,10 @@ class PathVibration:
         return self.largest_after(0.0)
 
 
-def linear_path(study: Study, t: Array, path: kinematics.Poses | None = None) -> LinearPath:
+def linear_path(study: Study, t: Array, path: kinematics.Poses | None = None, *, shapes: bool = False) -> LinearPath:
     """The linear model at instants (P,) of a study's path, or of another one's poses, loads as at its start.
+
+    ``shapes``: of modes, with damping ratios.
 
     Raises
     ------
@@ -85,7 +83,7 @@ def linear_path(study: Study, t: Array, path: kinematics.Poses | None = None) ->
     M, D, K = (flat.swapaxes(1, 2) @ part for part in project_on_motions(about.system, about.m, flat))
     hub = flat[:, about.system.legs * about.system.n :]
     tool = tool_motion(study.robot, locked.equilibria.states.pose)[:, :3] @ hub
-    return LinearPath(time=t, locked=about, M=M, D=D, K=K, flat=flat, tool=tool, modes=modes_of(locked, shapes=True))
+    return LinearPath(time=t, locked=about, M=M, D=D, K=K, flat=flat, tool=tool, modes=modes_of(locked, shapes=shapes))
 
 
 def _refuse_loops(study: Study) -> None:
@@ -118,26 +116,26 @@ def path_vibration(study: Study, moving: float, until: float) -> PathVibration:
 
 def integrate_modes(at: LinearPath, acting: Callable[[Array], Array], least: int = LEAST) -> tuple[Array, Array]:
     """Instants (T,) and motions with rates (T, 2, d, c) along a path under each of c loads (T, N, c), Eq. (T22.13)."""
-    from scipy.interpolate import CubicSpline
-
     moving = float(at.time[-1])
     count = int(np.ceil(moving * FINE * np.nanmax(at.modes.frequency[:, :OF])))
     edges = np.linspace(0.0, moving, min(MOST, max(count, least)) + 1)
-    h, middle = edges[1], edges[:-1] + edges[1] / 2
-    flat = CubicSpline(at.time, at.flat)
-    force = [-flat(t).swapaxes(1, 2) @ acting(t) for t in (middle - h * _NODE, middle + h * _NODE)]
-    matrices = CubicSpline(at.time, np.stack([at.M, at.D, at.K], axis=1))
-    x = np.zeros((len(edges), 2, *force[0].shape[1:]))
-    for k, t in enumerate(middle):
-        x[k + 1] = _step(matrices(t), h, x[k], _TURN[0] * force[0][k] + _TURN[1] * force[1][k])
-    return edges, x
+    t = np.add.outer(edges[:-1], edges[1] * STAGES)
+    force = loads_on_motions(at, t.ravel(), acting(t.ravel()))
+    force = force.reshape(*t.shape, *force.shape[1:])
+    return edges, modal_march(at.locked.system.kernel, at.time, (at.M, at.D, at.K), force)
 
 
-def _step(matrices: Array, h: float, x: Array, force: Array) -> Array:
-    """Places and rates (2, d, c) a step later; Gauss' two stages are one complex one, (T22.13)."""
-    (M, D, K), (z, v), way, c = matrices, x, h * _ROOT, _TURN.sum()
-    q = np.linalg.solve(M + way * D + way**2 * K, force - c * (D @ v + K @ z) - way * c * (K @ v))
-    return x + 2 * h * np.real(_WEIGHT * np.array([c * v + way * q, q]))
+def loads_on_motions(at: LinearPath, t: Array, loads: Array) -> Array:
+    """Loads (T, N, c) at rising instants (T,) on the independent motions there, -flat^T f (T, d, c), Eq. (T22.12)."""
+    pieces = cubic_pieces(at.time, at.flat)
+    found = np.zeros((len(t), at.flat.shape[2], loads.shape[2]))
+    edges = np.searchsorted(t, at.time[1:-1])
+    for begin, flat, rows in zip(at.time, pieces, np.split(np.arange(len(t)), edges), strict=False):
+        powers = (t[rows, None] - begin) ** np.arange(3, -1, -1)
+        by_power = loads[rows].swapaxes(1, 2) @ np.concatenate(flat, axis=1)  # (rows, c, 4 d)
+        by_power = by_power.reshape(*by_power.shape[:2], 4, -1)
+        found[rows] = -np.einsum("rp,rcpd->rdc", powers, by_power)
+    return found
 
 
 def _at_rest(at: LinearPath, z: Array, v: Array, until: float) -> tuple[Array, Array]:
