@@ -12,11 +12,10 @@ from flexapod.commissioning.feedforward.loaded_path import inertia_forces, refus
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
 from flexapod.model import Study
-from flexapod.solve.batch import RestStates
 from flexapod.solve.linear.motions import project_on_motions
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.modal.modes import ManyModes, modes_of
-from flexapod.solve.rigid_motion import rigid_rest
+from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.statics.locked_robot import LockedPoses
 from flexapod.solve.statics.stiffness import tool_motion
 from flexapod.solve.time.modal_march import STAGES, cubic_pieces, modal_march
@@ -97,20 +96,22 @@ def _refuse_loops(study: Study) -> None:
         )
 
 
-def path_vibration(study: Study, moving: float, until: float) -> PathVibration:
+def path_vibration(study: Study, moving: float, until: float, at: LinearPath | None = None) -> PathVibration:
     """Vibration of the tool, until an instant, by the inertia of a study's path, at rest after `moving` [s].
+
+    ``at``: the linear model along it, where there is one.
 
     M z'' + D z' + K z = -flat^T f, (T22.12): matrices along the path by Gauss' formula of order 4, (T22.13), afterwards
     those of its end, exactly.
     """
     from scipy.interpolate import CubicSpline
 
-    at = linear_path(study, np.linspace(0.0, moving, POSES))
+    model = at or linear_path(study, np.linspace(0.0, moving, POSES))
     edges, x = integrate_modes(
-        at, lambda t: inertial_loads(at, kinematics.poses(study.robot, study.motion, t))[..., None]
+        model, lambda t: inertial_loads(model, kinematics.poses(study.robot, study.motion, t))[..., None]
     )
-    tool = np.einsum("txd,td->tx", CubicSpline(at.time, at.tool)(edges), x[:, 0, :, 0])
-    later, rest = _at_rest(at, x[-1, 0, :, 0], x[-1, 1, :, 0], until - moving)
+    tool = np.einsum("txd,td->tx", CubicSpline(model.time, model.tool)(edges), x[:, 0, :, 0])
+    later, rest = _at_rest(model, x[-1, 0, :, 0], x[-1, 1, :, 0], until - moving)
     return PathVibration(time=np.append(edges, moving + later), tool=np.concatenate([tool, rest]))
 
 
@@ -146,17 +147,14 @@ def _at_rest(at: LinearPath, z: Array, v: Array, until: float) -> tuple[Array, A
     d = len(z)
     h = until / max(LEAST, int(np.ceil(until * LOOKS * at.modes.frequency[-1, 0])))
     A = np.block([[np.zeros((d, d)), np.eye(d)], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]])
-    step, x, found = expm(h * A), np.append(z, v), []
-    times: Array = (h * np.arange(1, round(until / h) + 1)).astype(float)
-    for _ in times:
-        x = step @ x
-        found.append(at.tool[-1] @ x[:d])
-    return times, np.array(found)
+    count, power, x = round(until / h), expm(h * A), np.append(z, v)[:, None]
+    while x.shape[1] <= count:
+        x, power = np.concatenate([x, power @ x], axis=1), power @ power
+    return h * np.arange(1.0, count + 1), x[:d, 1 : count + 1].T @ at.tool[-1].T
 
 
 def inertial_loads(at: LinearPath, path: kinematics.Poses) -> Array:
     """Inertial loads of a rigid path in all coordinates (T, N), at the undeformed robot, Eq. (T22.2)."""
-    system, robot = at.locked.system, at.locked.robot
-    states: RestStates = rigid_rest(system, kinematics.RigidPoses(robot, path))
-    legs, payload = inertia_forces(system, robot, states, path, at.locked.acts.wrench)
+    states, rates = rigid_motion(at.locked.system, kinematics.RigidPoses(at.locked.robot, path))
+    legs, payload = inertia_forces(at.locked.system, states, rates, at.locked.acts.wrench)
     return np.concatenate([legs.reshape(len(path), -1), payload], axis=1)
