@@ -117,13 +117,17 @@ def path_vibration(study: Study, moving: float, until: float, at: LinearPath | N
 
 def integrate_modes(at: LinearPath, acting: Callable[[Array], Array], least: int = LEAST) -> tuple[Array, Array]:
     """Instants (T,) and motions with rates (T, 2, d, c) along a path under each of c loads (T, N, c), Eq. (T22.13)."""
-    moving = float(at.time[-1])
-    count = int(np.ceil(moving * FINE * np.nanmax(at.modes.frequency[:, :OF])))
-    edges = np.linspace(0.0, moving, min(MOST, max(count, least)) + 1)
+    edges = step_instants(at, float(at.time[-1]), least)
     t = np.add.outer(edges[:-1], edges[1] * STAGES)
     force = loads_on_motions(at, t.ravel(), acting(t.ravel()))
     force = force.reshape(*t.shape, *force.shape[1:])
     return edges, modal_march(at.locked.system.kernel, at.time, (at.M, at.D, at.K), force)
+
+
+def step_instants(at: LinearPath, moving: float, least: int = LEAST) -> Array:
+    """Instants of the steps in which a robot is followed that moves for so long [s]."""
+    count = int(np.ceil(moving * FINE * np.nanmax(at.modes.frequency[:, :OF])))
+    return np.linspace(0.0, moving, min(MOST, max(count, least)) + 1)
 
 
 def loads_on_motions(at: LinearPath, t: Array, loads: Array) -> Array:

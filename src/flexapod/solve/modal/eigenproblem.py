@@ -211,12 +211,13 @@ def damping_ratios_of(mode: int, omega: Array, D: Array) -> Array:
     """
     check_finite(D)
     x, slow = np.zeros(omega.shape, dtype=complex), 1 / omega
-    x[:, mode], value, own = 1.0, np.zeros(len(omega), dtype=complex), np.diagonal(D, axis1=1, axis2=2)
+    x[:, mode], own, settled = 1.0, np.diagonal(D, axis1=1, axis2=2), np.zeros(len(omega), dtype=bool)
+    value: NDArray[np.complex128] = np.zeros(len(omega), dtype=complex)
     with np.errstate(all="ignore"):  # what does not settle is left to all modes at once
         for _ in range(SWEEPS):
             before, push = value, (D @ x[..., None])[..., 0]
             s = 0.5 * omega[:, mode] * push[:, mode]
-            value = omega[:, mode] * (1j * np.sqrt(1 - s**2) - s)
+            value = np.asarray(omega[:, mode] * (1j * np.sqrt(1 - s**2) - s), dtype=complex)
             x = (own * x - push) * value[:, None] / (1 + value[:, None] * (own + value[:, None] * slow**2))
             x[:, mode] = 1.0
             settled = np.abs(value - before) <= SETTLED * np.abs(value)
