@@ -47,10 +47,15 @@ class LinearPath:
 
 @dataclass(frozen=True, kw_only=True)
 class PathVibration:
-    """Motion of the tool (T, 3) [m] off its rest at each pose, at instants (T,) [s]; without friction."""
+    """Motion of the tool (T, 3) [m] off its rest at each pose, at instants (T,) [s]; without friction.
+
+    ``model``: along the path; ``motion`` (n, 2, d): its motions and rates at the first n instants, those of the path.
+    """
 
     time: Array
     tool: Array
+    model: LinearPath
+    motion: Array
 
     def largest_after(self, instant: float) -> float:
         """Largest distance of the tool from where it comes to rest, from an instant on [m]."""
@@ -111,8 +116,10 @@ def path_vibration(study: Study, moving: float, until: float, at: LinearPath | N
         model, lambda t: inertial_loads(model, kinematics.poses(study.robot, study.motion, t))[..., None]
     )
     tool = np.einsum("txd,td->tx", CubicSpline(model.time, model.tool)(edges), x[:, 0, :, 0])
-    later, rest = _at_rest(model, x[-1, 0, :, 0], x[-1, 1, :, 0], until - moving)
-    return PathVibration(time=np.append(edges, moving + later), tool=np.concatenate([tool, rest]))
+    later, rest = tool_at_rest(model, x[-1, :, :, 0], until - moving)
+    return PathVibration(
+        time=np.append(edges, moving + later), tool=np.concatenate([tool, rest]), model=model, motion=x[..., 0]
+    )
 
 
 def integrate_modes(at: LinearPath, acting: Callable[[Array], Array], least: int = LEAST) -> tuple[Array, Array]:
@@ -124,9 +131,9 @@ def integrate_modes(at: LinearPath, acting: Callable[[Array], Array], least: int
     return edges, modal_march(at.locked.system.kernel, at.time, (at.M, at.D, at.K), force)
 
 
-def step_instants(at: LinearPath, moving: float, least: int = LEAST) -> Array:
+def step_instants(at: LinearPath, moving: float, least: int = LEAST, fine: int = FINE) -> Array:
     """Instants of the steps in which a robot is followed that moves for so long [s]."""
-    count = int(np.ceil(moving * FINE * np.nanmax(at.modes.frequency[:, :OF])))
+    count = int(np.ceil(moving * fine * np.nanmax(at.modes.frequency[:, :OF])))
     return np.linspace(0.0, moving, min(MOST, max(count, least)) + 1)
 
 
@@ -143,15 +150,15 @@ def loads_on_motions(at: LinearPath, t: Array, loads: Array) -> Array:
     return found
 
 
-def _at_rest(at: LinearPath, z: Array, v: Array, until: float) -> tuple[Array, Array]:
-    """Instants after the path's end and the tool (any, 3) there, from the last motions and their rates on."""
+def tool_at_rest(at: LinearPath, last: Array, until: float) -> tuple[Array, Array]:
+    """Instants after the path's end and the tool (any, 3) there, from the last motions and their rates (2, d) on."""
     from scipy.linalg import expm
 
     M, D, K = at.M[-1], at.D[-1], at.K[-1]
-    d = len(z)
+    d = last.shape[1]
     h = until / max(LEAST, int(np.ceil(until * LOOKS * at.modes.frequency[-1, 0])))
     A = np.block([[np.zeros((d, d)), np.eye(d)], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]])
-    count, power, x = round(until / h), expm(h * A), np.append(z, v)[:, None]
+    count, power, x = round(until / h), expm(h * A), last.reshape(-1, 1)
     while x.shape[1] <= count:
         x, power = np.concatenate([x, power @ x], axis=1), power @ power
     return h * np.arange(1.0, count + 1), x[:d, 1 : count + 1].T @ at.tool[-1].T

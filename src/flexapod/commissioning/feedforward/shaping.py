@@ -14,6 +14,7 @@ from flexapod.analysis.checks.checks import check_path
 from flexapod.analysis.results.arguments import FileLike, PoseLike, RigidPose
 from flexapod.commissioning.feedforward.command_table import check_out, save_study, tabulate_law
 from flexapod.commissioning.feedforward.modal_path import PERIODS, POSES, linear_path, path_vibration
+from flexapod.commissioning.feedforward.second_pass import error_sentence, linear_error
 from flexapod.commissioning.feedforward.shapers import KINDS, Shaper, shaper
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import InputError, check_known
@@ -39,7 +40,8 @@ class ShapedStudy:
     ``impulses``: of its shaper; ``frequency``, ``ratio`` (modes,) for which they are made, ``ranges`` (modes, 2) [Hz]
     of these along the path, ``left`` (modes,): of the vibration of each at worst along it, over that of one impulse.
     By the linear model, before and after: ``residual`` [m] of the tool once the motion is over, ``largest`` [m] beside
-    its places at rest at any time. ``longer`` [s]; ``beside`` [m]: of the path of the rigid tool, corners that are cut.
+    its places at rest at any time; ``error`` of the model, shaped, over that. ``longer`` [s]; ``beside`` [m]: of the
+    path of the rigid tool, corners that are cut.
     """
 
     study: Study
@@ -52,6 +54,7 @@ class ShapedStudy:
     residual: tuple[float, float]
     largest: tuple[float, float]
     beside: float
+    error: float
 
     @property
     def longer(self) -> float:
@@ -70,7 +73,8 @@ class ShapedStudy:
             f"the motion is shaped ({self.kind}) for {modes}: once it is over the tool vibrates by "
             f"{text(self.residual[1], 'm')} in place of {text(self.residual[0], 'm')}, and on the way it is up to "
             f"{text(self.largest[1], 'm')} in place of {text(self.largest[0], 'm')} from where it would rest, by the "
-            f"linear model with all modes; it takes {text(self.longer, 's')} more{cut}"
+            f"linear model with all modes; it takes {text(self.longer, 's')} more{cut}; "
+            f"{error_sentence(self.study, self.error)}"
         )
 
     def __repr__(self) -> str:
@@ -181,6 +185,7 @@ def shape_study(
         left=made.residual_share(around, ratio).max(axis=0),
         residual=(own.largest_after(moving), new.largest_after(moving + made.duration)),
         largest=(own.largest, new.largest), beside=_path_offset(study, shaped, moving),
+        error=linear_error(shaped, new),
     )  # fmt: skip
     told = replace(found, study=shaped.replace(notes=(*study.notes, found.sentence)))
     return told if out is None else replace(told, study=save_study(told.study, out))
