@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import runpy
 from contextlib import chdir, redirect_stdout
 from functools import cache
@@ -12,32 +13,12 @@ from tempfile import TemporaryDirectory
 
 import matplotlib
 
-from flexapod.app.cli.commands_study import titles
-
 FOLDER = Path("gallery")
-EXAMPLES = Path(__file__).parents[2] / "src" / "flexapod" / "examples/gallery"
-SECTIONS = {
-    "A robot and its answer": (
-        "paper_robot",
-        "sag_by_hand",
-        "tripod_against_hexapod",
-        "when_bending_matters",
-        "stiffness_map",
-        "catalogue_sweep",
-    ),
-    "A machine that somebody builds": (
-        "machine_from_data_sheets",
-        "better_joint",
-        "friction_and_reversal",
-        "warm_machine",
-        "tolerances",
-        "shaken_floor",
-        "hydraulic_motion_base",
-    ),
-    "Other mechanisms": ("delta", "hexaglide", "flexure_hexapod", "redundant_8_ups", "actuator_in_space"),
-    "Control and commands": ("force_feedback", "shaped_move"),
-    "Under the hood": ("fidelity_ladder", "own_element"),
-}
+ROOT = Path(__file__).parents[2]
+EXAMPLES = ROOT / "src" / "flexapod" / "examples/gallery"
+#: A row of `docs/gallery.md`: title, folder, name; and a table of examples there.
+ROW = re.compile(r"\| \[([^\]]+)\]\(\S+/(gallery|notebooks)/(\w+)\.py\) \| `\w+` \|")
+TABLE = re.compile(r"\| Example \|.*\n\| ---.*\n((?:\|.*\n)+)")
 
 
 @cache
@@ -61,21 +42,22 @@ def words(name: str) -> tuple[str, str]:
     return title, rest.strip()
 
 
+def titles(folder: str) -> dict[str, str]:
+    """Titles by name of what `docs/gallery.md` lists of a folder: "gallery" or "notebooks"."""
+    rows = ROW.findall((ROOT / "docs" / "gallery.md").read_text(encoding="utf-8"))
+    return {name: title for title, of, name in rows if of == folder}
+
+
 def pages() -> dict[Path, str]:
     """Pages by place."""
-    names = [name for section in SECTIONS.values() for name in section]
-    return {
-        FOLDER / "index.md": _index(names),
-        Path("notebooks/index.md"): _notebooks(),
-        **{FOLDER / f"{name}.md": _page(name) for name in names},
-    }
+    return {FOLDER / "index.md": _index(), **{FOLDER / f"{name}.md": _page(name) for name in titles("gallery")}}
 
 
 def pictures(folder: Path) -> set[Path]:
     """Write the figures beside the pages."""
     (folder / FOLDER).mkdir(parents=True, exist_ok=True)
     written = set()
-    for name in (name for section in SECTIONS.values() for name in section):
+    for name in titles("gallery"):
         path = folder / FOLDER / f"{name}.png"
         path.write_bytes(run(name)[0])
         written.add(path)
@@ -105,42 +87,17 @@ It prints
 """
 
 
-def _index(names: list[str]) -> str:
-    parts = [
-        "# Gallery",
-        "Each example is one file that runs in seconds and ends with a number known from outside: a closed form, a\n"
-        "law, another program. `flexapod new --example sag_by_hand` writes one to start from, `flexapod new --list`\n"
-        "names them all.",
-    ]
-    for title, section in SECTIONS.items():
-        cards = "\n".join(
-            f":::{{grid-item-card}} {words(n)[0]}\n:link: {n}\n:link-type: doc\n:img-top: {n}.png\n"
-            f":img-alt: {words(n)[0]}\n:::\n"
-            for n in section
-        )
-        parts.append(f"## {title}\n\n::::{{grid}} 1 2 3 3\n:gutter: 3\n\n{cards}\n::::")
-    parts.append("## Notebooks\n\n" + _notebook_table("../notebooks/"))
-    listed = "\n".join([*names, "../notebooks/index"])
-    return "\n\n".join(parts) + f"\n\n```{{toctree}}\n:hidden:\n\n{listed}\n```\n"
+def _index() -> str:
+    """`docs/gallery.md` with its examples as cards."""
+    text = TABLE.sub(lambda table: _cards(table[1]), (ROOT / "docs" / "gallery.md").read_text(encoding="utf-8"))
+    text = ROW.sub(r"| [\1](../\2/\3.py) | `\3` |", text)
+    listed = "\n".join([*titles("gallery"), *(f"../notebooks/{name}" for name in titles("notebooks"))])
+    return f"{text}\n```{{toctree}}\n:hidden:\n\n{listed}\n```\n"
 
 
-def _notebook_table(before: str) -> str:
-    rows = "\n".join(f"| [{title}]({before}{name}.py) | `{name}` |" for name, title in titles("--notebook").items())
-    return f"| Notebook | Name |\n| --- | --- |\n{rows}"
-
-
-def _notebooks() -> str:
-    listed = "\n".join(titles("--notebook"))
-    return f"""# Notebooks
-
-They are run when this site is built. `flexapod new --notebook first_robot` writes one as a Python file whose cells
-Jupyter opens with jupytext (`pip install jupytext`); `jupytext --to ipynb first_robot.py` makes a notebook of it.
-
-{_notebook_table("")}
-
-```{{toctree}}
-:hidden:
-
-{listed}
-```
-"""
+def _cards(rows: str) -> str:
+    cards = "\n".join(
+        f":::{{grid-item-card}} {title}\n:link: {name}\n:link-type: doc\n:img-top: {name}.png\n:img-alt: {title}\n:::\n"
+        for title, _, name in ROW.findall(rows)
+    )
+    return f"::::{{grid}} 1 2 3 3\n:gutter: 3\n\n{cards}\n::::\n"

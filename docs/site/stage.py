@@ -60,6 +60,8 @@ def _relinked(text: str, page: Path, place: Path, files: set[Path]) -> str:
             return f"[{words}]({_to(place, (OUTSIDE | ANEW)[name])}{anchor})"
         if name.startswith("docs/"):
             return f"[{words}]({_to(place, name.removeprefix('docs/'))}{anchor})"
+        if target.parent == gallery.EXAMPLES:
+            return f"[{words}]({_to(place, f'gallery/{target.stem}.md')})"
         files.add(target)
         return f"[{words}]({_to(place, f'files/{name}')})"
 

@@ -22,7 +22,7 @@ def test_a_pose_in_words_numbers_and_a_chart(flexapod, study, folder):
     assert head.split()[:3] == ["part", "kind", "share"]
     assert "heat of the pistons" in said.stdout
     assert "-0.00 " not in said.stdout
-    assert {file.name for file in (folder / "found").iterdir()} == {"budget.nc", "budget.png", "budget.svg"}
+    assert {file.name for file in (folder / "found").iterdir()} == {"budget.nc", "budget.png"}
     data = open_results(folder / "found" / "budget.nc")
     whole = (data.budget.sum("part") + data.budget_residual).sel(kind="systematic")
     assert abs(whole - data.budget_total.sel(kind="systematic")).max() < 1e-15

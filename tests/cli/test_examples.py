@@ -1,51 +1,18 @@
-"""Every example runs, without a warning; the README shows the first one with what it prints."""
+"""The example of the README runs, without a warning, and prints what stands there."""
 
 import re
 import subprocess
 import sys
-from functools import cache
 from pathlib import Path
 
-import pytest
-
-from flexapod.mechanics.symbolic.compiler import compiler
-
-ROOT = Path(__file__).parents[2]
-EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
+README = Path(__file__).parents[2] / "README.md"
 
 
-@pytest.fixture(scope="module")
-def ran(tmp_path_factory):
-    """`ran(example)`: what it returns and says, in a folder of its own."""
-
-    @cache
-    def run(example):
-        command = [sys.executable, "-W", "error", str(example)]
-        folder = tmp_path_factory.mktemp(example.stem)
-        return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
-
-    return run
-
-
-@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
-def test_example(example, ran):
-    if "import fmpy" in example.read_text(encoding="utf-8"):
-        pytest.importorskip("fmpy")
-        if compiler() is None:
-            pytest.skip("there is no C compiler")
-    run = ran(example)
-    assert run.returncode == 0, run.stderr
-    assert run.stderr == ""
-    assert run.stdout and "False" not in run.stdout
-
-
-def test_there_are_examples():
-    assert EXAMPLES
-
-
-def test_readme_shows_the_first_example_and_its_output(ran):
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    example = ROOT / "examples" / "a_first_robot.py"
-    assert re.search(r"```python\n(.*?)```", readme, re.DOTALL)[1] == example.read_text(encoding="utf-8")
+def test_the_example_of_the_readme_prints_what_stands_there(tmp_path):
+    readme = README.read_text(encoding="utf-8")
+    example = re.search(r"```python\n(.*?)```", readme, re.DOTALL)[1]
+    command = [sys.executable, "-W", "error", "-c", example]
+    run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300)
+    assert run.returncode == 0 and run.stderr == "", run.stderr
     # Printed with three digits: rounding of another processor does not show.
-    assert re.search(r"```text\n(.*?)```", readme, re.DOTALL)[1] == ran(example).stdout
+    assert re.search(r"```text\n(.*?)```", readme, re.DOTALL)[1] == run.stdout

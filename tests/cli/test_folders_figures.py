@@ -68,6 +68,23 @@ def test_no_figures(flexapod, far, folder, monkeypatch, command, options):
     assert written and not [name for name in written if name.endswith(PICTURES)]
 
 
+@pytest.mark.parametrize(
+    ("command", "options"),
+    [
+        ("map", ("--x", "heave=0..1mm:2")),
+        ("sweep", ("sweep.toml", "--workers", "0")),
+        ("modes", ()),
+        ("budget", ()),
+        ("frf", ("--points", "2")),
+    ],
+)
+def test_figures_in_the_formats_asked_for(flexapod, far, folder, command, options):
+    (folder / "sweep.toml").write_text(SWEEP)
+    result = flexapod(command, far, *options, "--format", "svg,pdf", "--out", "out", "--json")
+    assert result.exit_code == 0, result.stderr
+    assert {path.suffix for path in Path("out").iterdir() if path.suffix in PICTURES} == {".svg", ".pdf"}
+
+
 def test_the_report_of_a_run_without_figures_keeps_the_answer_and_the_robot(flexapod, far):
     assert flexapod("run", far, "--no-figures").exit_code == 0
     page = Path("robots/mine-run/report.html").read_text(encoding="utf-8")

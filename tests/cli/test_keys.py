@@ -8,7 +8,8 @@ import pytest
 from typer.testing import CliRunner
 
 from flexapod.app.cli.cli import app
-from flexapod.model.file.page import list_entries, study_file_page
+from flexapod.common.tables.key_rows import list_entries
+from flexapod.model.file.page import study_file_page
 
 RUN = CliRunner()
 
@@ -60,6 +61,17 @@ def test_a_wrong_table_is_answered_without_the_model():
         "from flexapod.common.errors import InputError\n"
         "try: check_table('nut')\n"
         "except InputError: print([name for name in sys.modules if name.startswith('flexapod.model')])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_all_keys_are_listed_without_the_model():
+    """Once all of them were tried out for it, in two seconds."""
+    code = (
+        "import sys; from typer.testing import CliRunner; from flexapod.app.cli.cli import app\n"
+        "assert CliRunner().invoke(app, ['keys']).exit_code == 0\n"
+        "print([name for name in sys.modules if name.startswith('flexapod.model')])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

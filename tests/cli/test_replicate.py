@@ -57,7 +57,7 @@ def folder(tmp_path_factory):
     place = tmp_path_factory.mktemp("replicate")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(app_replicate, "compute", at_hand(whole_study(ANGLES)))
-        replicate(place)
+        replicate(place, formats=("png", "svg"))
     return place
 
 

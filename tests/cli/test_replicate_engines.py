@@ -93,7 +93,6 @@ def test_report_names_engine_version_settings_and_how_to_repeat(few, parts, tmp_
     replicate(tmp_path)
     for name in ("engine-forces-rigid", "engine-forces-flexible", "engine-com-path"):
         assert (tmp_path / "figures" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
-        assert (tmp_path / "figures" / f"{name}.svg").is_file()
     for name in ("robot-exudyn", "robot-exudyn-rigid", "robot-undamped", "robot-rigid-same-step"):
         assert {f"{name}.nc", f"{name}.csv"} <= {path.name for path in (tmp_path / "data").iterdir()}
     page = (tmp_path / "report.html").read_text(encoding="utf-8").replace("\N{NO-BREAK SPACE}", " ")

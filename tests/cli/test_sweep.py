@@ -58,7 +58,7 @@ def test_what_it_prints_and_writes(flexapod, files, folder):
     for words in ("3 points: 3 computed.", "com_deviation_peak is smallest at point 2 (leg.piston.diameter = 30 mm)"):
         assert words in run.stdout
     names = {path.name for path in (folder / "study-sweep").iterdir()}
-    assert names == {"sweep.sqlite", "sweep.csv", "sweep.png", "sweep.svg"}
+    assert names == {"sweep.sqlite", "sweep.csv", "sweep.png"}
 
 
 def test_without_arrays_of_dask(files, folder):

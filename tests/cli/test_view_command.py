@@ -47,7 +47,7 @@ def test_bad_files_are_refused_before_a_server_starts(flexapod, study, folder):
     assert "is not a result of a simulation" in refused(flexapod("view", "modes.nc"))
 
 
-@pytest.mark.parametrize("package", ["msgspec", "tomlkit", "viser", "websockets"])
+@pytest.mark.parametrize("package", ["msgspec", "viser", "websockets"])
 def test_a_missing_package_is_named_with_the_line_that_installs_it(flexapod, study, monkeypatch, package):
     file = study()
     monkeypatch.setitem(sys.modules, package, None)
@@ -58,7 +58,7 @@ def test_a_missing_package_is_named_with_the_line_that_installs_it(flexapod, stu
 @pytest.mark.parametrize("command", ["check", "keys"])
 def test_other_commands_do_without_the_page_and_the_engines(study, command):
     """In a process of its own, where none of their packages can be imported."""
-    absent = ("msgspec", "tomlkit", "viser", "websockets", "exudyn", "mujoco")
+    absent = ("msgspec", "viser", "websockets", "exudyn", "mujoco")
     code = f"import sys; sys.modules.update(dict.fromkeys({absent})); from flexapod.app.cli.cli import main; main()"
     words = [command, str(study())] if command == "check" else [command, "leg"]
     run = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=False)

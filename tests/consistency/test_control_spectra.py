@@ -72,6 +72,16 @@ def test_spectra_equal_those_of_a_robots_vibration():
     np.testing.assert_allclose(one.rms, random_vibration(robot, sources_of(alone, robot)).rms[2], rtol=1e-5)
 
 
+def test_tables_of_many_rows_shake_fewer_outputs_than_inputs():
+    # Responses are then polynomials of their own panels: as many numbers as outputs times inputs.
+    robot, space = both()
+    f = np.geomspace(2.0, 200.0, 4000)
+    wrench = Spectrum(frequency=f, density=np.outer(1e-4 / f, np.arange(1, 7)))
+    found = space.psd({"wrench": (f, wrench.density)}, "tool:z")
+    sources = sources_of(Disturbance(wrench=wrench), robot)
+    np.testing.assert_allclose(found.rms, random_vibration(robot, sources, refine=2).rms[2], rtol=1e-8)
+
+
 def mode(m=2.0, k=5e3, c=4.0):
     return fc.StateSpace(
         A=[[0, 1], [-k / m, -c / m]], B=[[0, 0], [1 / m, -1]], C=[[1, 0], [-k / m, -c / m]], D=[[0, 0], [1 / m, 0]],

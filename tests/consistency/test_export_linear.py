@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import pyuff
 import xarray as xr
 from scipy.io import loadmat
 
@@ -88,7 +89,6 @@ def test_responses_are_datasets_58(model, hz, even):
 
 
 def test_pyuff_reads_them(model, tmp_path):
-    pyuff = pytest.importorskip("pyuff")
     data = model.frequency_response(np.linspace(5, 200, 40))
     path = tmp_path / "robot.uff"
     path.write_text(uff(data), encoding="ascii")

@@ -9,14 +9,14 @@ import pytest
 from tests.literature.test_oracle_welded import deviation, robot
 
 from flexapod.verification.paper.claims_variants import EXACT
-from flexapod.verification.paper.clamped_legs import clamped_legs_map
+from flexapod.verification.paper.variants import clamped_legs, compare
 
 ROLLS = (0.0, 1.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0)
 
 
 @pytest.fixture(scope="module")
 def found():
-    return clamped_legs_map(lambda share: None, arms=(0.373,), rolls=ROLLS).isel(arm=0)
+    return compare(clamped_legs(arms=(0.373,), rolls=ROLLS), lambda share: None).isel(arm=0)
 
 
 @pytest.mark.consistency

@@ -20,7 +20,7 @@ from flexapod.app.browser.uploads import read_upload, store_table, study_downloa
 from flexapod.common.tables.named_files import Stored
 from flexapod.common.tables.reference import reference
 from flexapod.common.tables.toml import toml_text
-from flexapod.model.file.page import study_data
+from flexapod.model.file.key_trials import study_data
 from flexapod.model.stored_tables import stored_tables
 from flexapod.model.study.mount import BaseMotion
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 import flexapod as fx
+from flexapod.common.tables.key_rows import list_entries
 from flexapod.design.first_robot.catalogue import SCREWS
 from flexapod.model import MATERIALS
-from flexapod.model.file.page import list_entries
 from flexapod.model.leg import rolling
 from flexapod.model.study.tolerances import CLASSES
 

@@ -17,7 +17,7 @@ from flexapod.common.tables.reference import reference
 from flexapod.common.tables.section import Section
 from flexapod.common.tables.table import Table
 from flexapod.common.tables.toml import toml_text
-from flexapod.model.file.page import study_data
+from flexapod.model.file.key_trials import study_data
 
 NAME = re.compile(r'"([\w-]+\.(?:csv|json))"')  # of a table, in the examples of the reference
 EXAMPLES = {

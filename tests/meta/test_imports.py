@@ -4,7 +4,9 @@ import re
 import subprocess
 import sys
 import tomllib
+from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -68,13 +70,28 @@ def test_reading_numbers_needs_no_pint():
     assert python(code) == "False"
 
 
-LAZY = [*flexapod._NAMES, *flexapod._PACKAGES]
-
-
-@pytest.mark.parametrize("name", sorted({*flexapod.__all__, *LAZY} - {"__version__"}))
+@pytest.mark.parametrize("name", sorted({*flexapod.__all__} - {"__version__"}))
 def test_public_names_resolve(name):
     assert getattr(flexapod, name) is not None
     assert name in dir(flexapod)
+
+
+FACES = ("analysis", "control", "design.sweeps", "kinematics", "model", "output.figures")
+
+
+@pytest.mark.parametrize("face", FACES)
+def test_faces_list_what_they_give(face):
+    package = import_module(f"flexapod.{face}")
+    assert [name for name in package.__all__ if isinstance(getattr(package, name), ModuleType)] == []
+    assert {*package.__all__} == {name for name in dir(package) if not name.startswith("__")}
+
+
+def test_a_function_is_not_hidden_by_its_module():
+    code = (
+        "import flexapod.kinematics.mobility, flexapod.output.figures.budget, flexapod as fx; "
+        "print(fx.kinematics.mobility.__module__, fx.plot.budget.__module__)"
+    )
+    assert python(code) == "flexapod.kinematics.mobility flexapod.output.figures.budget"
 
 
 def test_version_is_that_of_the_distribution():

@@ -14,7 +14,7 @@ from flexapod.common.errors import InputError
 from flexapod.common.tables.base import Frozen
 from flexapod.common.tables.reference import reference
 from flexapod.model import PRESETS, loads, preset_text, to_toml
-from flexapod.model.file.page import study_data
+from flexapod.model.file.key_trials import study_data
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 COUNT = 2000

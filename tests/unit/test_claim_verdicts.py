@@ -11,8 +11,8 @@ from tests.paper_parts import study_parts
 from flexapod import model
 from flexapod.common.errors import InputError
 from flexapod.model import preset, to_toml
-from flexapod.verification.paper import claims_actuator, claims_rigid, claims_robot, claims_variants, readings
-from flexapod.verification.paper import variants as statics
+from flexapod.verification.paper import claims_actuator, claims_rigid, claims_robot, claims_variants
+from flexapod.verification.paper import equilibrium_path as statics
 from flexapod.verification.paper.claim import (
     BREAKS,
     DONE,
@@ -37,7 +37,7 @@ from flexapod.verification.paper.claim import (
 from flexapod.verification.paper.claim import ratio_words as times_in_words
 from flexapod.verification.paper.claims import claims, group_by_owner, verdict_summary
 from flexapod.verification.paper.study import PaperStudy
-from flexapod.verification.paper.variants import with_half_angle
+from flexapod.verification.paper.variants import half_angle
 
 pytestmark = pytest.mark.xdist_group("claims")  # one process computes the parts
 ANGLES = (10.0, 29.0)
@@ -364,8 +364,6 @@ def test_shear_and_rotary_inertia_lower_the_frequency():
 
 def test_presets_of_other_kinds_are_refused():
     with pytest.raises(InputError, match="single actuator"):
-        readings.robot_preset("paper-actuator")
-    with pytest.raises(InputError, match="single actuator"):
         claims_robot._axes(study_parts(ANGLES)["actuator-1"])
 
 
@@ -375,7 +373,7 @@ def test_claims_stay_one_row_each():
 
 @pytest.fixture(scope="module")
 def near_hexagons():
-    return with_half_angle(preset("paper-robot-radii"), 29.0)
+    return half_angle("paper-robot-radii", 29.0).study
 
 
 def test_singular_pose_is_where_the_determinant_changes_sign(near_hexagons):
@@ -392,7 +390,7 @@ def test_singular_pose_is_where_the_determinant_changes_sign(near_hexagons):
     found = statics.singular_turn(near_hexagons)
     # 30 deg in 1 s with a quintic: at most 56 deg/s, 0.06 deg between two instants of the path.
     assert np.sign(determinant(found)) != np.sign(determinant(found + 0.06))
-    assert statics.singular_turn(with_half_angle(preset("paper-robot-radii"), 28.0)) is None
+    assert statics.singular_turn(half_angle("paper-robot-radii", 28.0).study) is None
 
 
 def test_equilibrium_is_followed_to_its_fold(near_hexagons, monkeypatch):
@@ -413,5 +411,5 @@ def test_equilibrium_is_followed_to_its_fold(near_hexagons, monkeypatch):
 
 
 def test_equilibrium_that_lasts_has_no_end():
-    found = statics.equilibrium_path(with_half_angle(preset("paper-robot"), 29.0))
+    found = statics.equilibrium_path(half_angle("paper-robot", 29.0).study)
     assert found.end is None and found.frequency == pytest.approx(0.566, abs=5e-4)

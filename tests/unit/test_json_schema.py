@@ -14,7 +14,7 @@ from flexapod.app.cli.cli import app
 from flexapod.common.tables.reference import reference
 from flexapod.model import PRESETS, preset_text
 from flexapod.model.file.json_schema import json_schema
-from flexapod.model.file.page import study_data
+from flexapod.model.file.key_trials import study_data
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 STUDIES = {name: preset_text(name) for name in PRESETS}

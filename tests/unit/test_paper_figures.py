@@ -12,10 +12,7 @@ from mpl_toolkits.mplot3d import proj3d
 import flexapod as fx
 from flexapod import model, plot
 from flexapod.output.figures.robot3d import label_positions
-from flexapod.verification.paper import clamped_legs, engine_figures, figures, printed_figures
-from flexapod.verification.paper.clamped_legs import ARMS, COLUMNS, READINGS, ROLLS
-from flexapod.verification.paper.readings import tripod
-from flexapod.verification.paper.variants import PISTONS
+from flexapod.verification.paper import clamped_legs, engine_figures, figures, printed_figures, variants
 
 MARKER = 3.0  # points: radius of a joint, and its edge
 
@@ -47,7 +44,7 @@ def seen(axes, points):
 @pytest.mark.parametrize("name", ["paper-robot", "paper-robot-radii", "tripod"])
 def test_numbers_touch_neither_joints_nor_each_other(name):
     """5 lay beside 6 and 6 on joint 5, 3 and 4 on their joints."""
-    study = tripod() if name == "tripod" else model.preset(name)
+    study = variants.tripod().study if name == "tripod" else model.preset(name)
     figure = plot.robot_3d(fx.simulate(study, fidelity="rigid", duration=0.01), 0.0)
     axes, numbers = boxes(figure)
     joints, points = seen(axes, study.robot.base_joints), MARKER * figure.dpi / 72
@@ -153,12 +150,12 @@ def test_the_burst_of_the_balance_is_told_and_falls_with_the_tolerance(robot):
 
 def test_lighter_pistons_show_their_deviation():
     """The figure of accuracy had vibrations alone."""
-    count = len(PISTONS)
+    count = len(variants.PISTONS)
     light = xr.Dataset(
         {"deviation_peak": (("piston", "axis"), 1e-6 * np.arange(1, 3 * count + 1).reshape(count, 3)),
          **{name: ("piston", 1e-6 * np.arange(1.0, count + 1)) for name in ("payload_vibration", "tip_vibration")},
          "piston_mass": ("piston", np.linspace(3, 0.5, count))},
-        {"inner": ("piston", [pair[1] for pair in PISTONS]), "axis": list("xyz")},
+        {"inner": ("piston", [pair[1] for pair in variants.PISTONS]), "axis": list("xyz")},
     )  # fmt: skip
     first, *others = engine_figures.light_pistons(light).axes
     assert len(others) == 2 and "deviation [µm]" in first.get_ylabel()
@@ -196,12 +193,13 @@ def test_spikes_of_the_forces_have_a_word():
 
 def test_what_welded_robots_do_not_reach_is_said():
     """Where a curve is missing, the panel says so and how near it comes: 0.9 of y, 0.3 of z here."""
-    shape = (len(READINGS), len(ARMS), len(ROLLS))
-    values = {name: (("reading", "arm", "roll"), np.zeros(shape)) for name in COLUMNS if name != "deviation"}
+    table = variants.clamped_legs()
+    along = {name: list(labels) for name, labels in {**table.along, "roll": variants.ROLLS}.items()}
+    shape = tuple(map(len, along.values()))
+    values = {name: (("reading", "arm", "roll"), np.zeros(shape)) for name in table.columns if name != "deviation"}
     grown = np.array([1e-3, 4.5e-3, 3e-3]) * np.linspace(0, 1, shape[2])[:, None]
     values["deviation"] = (("reading", "arm", "roll", "axis"), np.broadcast_to(grown, (*shape, 3)))
-    coords = {"reading": list(READINGS), "arm": list(ARMS), "roll": list(ROLLS), "axis": list("xyz")}
-    data = xr.Dataset(values, coords)
+    data = xr.Dataset(values, {**along, "axis": list("xyz")})
     reached = data.copy(deep=True)
     reached["deviation"] = 100 * data.deviation
     for found, said in ((data, True), (reached, False)):

@@ -14,7 +14,7 @@ pytestmark = pytest.mark.xdist_group("claims")
 
 @pytest.fixture(scope="module")
 def found():
-    return variants.light_pistons(lambda _: None)
+    return variants.compare(variants.light_pistons(), lambda share: None)
 
 
 def test_it_is_a_part_of_the_study():
@@ -49,11 +49,11 @@ def test_the_first_frequency_falls_with_the_area(found):
 
 
 def test_hollow_and_thin_ones_are_what_they_say():
-    study = variants.with_section(model.preset("paper-robot"), 0.027, 0.022)
+    study = variants.piston(27.0, 22.0).study
     piston = study.robot.legs[0].piston
     assert piston.EI == pytest.approx(2e11 * np.pi / 64 * (0.027**4 - 0.022**4), rel=1e-12)
     assert piston.EA == pytest.approx(2e11 * np.pi / 4 * (0.027**2 - 0.022**2), rel=1e-12)
-    own = variants.with_section(model.preset("paper-robot"), 0.027, 0.0)
+    own = variants.piston(27.0, 0.0).study
     assert own.robot.legs[0].piston.EI == pytest.approx(model.preset("paper-robot").robot.legs[0].piston.EI, rel=1e-5)
     assert fx.modes(own).frequency[0] == pytest.approx(
         float(fx.modes(model.preset("paper-robot")).frequency[0]), rel=1e-5

@@ -90,7 +90,7 @@ def test_joints_that_rub_lose_their_moment_times_their_turn():
     turn, lost = np.array([1.0, 0, 0]), np.zeros(2)
     force = np.abs(part("robot-rigid").actuator_force_rigid.values)
     force = np.stack([np.interp(t, part("robot-rigid").time, column) for column in force.T], axis=1)
-    arm = 0.5 * outlook.FRICTION.mu * outlook.FRICTION.diameter
+    arm = 0.5 * outlook.FRICTION["mu"] * outlook.FRICTION["diameter"]
     for i in range(len(t)):
         _, legs, n = rows(ROLL * share[i])
         omega = ROLL * rate[i] * turn

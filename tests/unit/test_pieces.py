@@ -7,11 +7,11 @@ import pytest
 from tests.mechanisms import three_rps
 
 from flexapod import kinematics
+from flexapod.common.piecewise_chebyshev import ENOUGH, NODES, Pieces
 from flexapod.kinematics.laws import PROFILES
 from flexapod.model import CombinedMotion, CsvMotion, Load, Simulation, Waypoint, WaypointMotion
 from flexapod.solve.robot_system import robot_system
 from flexapod.solve.time.command_tables import robot_law
-from flexapod.solve.time.piecewise_chebyshev import ENOUGH, NODES, Pieces
 
 
 class Counted:

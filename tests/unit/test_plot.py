@@ -1,7 +1,6 @@
 """Figures: labelled with units, true to the data, drawn in any state of the user's matplotlib."""
 
 import re
-from collections import Counter
 from itertools import pairwise
 from pathlib import Path
 
@@ -9,7 +8,6 @@ import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex, to_rgb, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.image import imread
@@ -23,11 +21,9 @@ from flexapod.app.browser.charts import charts
 from flexapod.common.errors import InputError
 from flexapod.design.maps import workspace_map
 from flexapod.model import load, preset
-from flexapod.output.figures import style
 from flexapod.output.figures.column_width import resize_figure
-from flexapod.output.figures.fast_axes import Panel, _Plain, rc_settings
+from flexapod.output.figures.style import NOTE, house_settings, readable_color
 from flexapod.output.figures.style import figure as page_figure
-from flexapod.output.figures.style import readable_color
 from flexapod.output.report.figures import draw_figures
 from flexapod.output.report.plotly_export import plotly_figure
 from flexapod.output.report.report import write_report
@@ -178,49 +174,28 @@ def test_users_settings_neither_count_nor_change(robot):
         before = dict(matplotlib.rcParams)
         figure = plot.com_path(robot)
         assert dict(matplotlib.rcParams) == before
+        ticks = figure.axes[0].get_yticklabels()
     assert figure.axes[0].title.get_fontsize() < 15
+    assert len(ticks) > 1 and {tick.get_fontsize() for tick in ticks} == {NOTE}
 
 
 def test_files_are_replaced_whole(robot, tmp_path):
     figure = plot.com_path(robot)
-    png, svg = plot.save(figure, tmp_path / "new" / "path")
+    png, svg = plot.save(figure, tmp_path / "new" / "path", formats=("png", "svg"))
     assert png.read_bytes().startswith(b"\x89PNG") and "<svg" in svg.read_text(encoding="utf-8")
-    first = svg.read_bytes()
-    plot.save(plot.com_path(robot), tmp_path / "new" / "path")
-    assert svg.read_bytes() == first  # the same picture is the same file
+    first = png.read_bytes(), svg.read_bytes()
+    plot.save(plot.com_path(robot), tmp_path / "new" / "path", formats=("png", "svg"))
+    assert (png.read_bytes(), svg.read_bytes()) == first  # the same picture is the same file
     assert sorted(p.name for p in (tmp_path / "new").iterdir()) == ["path.png", "path.svg"]
 
 
 @pytest.mark.parametrize("name", ["actuator_forces", "deviation_by_cause", "robot_3d"])
-def test_files_are_what_matplotlib_draws(robot, tmp_path, monkeypatch, name):
-    """The other side is matplotlib's own drawing with its own panels, ticks, words and layout."""
-    png, _ = plot.save(getattr(plot, name)(robot), tmp_path / "ours")
-    monkeypatch.setattr(style, "Panels", Figure)
-    monkeypatch.setattr(style, "Canvas", FigureCanvasAgg)
-    with matplotlib.rc_context(rc_settings()):
-        theirs = getattr(plot, name)(robot)
-        theirs.savefig(tmp_path / "theirs.png", dpi=200)
-    assert type(theirs.axes[0]) is not Panel
-    assert np.array_equal(imread(png), imread(tmp_path / "theirs.png")[:, :, :3])
-
-
-def test_ticks_are_found_once_in_a_panel_of_one_size(robot, tmp_path, monkeypatch):
-    found, find = [], _Plain._look
-    monkeypatch.setattr(_Plain, "_look", lambda axis: found.append(axis) or find(axis))
-    plot.save(plot.actuator_forces(robot), tmp_path / "ours")
-    assert max(Counter(map(id, found)).values()) <= 3  # in two turns of the layout, and as it is drawn
-
-
-def test_ticks_are_those_of_matplotlib_for_who_asks(robot):
-    """What users do with ticks finds matplotlib's own: all of them, at their places, with their words."""
-    axes = plot.energies(robot).axes[0]
-    axes.figure.draw_without_rendering()
-    words = [label.get_text() for label in axes.get_yticklabels()]
-    assert len(words) == len(axes.get_yticks()) > 1
-    assert words == axes.yaxis.get_major_formatter().format_ticks(axes.get_yticks())
-    axes.get_yticklabels()[1].set_color("red")
-    axes.figure.draw_without_rendering()
-    assert [label.get_color() for label in axes.get_yticklabels()].count("red") == 1
+def test_files_are_what_the_figure_saves_itself(robot, tmp_path, name):
+    """The other side is matplotlib's own layout, anew for each file."""
+    (png, *_) = plot.save(getattr(plot, name)(robot), tmp_path / "ours", formats=("png", "svg"))
+    with house_settings():
+        getattr(plot, name)(robot).savefig(tmp_path / "theirs.png", dpi=200)
+    assert np.array_equal(imread(png), imread(tmp_path / "theirs.png"))
 
 
 def test_formats_and_their_refusal(robot, tmp_path):

@@ -8,12 +8,14 @@ from tests.texts import replaced
 from tests.unit.test_model_ranges import classes
 
 from flexapod.common.errors import InputError
+from flexapod.common.tables.key_rows import list_entries
 from flexapod.common.tables.reference import example_line, plain_path, reference
 from flexapod.common.tables.toml import toml_value
 from flexapod.mechanics.elements.element import registered
 from flexapod.model import AXES, FIDELITIES, PROFILES, loads, preset_text
 from flexapod.model.file.fields import read_notes
-from flexapod.model.file.page import list_entries, study_data, study_file_page, words_of
+from flexapod.model.file.key_trials import study_data, tried_entries, words_of
+from flexapod.model.file.page import study_file_page
 
 PAGE = Path(__file__).parents[2] / "docs" / "study-file.md"
 ENTRIES = reference().entries
@@ -46,6 +48,10 @@ def folder(tmp_path_factory):
 def heard(folder):
     """What the readers asked of every example."""
     return [(entry, *read_notes(study_data(entry), folder)) for entry in ENTRIES]
+
+
+def test_stored_rows_are_those_of_the_trials():
+    assert list_entries() == tried_entries(), "write them: python -m flexapod.model.file.key_trials"
 
 
 def test_the_page_is_what_the_readers_and_the_model_say():

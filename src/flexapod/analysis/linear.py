@@ -12,7 +12,7 @@ import numpy as np
 from flexapod import model
 from flexapod.analysis.checks.reachability import CUT_OFF, FALLS_THROUGH, REACHED, equilibrium_codes, flags, rigid_codes
 from flexapod.analysis.results.arguments import LoadLike, PoseLike, RigidPose, RobotLike, read_subject, study_at_pose
-from flexapod.analysis.results.poses import as_poses, batches, has_many_poses, pose_coordinates
+from flexapod.analysis.results.poses import BATCH, as_poses, has_many_poses, pose_coordinates
 from flexapod.common.arguments import number
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
@@ -20,6 +20,7 @@ from flexapod.common.resources import one_thread
 from flexapod.common.units import DIMENSIONS, quantity
 from flexapod.control.state_space import StateSpace
 from flexapod.kinematics import RigidPoses
+from flexapod.kinematics.rotations import blocks
 from flexapod.solve.linear.actuator import ActuatorPlant, actuator_states
 from flexapod.solve.linear.channels import plant_channels
 from flexapod.solve.linear.plant import Drives, Plant, plant_at
@@ -216,7 +217,7 @@ def _grid(
     reason[reason == CUT_OFF] = REACHED
     within = np.flatnonzero(reason == REACHED)
     elastic = ElasticRobot(found.robot, found.simulation, found.load)
-    for part in batches(len(within)) if within.size else [slice(0, 0)]:
+    for part in blocks(len(within), BATCH):
         chosen = within[part]
         some = rigid.resting(chosen)
         plant = plant_at(elastic, some, drives)

@@ -20,10 +20,10 @@ from flexapod.analysis.checks.reachability import (
 )
 from flexapod.analysis.checks.stability import instability_remarks
 from flexapod.analysis.results.mode_shapes import STATIONS, mode_values
-from flexapod.analysis.results.poses import batches, pose_coordinates
+from flexapod.analysis.results.poses import BATCH, pose_coordinates
 from flexapod.analysis.results.variables import COORDINATES, VARIABLES, Variable, dataset
 from flexapod.common.arrays import Array, Mask
-from flexapod.kinematics.rotations import quaternion
+from flexapod.kinematics.rotations import blocks, quaternion
 from flexapod.solve.modal.eigenproblem import count_real
 from flexapod.solve.modal.elastic_robot import ElasticRobot
 from flexapod.solve.modal.modes import ManyModes, modes_of
@@ -65,7 +65,7 @@ def modes_at_poses(study: model.Study, path: kinematics.Poses, *, shapes: bool, 
     within = np.flatnonzero(reason == REACHED)
     values: dict[str, Array | Codes | Mask] = {}
     growth = np.zeros(P)
-    for part in batches(len(within)) if within.size else [slice(0, 0)]:
+    for part in blocks(len(within), BATCH):
         chosen = within[part]
         some = rigid.resting(chosen)
         locked = elastic.lock(some)

@@ -14,7 +14,7 @@ from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError, check_kind
 from flexapod.common.resources import one_thread
 from flexapod.control.state_space import StateSpace
-from flexapod.kinematics.rotations import matrix
+from flexapod.kinematics.rotations import carried_twists, matrix
 from flexapod.solve.linear.channels import plant_channels
 from flexapod.solve.linear.plant import Drives
 from flexapod.solve.linear.states import states_of
@@ -125,9 +125,7 @@ def transmissibility(
     arm = R @ (point.at if point.at is not None else np.zeros(3))
     states = states_of(plant, inputs, outputs, tilt=tilt, about=plant.x.pose[0, :3] + arm)
     whole = model_of(found, plant, states)
-    away = arm - R @ (plant.robot.tool - plant.robot.com)
-    carry = np.eye(6)
-    carry[:3, 3:] = np.cross(np.eye(3), away).T  # a turn about the tool displaces the point
+    carry = carried_twists(arm - R @ (plant.robot.tool - plant.robot.com))  # a turn about the tool displaces the point
     values = np.eye(6)[:, :, None] + (2j * np.pi * hz) ** 2 * np.einsum("ij,jkf->ikf", carry, whole.at(hz))
     return _matrix("transmissibility", whole, values, hz, f"motion of the platform by that of the floor, at {at}")
 

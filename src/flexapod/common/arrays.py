@@ -11,6 +11,12 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 """A Boolean array."""
 
+Index = NDArray[np.intp]
+"""Places in another array."""
+
+Complex = NDArray[np.complex128]
+"""A complex array."""
+
 
 def floats(value: object) -> Array:
     """A new array of real numbers of whatever holds some.

@@ -121,15 +121,10 @@ MODULES = (
         "paper",
         "verification.paper",
         "claims_welded>claims_variants cost>computing_time light>variants printed>printed_figures "
-        "printed_lines>printed_equations solid_figure>figures variant_figures>engine_figures welded>clamped_legs "
-        "welded_figure>clamped_legs",
+        "printed_lines>printed_equations readings>variants solid_figure>figures variant_figures>engine_figures "
+        "welded>clamped_legs welded_figure>clamped_legs",
     ),
-    (
-        "plot",
-        "output.figures",
-        "letters>dual_renderer narrow>column_width panel>fast_axes png>style settings>fast_axes "
-        "twice>dual_renderer vibration>linear",
-    ),
+    ("plot", "output.figures", "narrow>column_width png>style settings>style vibration>linear"),
     (
         "pose_errors",
         "analysis.pose_errors",
@@ -166,9 +161,9 @@ MODULES = (
     (
         "solve.time",
         "solve.time",
-        "pieces>piecewise_chebyshev redundant>overconstrained sampled>sampled_control stops>time_events "
-        "tables>command_tables",
+        "redundant>overconstrained sampled>sampled_control stops>time_events tables>command_tables",
     ),
+    ("solve.time", "common", "pieces>piecewise_chebyshev"),
     (
         "study",
         "analysis",

@@ -38,14 +38,40 @@ def load_module(name: str) -> ModuleType:
             gc.enable()
 
 
-def lazy_attributes(
-    package: str, homes: Mapping[str, Sequence[str]], former: Mapping[str, str] | None = None
-) -> Callable[[str], object]:
-    """Make the `__getattr__` of a package: its names, by the modules that they live in, load on first use.
+def lazy_names(
+    package: str, *, hidden: Mapping[str, Sequence[str]] | None = None, former: Mapping[str, str] | None = None
+) -> tuple[Callable[[str], object], Callable[[], list[str]], list[str]]:
+    """Make `__getattr__`, `__dir__` and `__all__` of a package from its stub `__init__.pyi`, where a name stands once.
 
+    Lines of the stub are ``from MODULE import NAME as NAME``, and ``NAME = MODULE`` for a package of `SHOWN`.
+    `hidden`: names that answer and are not listed, by the modules that they live in. `former`: see `lazy_attributes`.
+    """
+    module = sys.modules[package]
+    homes: dict[str, str] = {}
+    with open(f"{module.__path__[0]}/__init__.pyi", encoding="utf-8") as stub:
+        for line in stub:
+            match line.split():
+                case ["from", home, "import", _, "as", name]:
+                    homes[name] = home
+                case [name, "=", _]:
+                    homes[name] = package
+    listed = sorted(homes, key=lambda name: (not name.isupper(), name))  # constants first
+    homes |= {name: home for home, names in (hidden or {}).items() for name in names}
+    found = lazy_attributes(package, homes, former)
+    for name in listed:
+        if homes[name] == f"{package}.{name}":  # a later import of the module would put it in the place of the function
+            found(name)
+    return found, lambda: sorted({name for name in vars(module) if name.startswith("__")} | {*listed}), listed
+
+
+def lazy_attributes(
+    package: str, homes: Mapping[str, str], former: Mapping[str, str] | None = None
+) -> Callable[[str], object]:
+    """Make the `__getattr__` of a module: its names, with the modules that they live in, load on first use.
+
+    A name that lives in the module itself is a module inside it.
     `former`: names of the release before and the new ones; they answer with a remark.
     """
-    module_of = {name: module for module, names in homes.items() for name in names}
 
     def found(name: str) -> object:
         if former and name in former:
@@ -53,9 +79,10 @@ def lazy_attributes(
 
             warnings.warn(f"{package}.{name} is {package}.{former[name]} now", FutureWarning, stacklevel=2)
             return getattr(sys.modules[package], former[name])
-        if name not in module_of:
+        if name not in homes:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        value = getattr(load_module(module_of[name]), name)
+        inside = homes[name] == package
+        value = load_module(f"{package}.{name}") if inside else getattr(load_module(homes[name]), name)
         setattr(sys.modules[package], name, value)
         return value
 
@@ -66,9 +93,7 @@ class LazyModule(ModuleType):
     """A module that is imported with the first name that is asked of it."""
 
     def __getattr__(self, name: str) -> Any:
-        value = getattr(load_module(self.__name__), name)
-        setattr(self, name, value)
-        return value
+        return getattr(sys.modules.get(self.__name__) or load_module(self.__name__), name)
 
 
 class FormerPaths:

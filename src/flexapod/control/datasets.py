@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from flexapod.common.arguments import frequencies
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Complex
 from flexapod.common.datasets import build_dataset
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.common.files import path_of, replace_file
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
     from flexapod.solve.linear.random_vibration import RandomVibration
 
-Complex = NDArray[np.complex128]
 PARTS = ["real", "imaginary"]
 ROUNDING = 1e-8  # of the largest response of its kind: what is no more is zero
 RESPONSE = ("frequency_response", "response of outputs to inputs", "output_units / input_units")

@@ -52,15 +52,15 @@ def zero_order_hold(
     system = _with_rates_beside(system)
     n, m = system.B.shape
     if abs(delay) <= NEARLY * period or not late:
-        step, push = _integrals(system.A, system.B, period)
+        step, push = held_step(system.A, system.B, period)
         return without_rates(replace(system.select(), A=step, B=push, sample=period))
     if not 0 <= delay <= LATEST * period:
         raise InputError("is no delay", key="delay", value=delay, allowed=f"0 to {LATEST} samples of {period:g} s")
     whole = int(np.floor(delay / period + NEARLY))
     part = max(delay - whole * period, 0.0)
-    step, push = _integrals(system.A, system.B, period)
-    now, _ = _integrals(system.A, system.B, period - part)
-    before = now @ _integrals(system.A, system.B, part)[1]  # what an input still does that changes within the period
+    step, push = held_step(system.A, system.B, period)
+    now, _ = held_step(system.A, system.B, period - part)
+    before = now @ held_step(system.A, system.B, part)[1]  # what an input still does that changes within the period
     cut = part > NEARLY * period
     length = whole + cut
     B, D = np.array(push), np.array(system.D)
@@ -101,7 +101,7 @@ def _with_rates_beside(system: StateSpace) -> StateSpace:
     )
 
 
-def _integrals(A: Array, B: Array, period: float) -> tuple[Array, Array]:
+def held_step(A: Array, B: Array, period: float) -> tuple[Array, Array]:
     """exp(A T) and the integral of exp(A t) B over a time T."""
     n, m = B.shape
     whole = np.asarray(expm(np.block([[A, B], [np.zeros((m, n + m))]]) * period), dtype=float)

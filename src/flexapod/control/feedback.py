@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from flexapod.common.arguments import frequencies
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Complex
 from flexapod.common.errors import InputError
 from flexapod.common.units import quantity
 from flexapod.control.discretization import period_of, zero_order_hold
@@ -218,9 +218,6 @@ def loop_units(units: Mapping[str, str], names: Sequence[str]) -> dict[str, str]
         if name not in found and plain in found:
             found[name] = found[plain]
     return found
-
-
-Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,10 +6,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import linear_sum_assignment, minimize_scalar
 
 from flexapod.common.arguments import number, numbers
+from flexapod.common.arrays import Complex
 from flexapod.common.errors import InputError
 from flexapod.common.units import quantity
 from flexapod.control.feedback import closed_loop, law_beside, open_loop
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
 
     from flexapod.control.controllers import Controller
     from flexapod.control.state_space import StateSpace
-
-Complex = NDArray[np.complex128]
 
 STEPS = 40  # of a decade of gains
 FINEST = 1e-9  # relative accuracy of a crossing

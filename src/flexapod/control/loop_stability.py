@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from flexapod.common.arguments import number
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Complex
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.common.units import DIMENSIONS
 from flexapod.control.feedback import DelayedLoop, closed_loop, law_beside
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
 
 
-Complex = NDArray[np.complex128]
 Gains = Callable[[Array], Complex]  # around all loops at frequencies [Hz], (f, k, k)
 Kind = Literal["real", "one", "nearest"]
 

@@ -3,54 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from flexapod.common.arrays import Array, floats
+from flexapod.common.arrays import floats
 from flexapod.common.errors import InputError
 from flexapod.control.frequency_response import reachable_observable
 from flexapod.control.state_space import channel_indices
 from flexapod.model.study.disturbance import Disturbance, Floor, Spectrum, check_density
-from flexapod.solve.linear.random_vibration import FLOOR_RATES, SOURCES, RandomVibration, Source, vibration_with_error
+from flexapod.solve.linear.random_vibration import (
+    FLOOR_RATES,
+    GROUPS,
+    SOURCES,
+    RandomVibration,
+    Source,
+    VibrationModel,
+    vibration_with_error,
+)
 
 if TYPE_CHECKING:
     from flexapod.control.state_space import StateSpace
 
-Complex = NDArray[np.complex128]
-
 #: A disturbance of a study, or one-sided spectra by channel or group: tables of a study, or (frequency [Hz], density).
 Sources = Disturbance | Mapping[str, Floor | Spectrum | tuple[ArrayLike, ArrayLike]]
-#: Groups of inputs by the field of a disturbance.
 EXAMPLE = "spectra by channel: {'wrench:fz': (frequencies [Hz], densities)}"
-GROUPS = {"floor": "floor", "wrench": "wrench", "force_noise": "drive"}
-
-
-@dataclass(frozen=True, kw_only=True)
-class OutputsAsModes:
-    """Linear system in the form that integrals over frequency need: its outputs take the place of modes."""
-
-    system: StateSpace
-
-    @property
-    def omega(self) -> Array:
-        """Ones, one for each output."""
-        return np.ones(len(self.system.outputs))
-
-    @property
-    def tool(self) -> Array:
-        """Unit matrix: each output by itself."""
-        return np.eye(len(self.system.outputs))
-
-    def poles(self, rate: float) -> Complex:
-        """Poles [1/s] of what inputs move and outputs show."""
-        return np.linalg.eigvals(reachable_observable(self.system.A, self.system.B, self.system.C)[0]).astype(complex)
-
-    def amplitudes(self, frequency: Array, forces: Array) -> Complex:
-        """Outputs (f, p, k) at frequencies [Hz] under inputs (m, k)."""
-        return np.moveaxis(self.system.at(frequency), 2, 0) @ forces
 
 
 def output_vibration(system: StateSpace, sources: Sources) -> tuple[RandomVibration, float]:
@@ -69,7 +47,13 @@ def output_vibration(system: StateSpace, sources: Sources) -> tuple[RandomVibrat
         )
         for one in every
     ]
-    return vibration_with_error(OutputsAsModes(system=used), every)
+    poles = np.linalg.eigvals(reachable_observable(used.A, used.B, used.C)[0]).astype(complex)
+    model = VibrationModel(  # its outputs take the place of modes
+        tool=np.eye(len(used.outputs)),
+        poles=lambda rate: poles,
+        amplitudes=lambda frequency, forces: np.moveaxis(used.at(frequency), 2, 0) @ forces,
+    )
+    return vibration_with_error(model, every)
 
 
 def _sources(system: StateSpace, given: Sources) -> list[Source]:

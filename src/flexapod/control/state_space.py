@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from flexapod.common.arguments import frequencies, number
-from flexapod.common.arrays import Array, floats
+from flexapod.common.arrays import Array, Complex, floats
 from flexapod.common.errors import InputError, names_of, suggest_word
 from flexapod.common.lazy_imports import LazyModule
 from flexapod.common.units import quantity
@@ -82,9 +82,6 @@ def _unknown(name: str, among: Sequence[str], key: str) -> InputError:
         allowed=", ".join(channel_groups(among)) + f", or a single one as {among[0]}" if among else "none",
         next_step=suggest_word(name, [*channel_groups(among), *among]),
     )
-
-
-Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

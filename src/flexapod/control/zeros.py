@@ -7,13 +7,10 @@ from typing import Any
 
 import numpy as np
 import scipy.linalg
-from numpy.typing import NDArray
 
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Complex
 from flexapod.common.resources import one_thread
 from flexapod.control.frequency_response import mean_rate
-
-Complex = NDArray[np.complex128]
 
 SINGULAR = 1e-13  # of the numbers of the scaled equations: a response that is none anywhere
 APART = 1e-6  # distance of roots over their size below which they are one that is there twice

@@ -16,7 +16,7 @@ from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN, FREE, HELD, Li
 from flexapod.kinematics.mechanism import coordinates_of
 from flexapod.kinematics.rigid_poses import inverse_kinematics
 from flexapod.kinematics.robot import cache_per_robot, rigid_limbs
-from flexapod.kinematics.rotations import exponential
+from flexapod.kinematics.rotations import carried_twists, exponential
 from flexapod.kinematics.screws import screws
 from flexapod.kinematics.trajectory import Poses
 from flexapod.model.heat import HEAT_PARTS
@@ -291,10 +291,7 @@ def nearby(limbs: Limbs, q: Array, at: Poses, base: Array, platform: Array) -> t
         apart = gaps(limbs, chain, Poses.at_rest(p, R))
         arms = (limbs.platform + platform) @ R.swapaxes(-1, -2)
         apart[..., :3] += base - platform @ R.swapaxes(-1, -2)
-        columns = np.zeros((*arms.shape[:2], 6, 6))
-        columns[..., :3, :3] = columns[..., 3:, 3:] = np.eye(3)
-        columns[..., :3, 3:] = np.cross(np.eye(3), arms[..., None], axis=-2)
-        dq, step = eliminate_legs(limbs, task, chain, columns[..., task.platform]).solve(-apart)
+        dq, step = eliminate_legs(limbs, task, chain, carried_twists(arms)[..., task.platform]).solve(-apart)
         twist = np.zeros((len(q), 6))
         twist[:, task.platform] = step
         q, p, R = q + dq, p + twist[:, :3], exponential(twist[:, 3:]) @ R

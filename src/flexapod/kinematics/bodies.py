@@ -7,10 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.common.arrays import Array, Mask
+from flexapod.common.arrays import Array, Index, Mask
 from flexapod.kinematics.rotations import blocks, dot
-
-Index = NDArray[np.intp]
 
 HALVES = (0, 0, 1, 1), (0, 1, 0, 1)  # of two legs: cylinder (0) or piston (1)
 SPAN = 32  # poses between which legs that follow a path move little

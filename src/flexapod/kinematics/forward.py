@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Complex
 from flexapod.common.errors import ComputationError, InputError
-from flexapod.kinematics.homotopy import Complex, Platform, complex_postures
+from flexapod.kinematics.homotopy import Platform, complex_postures
 from flexapod.kinematics.inverse import leg_lengths
 from flexapod.kinematics.jacobian import length_jacobian
 from flexapod.kinematics.rotations import exponential

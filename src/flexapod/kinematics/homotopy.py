@@ -21,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from flexapod.common.arrays import Complex
 from flexapod.common.errors import ComputationError
 
 GENERIC_POSTURES = 40  # complex solutions of a generic platform, Raghavan 1993; Ronga & Vust 1995
@@ -30,8 +31,6 @@ _MAX_LOOPS = 60
 _AT_INFINITY = 1e-6  # norm of e in a unit solution, below which it is not a pose
 _LEAVING = 1e-2  # norm of e at which a path that stopped short is taken to go to infinity
 _SAME = 1e-9  # unit vectors nearer than this are one solution; distinct ones of a generic system differ by > 1e-7
-
-Complex = NDArray[np.complex128]
 
 
 class Platform(NamedTuple):

@@ -13,7 +13,7 @@ import numpy as np
 from flexapod.common.arrays import Array, Mask
 from flexapod.kinematics.closures import gaps
 from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN, FREE, HELD, Limbs
-from flexapod.kinematics.rotations import exponential
+from flexapod.kinematics.rotations import carried_twists, exponential
 from flexapod.kinematics.screws import screws
 from flexapod.kinematics.trajectory import Poses
 
@@ -122,12 +122,10 @@ def _matrix(limbs: Limbs, at: Posture) -> tuple[Array, Mask]:
     n, moves = len(limbs), _unknown(limbs)
     columns = screws(limbs, at.q).columns[0] * _rows(limbs)[:, None] * _unit(limbs)
     arms = limbs.platform @ at.turn.T / limbs.L_c
-    hub = np.tile(np.eye(6), (n, 1, 1))
-    hub[:, :3, 3:] = np.cross(np.eye(3)[None], arms[..., None], axis=1)
     legs = np.zeros((n, 6, n, 8))
     legs[np.arange(n), :, np.arange(n)] = columns
     left = legs.reshape(6 * n, 8 * n)[:, moves.ravel()]
-    right = -hub.reshape(6 * n, 6)[:, ~limbs.hub_held]
+    right = -carried_twists(arms).reshape(6 * n, 6)[:, ~limbs.hub_held]
     driven = (limbs.state == DRIVEN).ravel()[moves.ravel()]
     return np.hstack([left, right]), np.concatenate([driven, np.zeros(right.shape[1], dtype=bool)])
 
@@ -244,11 +242,7 @@ def _names(limbs: Limbs, leg: int, rows: int, scale: Array) -> tuple[list[int], 
 
 def _joint_columns(limbs: Limbs, path: Poses, point: Array) -> Array:
     """Matrices from a twist of the platform at `point` to the motion of its joints, (T, n, 6, 6)."""
-    arms = (limbs.platform - point) @ path.rotation.swapaxes(-1, -2)
-    joints = np.zeros((*arms.shape[:2], 6, 6))
-    joints[..., :, :] = np.eye(6)
-    joints[..., :3, 3:] = np.cross(np.eye(3), arms[..., None], axis=-2)
-    return joints
+    return carried_twists((limbs.platform - point) @ path.rotation.swapaxes(-1, -2))
 
 
 def drive_jacobian(limbs: Limbs, q: Array, path: Poses, point: Array) -> Array:

@@ -99,6 +99,14 @@ def exponential(turn: Array) -> Array:
     return np.eye(3) + np.sinc(angle / np.pi) * k + half**2 / 2 * (k @ k)
 
 
+def carried_twists(arms: Array) -> Array:
+    """Matrices (..., 6, 6) from a twist of a body to that of its points `arms` (..., 3) away."""
+    found = np.zeros((*arms.shape[:-1], 6, 6))
+    found[..., :, :] = np.eye(6)
+    found[..., :3, 3:] = np.cross(np.eye(3), arms[..., None], axis=-2)
+    return found
+
+
 def displace_pose(pose: Array, step: Array) -> Array:
     """Poses (..., 7) moved by steps (..., 6): x + dx, R exp(theta^), Eqs. (T4.3) and (T6.2)."""
     half = 0.5 * _size(step[..., 3:])
@@ -113,9 +121,9 @@ Vector = Sequence[Array] | Array
 BLOCK = 1024  # poses; an array of six legs then takes 48 kB, and what a block needs fits the second-level cache
 
 
-def blocks(count: int) -> Iterator[slice]:
-    """Ranges of at most `BLOCK` out of `count` poses; of no poses one, which is empty."""
-    return (slice(first, min(first + BLOCK, count)) for first in range(0, max(count, 1), BLOCK))
+def blocks(count: int, size: int = BLOCK) -> Iterator[slice]:
+    """Ranges of at most `size` out of `count` poses; of no poses one, which is empty."""
+    return (slice(first, min(first + size, count)) for first in range(0, max(count, 1), size))
 
 
 def time_last(array: Array) -> Array:

@@ -6,10 +6,10 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Index
 from flexapod.kinematics.rotations import displace_pose
 from flexapod.solve.kernel import evaluate
-from flexapod.solve.system import Index, State, System
+from flexapod.solve.system import State, System
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Index
 from flexapod.kinematics.leg_geometry import COORDINATES, HELD, Limbs
 from flexapod.kinematics.mechanism import leg_state, legs_at
 from flexapod.kinematics.robot import cache_per_robot
@@ -16,7 +16,7 @@ from flexapod.kinematics.screws import screws
 from flexapod.mechanics.leg.layout import Shapes
 from flexapod.model import Robot
 from flexapod.solve.batch import Rates, RestStates
-from flexapod.solve.system import Index, State, System
+from flexapod.solve.system import State, System
 
 GAMMA = slice(COORDINATES.index("gamma1"), None)
 

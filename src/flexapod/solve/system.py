@@ -5,14 +5,12 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from flexapod.common.arrays import Array, Mask
+from flexapod.common.arrays import Array, Index, Mask
 from flexapod.kinematics.rotations import displace_pose
 from flexapod.mechanics.leg.layout import LOAD_SIZE, columns, leg_parameters
 from flexapod.solve.kernel import Kernel, evaluate
 
-Index = NDArray[np.intp]
 ENDS = ("base", "platform")
 COLUMNS = 4  # of a port in a table: value, rate, acceleration, force
 

@@ -112,6 +112,11 @@ def table(chain: str, *, mass: float, inertia: float, height: float = 0.8, **rod
     return build_robot(f"4-{chain}", ring(0.3, FOUR), ring(0.3, FOUR), height, [own] * 4, payload=load)
 
 
+def with_legs(robot: Robot, **changes: Any) -> Robot:
+    """The robot with these parts in every leg."""
+    return robot.replace(legs=tuple(leg.replace(**changes) for leg in robot.legs))
+
+
 def without_gravity(robot: Robot) -> Robot:
     """The robot where nothing has weight."""
     return robot.replace(gravity=[0, 0, 0])
@@ -121,7 +126,7 @@ def without_cylinders(robot: Robot) -> Robot:
     """The robot with pistons of 1 m that reach from joint to joint."""
     bare = robot.legs[0].cylinder.replace(mouth=0.0, mass=0.0, com=0.0, inertia=0.0)
     rod = robot.legs[0].piston.replace(length=1.0)  # longer than any leg at the poses used: nothing is pulled out
-    return robot.replace(legs=[leg.replace(cylinder=bare, piston=rod) for leg in robot.legs])
+    return with_legs(robot, cylinder=bare, piston=rod)
 
 
 def with_unequal_legs(robot: Robot) -> Robot:

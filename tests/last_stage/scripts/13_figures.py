@@ -32,7 +32,7 @@ figures = {
     "transmissibility": fx.plot.transmissibility(fx.transmissibility("robot.toml", [5.0, 20.0, 80.0])),
 }
 files = save(figures["by_leg"], "figure-3", formats=("pdf", "svg", "png"), width=0.085)
-fx.plot.save(figures["energies"], "energies")
+fx.plot.save(figures["energies"], "energies", formats=("png", "svg"))  # PNG alone where nothing is said
 found = {
     "names": sorted(name for name in fx.plot.__all__),
     "axes": {name: len(figure.axes) for name, figure in figures.items()},

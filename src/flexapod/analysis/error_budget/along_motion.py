@@ -21,11 +21,11 @@ from flexapod.analysis.results.elongations import gap_elongations
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.analysis.results.time_history import Progress, Record
 from flexapod.analysis.simulation import simulate_path
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Index
 from flexapod.kinematics.leg_geometry import COORDINATES
 from flexapod.model import Study
 from flexapod.solve.modal.elastic_robot import ElasticRobot
-from flexapod.solve.system import Index, System
+from flexapod.solve.system import System
 
 SAME = 1e-6  # static deviations that differ by less are alike
 MOST = 400  # intervals at whose ends poses are looked at at rest

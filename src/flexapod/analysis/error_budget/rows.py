@@ -13,14 +13,14 @@ from flexapod.analysis.pose_errors.error_sources import ErrorRow
 from flexapod.analysis.pose_errors.error_sources import accuracy_rows as built_rows
 from flexapod.analysis.pose_errors.sensitivity import Sensitivity, sensitivity
 from flexapod.analysis.results.causes import cause_names, errors_of
-from flexapod.analysis.results.poses import batches
+from flexapod.analysis.results.poses import BATCH
 from flexapod.analysis.results.remarks import remark
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.analysis.results.time_history import Record
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Index
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.common.quantities import NOTHING
-from flexapod.kinematics.rotations import difference, matrix, quaternion
+from flexapod.kinematics.rotations import blocks, difference, matrix, quaternion
 from flexapod.model import Robot, Study
 from flexapod.solve.batch import RestStates
 from flexapod.solve.frames import floor
@@ -29,7 +29,7 @@ from flexapod.solve.modal.elastic_robot import ElasticRobot
 from flexapod.solve.statics.equilibrium import FOUND
 from flexapod.solve.statics.locked_robot import LockedPoses, single_equilibrium
 from flexapod.solve.statics.lost_motion import places_with_friction, reversal
-from flexapod.solve.system import Index, System
+from flexapod.solve.system import System
 
 ROUNDING = 1e-9  # of the largest row, in place and in rotation
 
@@ -74,7 +74,7 @@ def tool_deviation(
 def static_deviation(elastic: ElasticRobot, path: RigidPath, some: Index) -> ToolDeviation:
     """The tool at rest at some poses of a path under gravity and the load at t = 0, temperatures as at t = 0."""
     found = []
-    for chosen in batches(len(some)):
+    for chosen in blocks(len(some), BATCH):
         here = some[chosen]
         still = RigidPath(path.study, np.zeros(len(here)), path.poses.part(here))
         locked = elastic.lock(still)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -88,12 +88,6 @@ def coordinate_text(name: str, value: float) -> str:
     """A coordinate of a pose, in mm or deg."""
     shown, unit = (1e3 * value, "mm") if name in model.AXES[:3] else (np.rad2deg(value), "deg")
     return f"{number(round(shown, 9), 4)} {unit}"
-
-
-def batches(count: int) -> Iterator[slice]:
-    """Slices of `BATCH` poses."""
-    for first in range(0, count, BATCH):
-        yield slice(first, min(first + BATCH, count))
 
 
 def _numbers(pose: object) -> Array:

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import tomlkit
-from tomlkit.container import Container
-from tomlkit.items import AoT, Table, Whitespace
 
 from flexapod import model
 from flexapod.app.browser.text_fields import plain
@@ -123,47 +121,6 @@ def _holder(tree: Any, key: str) -> tuple[Any, str | int]:
     return tree, steps[-1]
 
 
-_HEADING = re.compile(r"^\s*\[\[?\s*([^\[\]\"']+?)\s*\]\]?\s*(#.*)?$")
-
-
-def table_spans(text: str, name: str) -> list[tuple[int, int]]:
-    """Lines (first, after the last) of each table with a heading ``[name]`` or ``[[name]]``, its inner tables included.
-
-    Comments directly above a heading belong to it, blank lines before them to nobody.
-    """
-    lines = text.splitlines()
-    headings = [(i, found[1]) for i, line in enumerate(lines) if (found := _HEADING.match(line))]
-    headings = [(i, path) for i, path in headings if not path.startswith(f"{name}.")]
-    ends = [_start(lines, i) for i, _ in headings[1:]] + [len(lines)]
-    found = []
-    for (i, path), end in zip(headings, ends, strict=True):
-        if path == name:
-            while not lines[end - 1].strip():
-                end -= 1
-            found.append((_start(lines, i), end))
-    return found
-
-
-def replace_lines(text: str, first: int, after: int, lines: Sequence[str]) -> str:
-    """The text with other lines in place of some."""
-    old = text.splitlines()
-    end = "\r\n" if "\r\n" in text else "\n"
-    return end.join([*old[:first], *lines, *old[after:]]) + end
-
-
-def rename_table(lines: Sequence[str], name: str, heading: str) -> list[str]:
-    """The lines of a table with another heading, ``[[leg]]`` for ``[leg]``."""
-    pattern = re.compile(rf"^\s*\[\[?\s*{re.escape(name)}\s*\]\]?")
-    return [pattern.sub(heading, line) for line in lines]
-
-
-def strip_comments(lines: Sequence[str]) -> list[str]:
-    """The lines of a table without comments."""
-    tree = tomlkit.parse("\n".join(lines) + "\n")
-    _strip(tree)
-    return [line for line in tree.as_string().splitlines() if line.strip() and not line.lstrip().startswith("#")]
-
-
 def check_toml(text: str, expected: object, key: str) -> str:
     """The text where it reads as it should, else InputError: it is written in a way that the form does not change."""
     try:
@@ -177,21 +134,6 @@ def check_toml(text: str, expected: object, key: str) -> str:
             next_step="Download the study, change it in an editor, upload it again",
         )
     return text
-
-
-def _start(lines: Sequence[str], heading: int) -> int:
-    while heading and lines[heading - 1].lstrip().startswith("#"):
-        heading -= 1
-    return heading
-
-
-def _strip(container: Container) -> None:
-    for _, item in container.body:
-        for part in item.body if isinstance(item, AoT) else [item]:
-            if not isinstance(part, Whitespace):
-                part.trivia.comment = part.trivia.comment_ws = ""
-            if isinstance(part, Table):
-                _strip(part.value)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,12 +15,9 @@ from flexapod.app.browser.document import (
     TypedQuantity,
     check_toml,
     quantity,
-    rename_table,
-    replace_lines,
-    strip_comments,
-    table_spans,
 )
 from flexapod.model.file.fields import NotedField
+from flexapod.model.file.study_text import rename_table, replace_lines, table_spans, with_each_leg
 
 STARTS: dict[str, dict[str, object]] = {"load": {"wrench": [0] * 6}, "initial": {"start": "equilibrium"}}
 """Tables that a robot's study may leave out, as they are added: they change nothing yet."""
@@ -180,15 +177,7 @@ def _later(points: list[dict[str, object]]) -> object:
 
 def _each_leg(document: Document) -> Document:
     """``[[leg]]`` for each leg in place of ``[leg]``; the comments stay with the first."""
-    expected = tomllib.loads(document.text)
-    count = _count(expected)
-    expected["leg"] = [expected["leg"]] * count
-    text = document.text
-    for first, after in table_spans(text, "leg")[:1]:
-        lines = rename_table(text.splitlines()[first:after], "leg", "[[leg]]")
-        copies = [line for _ in range(count - 1) for line in ("", *strip_comments(lines))]
-        text = replace_lines(text, first, after, [*lines, *copies])
-    return document.with_text(check_toml(text, expected, "leg"))
+    return document.with_text(with_each_leg(document.text))
 
 
 def _one_leg(document: Document) -> Document:

@@ -12,13 +12,16 @@ import typer
 from flexapod.app.cli.commands_export import COMMA
 from flexapod.app.cli.failures import report_failures
 from flexapod.app.cli.options import (
+    USUAL,
     Force,
+    Format,
     Json,
     NoFigures,
     Pose,
     StudyFile,
     as_options,
     check_writable,
+    parse_formats,
     refuse_existing,
     robot_study,
 )
@@ -77,11 +80,12 @@ Count = Annotated[int, typer.Option("--count", min=1, help="How many of the slow
 def frf(
     file: StudyFile, input: Inputs = "wrench", output: Outputs = "tool", pose: Pose = None, drives: Drives = "given",
     friction: Friction = None, lowest: From = "1 Hz", highest: To = "1000 Hz", points: Points = 400,
-    out: Folder = None, uff: Uff = None, mat: Mat = None, force: Force = False, no_figures: NoFigures = False,
-    json: Json = False,
+    out: Folder = None, uff: Uff = None, mat: Mat = None, force: Force = False, formats: Format = USUAL,
+    no_figures: NoFigures = False, json: Json = False,
 ) -> None:  # fmt: skip
     """Responses of outputs to inputs over frequency, about the static equilibrium at a pose."""
     check_writable(out)
+    drawn = parse_formats(formats, no_figures)
     for path, key in ((uff, "--uff"), (mat, "--mat")):
         if path is not None:
             _check_file(path, key, force)
@@ -89,7 +93,7 @@ def frf(
     with hide_package("dask"):
         model = _model(file, pose, drives, friction, (input, output))
         data = model.frequency_response(hz)
-        files = _write(model, data, out, uff, mat, figure=not no_figures)
+        files = _write(model, data, out, uff, mat, drawn)
         items = chain(linear.frf_items(data, pose, drives), map("Written: {}".format, files))
         print_answer(items, lambda: linear.frf_as_dict(data, files), json=json)
 
@@ -146,21 +150,20 @@ def _check_file(path: Path, key: str, force: bool) -> None:
 
 
 def _write(
-    model: LinearModel, data: Dataset, folder: Path | None, uff: Path | None, mat: Path | None, *, figure: bool
+    model: LinearModel, data: Dataset, folder: Path | None, uff: Path | None, mat: Path | None, drawn: Sequence[str]
 ) -> Sequence[Path]:
     files: list[Path] = []
     if folder is not None:
         files.append(store.save(data, folder / "frf.nc"))
-        files += _figure(data, folder) if figure else ()
+        files += _figure(data, folder, drawn) if drawn else ()
     if uff is not None:
         write_text(uff, formats.uff(data), encoding="ascii", errors="replace")
         files.append(uff)
     return [*files, *([] if mat is None else [model.save(mat)])]
 
 
-def _figure(data: Dataset, folder: Path) -> Sequence[Path]:
+def _figure(data: Dataset, folder: Path, drawn: Sequence[str]) -> Sequence[Path]:
     """The figure, of the first inputs where all of them are too many curves."""
     first = data.isel(output=slice(0, figures_linear.MOST))
-    return figures.save(
-        figures.bode(first.isel(input=slice(0, max(1, figures_linear.MOST // first.sizes["output"])))), folder / "frf"
-    )
+    figure = figures.bode(first.isel(input=slice(0, max(1, figures_linear.MOST // first.sizes["output"]))))
+    return figures.save(figure, folder / "frf", formats=drawn)

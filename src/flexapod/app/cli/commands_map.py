@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -9,7 +10,20 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.cli.failures import report_failures
-from flexapod.app.cli.options import Json, NoFigures, Out, Quiet, StudyFile, as_options, results_folder, robot_study
+from flexapod.app.cli.options import (
+    USUAL,
+    Format,
+    Json,
+    NoFigures,
+    Out,
+    Quiet,
+    Settings,
+    StudyFile,
+    as_options,
+    parse_formats,
+    results_folder,
+    robot_study,
+)
 from flexapod.common.errors import InputError
 from flexapod.common.lazy_imports import LazyModule
 from flexapod.output.text import terminal
@@ -66,15 +80,16 @@ Count = Annotated[int | None, typer.Option("--count", min=1, help="Points of an 
 
 @report_failures
 def workspace_map(
-    file: StudyFile, x: X = None, y: Y = None, z: Z = None, at: At = None, direction: Direction = "z",
-    acceleration: Acceleration = None, budget: Budget = False, mode: Mode = 1, count: Count = None, out: Out = None,
-    no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
+    file: StudyFile, settings: Settings = None, x: X = None, y: Y = None, z: Z = None, at: At = None,
+    direction: Direction = "z", acceleration: Acceleration = None, budget: Budget = False, mode: Mode = 1,
+    count: Count = None, out: Out = None, formats: Format = USUAL, no_figures: NoFigures = False,
+    json: Json = False, quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Map frequencies, stiffness, deviations, forces and margins over poses: map.nc and figures."""
-    study = robot_study(file)
+    study, drawn = robot_study(file, settings), parse_formats(formats, no_figures)
     axes = pose_options.parse_axes({"--x": x, "--y": y, "--z": z}, count, grid.usual_axes(study.robot))
     fixed = pose_options.parse_at(at, axes)
-    settings = {
+    load = {
         "direction": pose_options.parse_direction(direction),
         "acceleration": pose_options.parse_acceleration(acceleration),
     }
@@ -84,28 +99,27 @@ def workspace_map(
             poses, frequencies = grid.build_grid(study.robot, axes, fixed), max(mode, maps_maps.FREQUENCIES)
             resource_limits.check_map(poses.size, frequencies, folder)
             data = maps.workspace_map(
-                study, poses.values, at=fixed, frequencies=frequencies, budget=budget, **settings,
+                study, poses.values, at=fixed, frequencies=frequencies, budget=budget, **load,
                 progress=lambda words, share: report(words, COMPUTING * share),
             )  # fmt: skip
         if mode > data.sizes["mode"]:
             raise InputError(
                 "is not a mode of this robot", key="--mode", value=mode, allowed=f"1 to {data.sizes['mode']}"
             )
-        files = _write(data, folder, mode, report, figures=not no_figures)
+        files = _write(data, folder, mode, report, drawn)
     found = findings.map_findings(data, mode)
-    drawn = " and a figure of each quantity" if len(files) > 1 else ""
-    where = f"In {folder}: map.nc{drawn}. ({data.attrs['wall_time']:.2g} s of computation)"
+    figures = " and a figure of each quantity" if len(files) > 1 else ""
+    where = f"In {folder}: map.nc{figures}. ({data.attrs['wall_time']:.2g} s of computation)"
     more = {"wall_time": data.attrs["wall_time"], "folder": folder, "files": files}
     terminal.print_answer(chain(answers.map_items(data, found), [where]), lambda: found.as_dict() | more, json=json)
 
 
-def _write(data: Dataset, folder: Path, mode: int, report: Report, *, figures: bool) -> list[Path]:
-    """The map, and where they are wanted a figure of each quantity, of frequencies that of this `mode`."""
+def _write(data: Dataset, folder: Path, mode: int, report: Report, formats: Sequence[str]) -> list[Path]:
+    """The map, and where a format is given a figure of each quantity, of frequencies that of this `mode`."""
     report("writing the map", COMPUTING)
-    files, names = [store.save(data, folder / "map.nc")], findings.scalars_with_values(data) if figures else ()
+    files, names = [store.save(data, folder / "map.nc")], findings.scalars_with_values(data) if formats else ()
     for k, name in enumerate(names):
         report(f"drawing {name.replace('_', ' ')}", COMPUTING + (1 - COMPUTING) * k / len(names))
-        files += output_figures.save(
-            output_figures.workspace_map(data, name, mode=mode), folder / f"map-{name.replace('_', '-')}"
-        )
+        figure, stem = output_figures.workspace_map(data, name, mode=mode), folder / f"map-{name.replace('_', '-')}"
+        files += output_figures.save(figure, stem, formats=formats)
     return files

@@ -5,6 +5,7 @@ The budget is at a pose or along the motion.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,7 +13,22 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.cli.failures import report_failures
-from flexapod.app.cli.options import Json, NoFigures, Pose, Quiet, StudyFile, Verbose, as_options, check_writable
+from flexapod.app.cli.options import (
+    USUAL,
+    Format,
+    Json,
+    NoFigures,
+    Pose,
+    Quiet,
+    Settings,
+    StudyFile,
+    Verbose,
+    as_options,
+    check_writable,
+    load_study,
+    parse_formats,
+    robot_study,
+)
 from flexapod.common.lazy_imports import LazyModule
 from flexapod.output.text.terminal import print_answer, progress_bar
 
@@ -53,20 +69,21 @@ Count = Annotated[int, typer.Option("--count", min=1, help="How many of the lowe
 
 @report_failures
 def modes(
-    file: StudyFile, pose: Pose = None, out: Folder = None, count: Count = 12, no_figures: NoFigures = False,
-    json: Json = False,
+    file: StudyFile, settings: Settings = None, pose: Pose = None, out: Folder = None, count: Count = 12,
+    formats: Format = USUAL,
+    no_figures: NoFigures = False, json: Json = False,
 ) -> None:  # fmt: skip
     """Frequencies, damping and shapes at a pose, commands of the drives held, about the static equilibrium.
 
     Of a single actuator those of its straight beam at t = 0.
     """
-    study = model.load(file)
+    study, drawn = load_study(file, settings), parse_formats(formats, no_figures)
     check_writable(out)
     with as_options(pose="--pose"):
         data = analysis.modes(study, pose_options.parse_pose(pose))
     of_robot = isinstance(study, model.Study)
     shaken, sentences = _shaken(study, pose_options.parse_pose(pose)) if of_robot else (None, ())
-    files = [] if out is None else _write_modes(data, shaken, out, figure=of_robot and not no_figures)
+    files = [] if out is None else _write_modes(data, shaken, out, drawn if of_robot else ())
     items = chain(answers.modes_items(study, data, pose, count, sentences), map("Written: {}".format, files))
     print_answer(items, lambda: answers.modes_as_dict(data, shaken, files), json=json)
 
@@ -82,12 +99,12 @@ def _shaken(study: Study, pose: dict[str, float] | None) -> tuple[Dataset | None
     return data, description.vibration_words(disturbances.shaking(data), "there")
 
 
-def _write_modes(data: Dataset, shaken: Dataset | None, folder: Path, *, figure: bool) -> list[Path]:
+def _write_modes(data: Dataset, shaken: Dataset | None, folder: Path, formats: Sequence[str]) -> list[Path]:
     files = [store.save(data, folder / "modes.nc")]
-    files += figures.save(figures.modes_3d(data), folder / "modes") if figure else ()
+    files += figures.save(figures.modes_3d(data), folder / "modes", formats=formats) if formats else ()
     if shaken is not None:
         files.append(store.save(shaken, folder / "vibration.nc"))
-        files += figures.save(figures.vibration(shaken), folder / "vibration") if figure else ()
+        files += figures.save(figures.vibration(shaken), folder / "vibration", formats=formats) if formats else ()
     return files
 
 
@@ -99,13 +116,12 @@ BudgetFolder = Annotated[
 
 @report_failures
 def budget(
-    file: StudyFile, pose: Pose = None, motion: Motion = False, out: BudgetFolder = None, no_figures: NoFigures = False,
-    quiet: Quiet = False, verbose: Verbose = False, json: Json = False,
+    file: StudyFile, settings: Settings = None, pose: Pose = None, motion: Motion = False,
+    out: BudgetFolder = None, formats: Format = USUAL, no_figures: NoFigures = False, quiet: Quiet = False,
+    verbose: Verbose = False, json: Json = False,
 ) -> None:  # fmt: skip
     """Error budget of the tool: which part adds what, and what halving the largest error would bring."""
-    study = model.load(file)
-    if isinstance(study, model.ActuatorStudy):
-        raise errors.InputError("is the study of a single actuator", file=file, allowed="the study of a robot")
+    study, drawn = robot_study(file, settings), parse_formats(formats, no_figures)
     check_writable(out)
     with as_options(pose="--pose"), progress_bar(quiet=quiet or json) as report:
         data = analysis.budget(
@@ -114,7 +130,7 @@ def budget(
             motion=motion,
             progress=lambda now, end: report("simulating", now / end),
         )
-    files = [] if out is None else _write(data, out, figure=not no_figures)
+    files = [] if out is None else _write(data, out, drawn)
     ideal, counts = (
         description.ideal_words(idealizations.idealization(study.robot)),
         None if motion else text_budget.budget_counts(study.robot),
@@ -128,6 +144,6 @@ def budget(
     )
 
 
-def _write(data: Dataset, folder: Path, *, figure: bool) -> list[Path]:
+def _write(data: Dataset, folder: Path, formats: Sequence[str]) -> list[Path]:
     files = [store.save(data, folder / "budget.nc")]
-    return [*files, *(figures.save(figures.budget(data), folder / "budget") if figure else ())]
+    return [*files, *(figures.save(figures.budget(data), folder / "budget", formats=formats) if formats else ())]

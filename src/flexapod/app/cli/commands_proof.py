@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.cli.failures import report_failures
-from flexapod.app.cli.options import Json, NoFigures, Quiet, check_writable
+from flexapod.app.cli.options import (
+    USUAL,
+    Format,
+    Json,
+    NoFigures,
+    Quiet,
+    check_writable,
+    parse_formats,
+)
 from flexapod.common.files import write_text
 from flexapod.common.lazy_imports import LazyModule
 from flexapod.output.text import terminal
@@ -40,13 +48,14 @@ Engines = Annotated[
 
 @report_failures
 def replicate(
-    out: Folder = Path("replicate"), engines: Engines = False, no_figures: NoFigures = False, json: Json = False,
-    quiet: Quiet = False,
+    out: Folder = Path("replicate"), engines: Engines = False, formats: Format = USUAL,
+    no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Repeat the paper's whole study: figures, data, table of its claims, report."""
     check_writable(out)
+    drawn = parse_formats(formats, no_figures)
     with terminal.progress_bar(quiet=quiet or json) as report:
-        result = outputs.replicate(out, engines=engines, figures=not no_figures, progress=report)
+        result = outputs.replicate(out, engines=engines, formats=drawn, progress=report)
     found, table, agreed = (
         summary.summary(result["robot"]),
         claims.claims(result),

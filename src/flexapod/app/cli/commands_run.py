@@ -12,12 +12,16 @@ import typer
 from flexapod.app.cli.failures import INTERRUPTED, print_error, print_parts, report_failures, stop_words
 from flexapod.app.cli.options import (
     FORMATS,
+    USUAL,
+    Format,
     Json,
     NoFigures,
     Out,
     Quiet,
+    Settings,
     StudyFile,
     Verbose,
+    load_study,
     parse_formats,
     results_folder,
     write_all,
@@ -44,29 +48,25 @@ else:
     answers = LazyModule("flexapod.output.text.answers")
 
 COMPUTING = 0.88  # share of the bar for the simulation; the rest is for files
-Format = Annotated[
-    str, typer.Option("--format", metavar="FORMATS", help="Of the figures: one or more of png,svg,pdf, with commas.")
-]
-USUAL = "png,svg"
 
 
 @report_failures
 def run(
-    file: StudyFile, out: Out = None, formats: Format = USUAL, no_figures: NoFigures = False, json: Json = False,
-    quiet: Quiet = False, verbose: Verbose = False,
+    file: StudyFile, settings: Settings = None, out: Out = None, formats: Format = USUAL,
+    no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False, verbose: Verbose = False,
 ) -> None:  # fmt: skip
     """Simulate a study, rigid and flexible: results.nc, results.csv, figures, report.html."""
-    drawn = () if no_figures else parse_formats(formats)
-    _run(model.load(file), results_folder(file, "run", out), drawn, json=json, quiet=quiet, verbose=verbose)
+    drawn = parse_formats(formats, no_figures)
+    _run(load_study(file, settings), results_folder(file, "run", out), drawn, json=json, quiet=quiet, verbose=verbose)
 
 
 @report_failures
 def actuator(
-    file: StudyFile, out: Out = None, formats: Format = USUAL, no_figures: NoFigures = False, json: Json = False,
-    quiet: Quiet = False, verbose: Verbose = False,
+    file: StudyFile, settings: Settings = None, out: Out = None, formats: Format = USUAL,
+    no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False, verbose: Verbose = False,
 ) -> None:  # fmt: skip
     """Simulate the study of a single actuator; writes what `run` writes."""
-    study = model.load(file)
+    study = load_study(file, settings)
     if not isinstance(study, model.ActuatorStudy):
         raise InputError(
             "is the study of a robot",
@@ -74,7 +74,7 @@ def actuator(
             allowed="a study with [actuator]",
             next_step=f"Use `flexapod run {file}`",
         )
-    drawn = () if no_figures else parse_formats(formats)
+    drawn = parse_formats(formats, no_figures)
     _run(study, results_folder(file, "run", out), drawn, json=json, quiet=quiet, verbose=verbose)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 import sys
+from collections.abc import Sequence
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,7 +12,18 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from flexapod.app.cli.failures import INTERRUPTED, print_parts, report_failures, stop_words
-from flexapod.app.cli.options import Json, NoFigures, Out, Quiet, StudyFile, as_options, results_folder
+from flexapod.app.cli.options import (
+    USUAL,
+    Format,
+    Json,
+    NoFigures,
+    Out,
+    Quiet,
+    StudyFile,
+    as_options,
+    parse_formats,
+    results_folder,
+)
 from flexapod.common.lazy_imports import LazyModule, hide_package
 from flexapod.output.text import terminal
 
@@ -56,11 +68,11 @@ Zarr = Annotated[bool, typer.Option("--zarr", help="Write what was computed also
 @report_failures
 def sweep(
     file: StudyFile, sweep_file: SweepFile, out: SweepOut = None, scheduler: Scheduler = None, workers: Workers = None,
-    retry_failed: RetryFailed = False, zarr: Zarr = False, no_figures: NoFigures = False, json: Json = False,
-    quiet: Quiet = False,
+    retry_failed: RetryFailed = False, zarr: Zarr = False, formats: Format = USUAL, no_figures: NoFigures = False,
+    json: Json = False, quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Compute many variants of a study: grids, lists, Latin hypercubes, random tolerances. Run again, it continues."""
-    folder = results_folder(file, sweep_file.stem, out)
+    folder, drawn = results_folder(file, sweep_file.stem, out), parse_formats(formats, no_figures)
     store = folder / ("sweep.zarr" if zarr else "sweep.sqlite")
     options = as_options(workers="--workers", scheduler="--scheduler")
     with hide_package("dask.array"), options, terminal.progress_bar(quiet=quiet or json) as report:
@@ -72,7 +84,7 @@ def sweep(
             interrupted = False
         except sweeps.SweepStopped as stop:
             data, interrupted = stop.dataset, True
-        files = [folder / "sweep.sqlite", *[store] * zarr, *_write_sweep(data, folder, figure=not no_figures)]
+        files = [folder / "sweep.sqlite", *[store] * zarr, *_write_sweep(data, folder, drawn)]
     _say_sweep(data, folder, files, json=json)
     if interrupted:
         _stopped_sweep(data, json=json)
@@ -81,11 +93,11 @@ def sweep(
         raise typer.Exit(1)
 
 
-def _write_sweep(data: Dataset, folder: Path, *, figure: bool) -> list[Path]:
-    """The table, and the figure where it is wanted and there is something to see."""
+def _write_sweep(data: Dataset, folder: Path, formats: Sequence[str]) -> list[Path]:
+    """The table, and the figure where a format is given and there is something to see."""
     files = [sweeps.save_table(data, folder / "sweep.csv")]
-    if figure and any(data[name].notnull().any() for name in sweeps.scalar_names(data)):
-        files += figures.save(figures.sweep(data), folder / "sweep")
+    if formats and any(data[name].notnull().any() for name in sweeps.scalar_names(data)):
+        files += figures.save(figures.sweep(data), folder / "sweep", formats=formats)
     return files
 
 
@@ -119,11 +131,11 @@ Ladder = Annotated[bool, typer.Option("--ladder", help="Also every fidelity, rig
 @report_failures
 def converge(
     file: StudyFile, accuracy: Accuracy = 1e-2, ladder: Ladder = False, out: Out = None,
-    no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
+    formats: Format = USUAL, no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False,
 ) -> None:  # fmt: skip
     """Vary step, shapes and elements of a study: errors, orders, cost, and the cheapest setting that will do."""
     trials = plan.checked_trials(model.load(file), None)
-    folder = results_folder(file, "converge", out)
+    folder, drawn = results_folder(file, "converge", out), parse_formats(formats, no_figures)
     with as_options(accuracy="--accuracy"):
         count, seconds = plan.estimate(trials, accuracy)
     if not (json or quiet):
@@ -132,7 +144,7 @@ def converge(
             "shapes that is compiled."
         )
     tables, interrupted = _computed(trials, accuracy, ladder=ladder, quiet=quiet or json)
-    files = [path for name, data in tables.items() for path in _write(data, folder, name, figure=not no_figures)]
+    files = [path for name, data in tables.items() for path in _write(data, folder, name, drawn)]
     _say(tables, folder, files, json=json)
     if interrupted:
         _stopped(tables, json=json)
@@ -164,11 +176,11 @@ def _rough(seconds: float) -> str:
     return f"up to {max(10, 10 * round(seconds / 10 + 0.4))} s" if seconds < 90 else f"{seconds / 60:.0f} minutes"
 
 
-def _write(data: Dataset, folder: Path, name: str, *, figure: bool) -> list[Path]:
-    """The table as NetCDF and CSV, and its figure where it is wanted."""
+def _write(data: Dataset, folder: Path, name: str, formats: Sequence[str]) -> list[Path]:
+    """The table as NetCDF and CSV, and its figure where a format is given."""
     draw = {"convergence": figures.convergence, "ladder": figures.ladder}[name]
     files = [analysis_store.save(data, folder / f"{name}.nc"), table.save_table(data, folder / f"{name}.csv")]
-    return [*files, *(figures.save(draw(data), folder / name) if figure else ())]
+    return [*files, *(figures.save(draw(data), folder / name, formats=formats) if formats else ())]
 
 
 def _say(tables: dict[str, Dataset], folder: Path, files: list[Path], *, json: bool) -> None:

@@ -25,7 +25,7 @@ else:
     server = LazyModule("flexapod.app.browser.server")
 
 LOCAL = "127.0.0.1"
-PACKAGES = ("msgspec", "tomlkit", "viser", "websockets")  # what the page alone needs
+PACKAGES = ("msgspec", "viser", "websockets")  # what the page alone needs
 
 File = Annotated[Path, typer.Argument(metavar="FILE", help="Study file (TOML), or results.nc of `flexapod run`.")]
 Host = Annotated[

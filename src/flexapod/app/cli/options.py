@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tomllib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from flexapod import model
     from flexapod.analysis import store
     from flexapod.analysis.results.time_history import Report
-    from flexapod.model import Study
+    from flexapod.model import ActuatorStudy, Study
     from flexapod.output.report import figures as report_figures
     from flexapod.output.report import report as report_report
     from flexapod.output.text import html
@@ -32,10 +33,21 @@ else:
     html = LazyModule("flexapod.output.text.html")
 
 StudyFile = Annotated[Path, typer.Argument(metavar="FILE", help="Study file (TOML); `flexapod new` writes one.")]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Another value at a key of the study: leg.piston.diameter=70 mm; once for each key.",
+    ),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON on stdout and nothing else; errors as JSON on stderr.")]
 Out = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Folder for the results; default: beside the study, FILE-COMMAND."),
+]
+Format = Annotated[
+    str, typer.Option("--format", metavar="FORMATS", help="Of the figures: one or more of png,svg,pdf, with commas.")
 ]
 NoFigures = Annotated[bool, typer.Option("--no-figures", help="Draw nothing: data and words only, in less time.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar.")]
@@ -60,9 +72,36 @@ def as_options(**options: str) -> Iterator[None]:
         raise InputError(**{name: getattr(error, name) for name in _PARTS}, key=key) from None
 
 
-def robot_study(file: Path) -> Study:
-    """The study of a robot; refuses that of a single actuator."""
+def load_study(file: Path, settings: Sequence[str] | None = None) -> Study | ActuatorStudy:
+    """The study of a file, with the values of ``--set KEY=VALUE`` in place of its own."""
+    values = dict(map(parse_setting, settings or ()))
     study = model.load(file)
+    try:
+        return study.with_values(values) if values else study
+    except InputError as error:
+        raise InputError(**{name: getattr(error, name) for name in _PARTS}, key=f"--set {error.key}") from None
+
+
+def parse_setting(text: str) -> tuple[str, object]:
+    """Key and value of ``KEY=VALUE``: a value of TOML, or else a text, which needs no quotes."""
+    key, equals, value = (part.strip() for part in text.partition("="))
+    if not equals or not key or not value:
+        raise InputError(
+            "is no key with a value",
+            key="--set",
+            value=text,
+            allowed="KEY=VALUE",
+            next_step='For example --set "leg.piston.diameter=70 mm"',
+        )
+    try:
+        return key, tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        return key, value
+
+
+def robot_study(file: Path, settings: Sequence[str] | None = None) -> Study:
+    """The study of a robot, as `load_study`; refuses that of a single actuator."""
+    study = load_study(file, settings)
     if isinstance(study, model.ActuatorStudy):
         raise InputError("is the study of a single actuator", file=file, allowed="the study of a robot")
     return study
@@ -75,12 +114,18 @@ def refuse_existing(file: Path, force: bool) -> None:
 
 
 FORMATS = ("png", "svg", "pdf")  # of figures
+USUAL = "png"
 PROCESSES = min(os.cpu_count() or 1, 4)  # that draw them, where there are
 MANY = 10_000  # instants: with fewer, a copy of this process costs a third of what it takes off
 
 
-def parse_formats(text: str) -> tuple[str, ...]:
-    """Formats of figures, each once, ``"png, PDF"`` gives ``("png", "pdf")``; unknown ones, and none, are refused."""
+def parse_formats(text: str, no_figures: bool) -> tuple[str, ...]:
+    """Formats of figures, each once, ``"png, PDF"`` gives ``("png", "pdf")``; unknown ones, and none, are refused.
+
+    Without figures there are none.
+    """
+    if no_figures:
+        return ()
     names = tuple(dict.fromkeys(name.strip().lower() for name in text.split(",") if name.strip()))
     unknown = [name for name in names if name not in FORMATS]
     if unknown or not names:
@@ -124,8 +169,6 @@ def write_data(data: Dataset, folder: Path) -> list[Path]:
 
 def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str]) -> list[Path]:
     """Data, figures in the formats asked for (none: no figures), ``report.html``; `report` is told what is written."""
-    if formats:
-        _without_help()
     data.load()  # what nobody has asked for yet each copy of this process would make for itself
     figures: list[report_figures.StoredFigure] = []
     processes = PROCESSES if data.sizes["time"] >= MANY else 1
@@ -146,10 +189,3 @@ def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str
 
         page = report_report.write_report(data, folder, finish_figures)
     return [*files, *(path for figure in figures for path in figure.files), page]
-
-
-def _without_help() -> None:
-    """Import matplotlib without the help that it writes on each of its classes: nobody reads it in a command."""
-    from matplotlib.artist import Artist
-
-    Artist._update_set_signature_and_docstring = classmethod(lambda _: None)  # type: ignore[attr-defined]

@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flexapod import kinematics
 from flexapod.analysis.linear import linearize
 from flexapod.commissioning.feedforward.command_table import save_study
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Complex
 from flexapod.common.errors import InputError
 from flexapod.common.quantities import text
 from flexapod.control import StateSpace
@@ -30,8 +29,6 @@ LEAST = 2048  # instants while the output moves
 IMAGINARY = 1e-6  # of its size: a zero is on the axis
 FREE = 1e-2  # of the response a thousand times as fast
 KEPT = 1e-6  # of its largest size: of the input before and after what counts
-
-Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,6 +12,7 @@ from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.common.quantities import number, text
 from flexapod.control import StateSpace
+from flexapod.control.discretization import held_step
 from flexapod.control.norms import split_spectrum
 
 PIECES = 200  # of constant input, by which the order of switches is found
@@ -125,8 +126,8 @@ def _chain(system: StateSpace, end: Array, robust: bool) -> tuple[Array, Array, 
 def _rigid(A: Array, B: Array, target: Array) -> tuple[Array, Array, Array]:
     """The part of a system that does not oscillate."""
     scale = OSCILLATES * max(1.0, float(np.abs(A).max()))
-    both = np.column_stack([B, target])
-    still, _ = split_spectrum(A, both, np.zeros((0, len(A))), lambda pole: abs(pole.imag) <= 1e3 * scale)
+    both, none = np.column_stack([B, target]), np.zeros((0, len(A)))
+    still, _ = split_spectrum(A, lambda pole: abs(pole.imag) <= 1e3 * scale).subsystems(both, none)
     return still.A, still.B[:, 0], still.B[:, 1]
 
 
@@ -162,15 +163,13 @@ def _inside(u: Array | None, k: int, h: float) -> float:
 
 def _pieces(A: Array, B: Array, target: Array, T: float) -> Array | None:
     """Sizes within 1 of pieces of constant input that reach the target at T, if there are any."""
-    from scipy.linalg import expm
     from scipy.optimize import linprog
 
-    n, h = len(A), T / PIECES
-    step = expm(np.block([[A * h, B[:, None] * h], [np.zeros((1, n + 1))]]))
-    column, effects = step[:n, n], []
+    step, push = held_step(A, B[:, None], T / PIECES)
+    column, effects = push[:, 0], []
     for _ in range(PIECES):
         effects.append(column)
-        column = step[:n, :n] @ column
+        column = step @ column
     G = np.array(effects[::-1]).T
     size = np.abs(G).max(axis=1)
     found = linprog(np.zeros(PIECES), A_eq=G / size[:, None], b_eq=target / size, bounds=(-1, 1), method="highs-ds")
@@ -179,17 +178,15 @@ def _pieces(A: Array, B: Array, target: Array, T: float) -> Array | None:
 
 def _exact(A: Array, B: Array, target: Array, start: Array, first: int) -> tuple[Array, int, float]:
     """Switches and end that reach the target exactly, Eq. (T22.15), from near ones."""
-    from scipy.linalg import expm
     from scipy.optimize import least_squares
 
-    n = len(A)
     scale = np.abs(target).max()
 
     def missing(times: Array) -> Array:
-        x, sign, before = np.zeros(n), first, 0.0
+        x, sign, before = np.zeros(len(A)), first, 0.0
         for t in times:
-            step = expm(np.block([[A, B[:, None]], [np.zeros((1, n + 1))]]) * (t - before))
-            x, sign, before = step[:n, :n] @ x + sign * step[:n, n], -sign, t
+            step, push = held_step(A, B[:, None], t - before)
+            x, sign, before = step @ x + sign * push[:, 0], -sign, t
         return (x - target) / scale
 
     found = least_squares(missing, start, xtol=1e-15, ftol=1e-15, gtol=1e-15)

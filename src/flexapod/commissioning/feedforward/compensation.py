@@ -23,10 +23,9 @@ from flexapod.commissioning.feedforward.correction_series import (
     check_correctable,
     check_workspace,
     correction_knots,
-    is_permanent,
     static_series,
 )
-from flexapod.commissioning.feedforward.loaded_path import LoadedPath, tool_miss
+from flexapod.commissioning.feedforward.loaded_path import LoadedPath, is_permanent, tool_miss
 from flexapod.commissioning.feedforward.stable_inversion import elastic_compensation
 from flexapod.common.arguments import flag
 from flexapod.common.arrays import Array
@@ -105,7 +104,7 @@ def compensation(
     path = LoadedPath(known, inertia=order == 2)
     until = study.motion.end_time - study.motion.hold if is_permanent(study) else study.duration
     knots = correction_knots(study, until)
-    series = static_series(path, corrections, knots)
+    series, tail = static_series(path, corrections, knots)
 
     def law(t: Array) -> Law:
         return Law(*(x + y for x, y in zip(path.target_law(t), series(t), strict=True)))
@@ -115,7 +114,7 @@ def compensation(
     hold = study.motion.hold if is_permanent(study) else 0.0
     length = kinematics.rigid_limbs(study.robot).L_c
     table = tabulate_law(law, knots, study.motion, path.axes, length, hold=hold, rows=rows)
-    found = _compensation_result(study, path, series.tail, table, periods)
+    found = _compensation_result(study, path, tail, table, periods)
     check_workspace(found.study)
     return found if out is None else replace(found, study=save_study(found.study, out))
 

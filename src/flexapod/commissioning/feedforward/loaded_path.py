@@ -18,11 +18,12 @@ from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.common.units import quantity
 from flexapod.kinematics import COORDINATES, DRIVEN, Law, Poses, RigidPoses
-from flexapod.kinematics.rotations import difference, matrix, quaternion
-from flexapod.model import AXES, ConstantWrench, ForceDrive, Robot, Study
+from flexapod.kinematics.rotations import blocks, difference, quaternion
+from flexapod.model import AXES, ConstantWrench, Robot, Study
 from flexapod.solve.batch import Rates, RestStates, residual
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.rigid_motion import rigid_motion
+from flexapod.solve.statics.assembly_mode import platform_poses
 from flexapod.solve.statics.block_arrow import arrow_solve
 from flexapod.solve.statics.locked_robot import LockedPoses
 from flexapod.solve.system import System
@@ -63,11 +64,9 @@ class LoadedPath:
             There is no equilibrium at an instant.
         """
         path, at = self.rigid_poses(law, t), []
-        for part in self._alike(t):
+        for part in blocks(len(t), BATCH if is_permanent(self.study) else 1):  # what changes with time, each by itself
             at.append(self._at(path.part(part), t[part]))
-        pose = np.concatenate(at)
-        R = matrix(pose[:, 3:])
-        return Poses.at_rest(pose[:, :3] - R @ self.study.robot.com, R)
+        return platform_poses(self.study.robot, np.concatenate(at))
 
     def tool_coordinates(self, path: Poses) -> Array:
         """Coordinates (T, 6) in which a miss is measured: about the pivot, where not all are commanded at the tool."""
@@ -99,15 +98,6 @@ class LoadedPath:
         there[:, k] += way
         return self.tool_coordinates(self.rigid_poses(Law(there, law.rate, law.acceleration), t))
 
-    def _alike(self, t: Array) -> list[slice]:
-        """Instants that are computed together: of what changes with time each by itself."""
-        robot, wrench = self.study.robot, self.study.load.wrench
-        drives = any(isinstance(leg.drive, ForceDrive) and leg.drive.time is not None for leg in robot.legs)
-        heat = robot.heat is not None and robot.heat.time is not None
-        same = (wrench is None or isinstance(wrench, ConstantWrench)) and not drives and not heat
-        step = BATCH if same else 1
-        return [slice(first, min(first + step, len(t))) for first in range(0, len(t), step)]
-
     def _at(self, path: Poses, t: Array) -> Array:
         """Poses (T, 7) of the payload under one load."""
         study = self.study
@@ -121,6 +111,14 @@ class LoadedPath:
         nothing = np.zeros((len(t), *states.q.shape[1:]))
         step = arrow_solve(locked.system, locked.m, r, payload, np.zeros_like(states.lam), nothing)
         return states.displace(step.dq, step.dy).pose
+
+
+def is_permanent(study: Study) -> bool:
+    """Test whether load, heat and drives stay what they are: at rest, only the pose says how the robot bends."""
+    robot, wrench = study.robot, study.load.wrench
+    heat = robot.heat is not None and robot.heat.time is not None
+    tables = any(getattr(leg.drive, "time", None) is not None for leg in robot.legs)
+    return (wrench is None or isinstance(wrench, ConstantWrench)) and not heat and not tables
 
 
 def refuse_missing(locked: LockedPoses, t: Array) -> None:

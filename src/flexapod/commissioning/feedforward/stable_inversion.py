@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flexapod import kinematics
 from flexapod.analysis.checks.checks import check_path
@@ -15,12 +14,11 @@ from flexapod.commissioning.feedforward.correction_series import (
     check_correctable,
     check_workspace,
     correction_knots,
-    is_permanent,
     static_series,
 )
-from flexapod.commissioning.feedforward.loaded_path import LoadedPath
+from flexapod.commissioning.feedforward.loaded_path import LoadedPath, is_permanent
 from flexapod.commissioning.feedforward.modal_path import LinearPath, inertial_loads, integrate_modes, linear_path
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Complex
 from flexapod.common.errors import InputError
 from flexapod.common.quantities import text
 from flexapod.kinematics import Law, Poses
@@ -37,8 +35,6 @@ ENOUGH = 1e-4  # of the elastic motion: what may be missed
 EDGE = 1e-3  # of the largest command: what may be cut off at the ends
 MOST = 2**15
 SHIFT = 12.0  # time constants in the whole time by which what rings is made to decay
-
-Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -226,7 +222,7 @@ def elastic_compensation(
     path = LoadedPath(known)
     _refuse_others(study, path)
     moving = study.motion.end_time - study.motion.hold
-    series = static_series(path, corrections, correction_knots(study, moving))
+    series, _ = static_series(path, corrections, correction_knots(study, moving))
     found = elastic_commands(study, moving)
     time, value, early, late = _trim_commands(found, moving)
     inside = np.clip(time, 0.0, moving)

@@ -18,7 +18,7 @@ from flexapod.analysis.error_budget.rows import names_of_rows
 from flexapod.analysis.pose_values import PoseRequest, batch_values
 from flexapod.analysis.results.arguments import LoadLike, RobotLike, study_at_pose
 from flexapod.analysis.results.attributes import attributes
-from flexapod.analysis.results.poses import batches, poses_about_home
+from flexapod.analysis.results.poses import BATCH, poses_about_home
 from flexapod.analysis.results.variables import dataset
 from flexapod.common.arrays import Array, floats
 from flexapod.common.errors import InputError
@@ -27,6 +27,7 @@ from flexapod.common.units import quantities
 from flexapod.design.maps.findings import grid_variables
 from flexapod.design.maps.grid import UNITS, Axes, Grid, build_grid
 from flexapod.kinematics import RigidPoses
+from flexapod.kinematics.rotations import blocks
 from flexapod.solve.modal.eigenproblem import count_real
 from flexapod.solve.modal.elastic_robot import ElasticRobot
 
@@ -133,7 +134,7 @@ def _computed(study: model.Study, poses: Grid, wanted: PoseRequest, progress: Re
     table, robot = poses.coordinates(), study.robot
     elastic = ElasticRobot(robot, study.simulation, study.load)
     parts = []
-    for part in batches(len(table)):
+    for part in blocks(len(table), BATCH):
         rigid = RigidPoses(robot, poses_about_home(robot, table[part]))
         code, values = batch_values(study, elastic, rigid, wanted)
         parts.append(values | {"reason": code})

@@ -1,48 +1,16 @@
-"""Tables of a study file with other values in them: read, and the values along ranges, of hypercubes and of draws."""
+"""Values of a sweep: along ranges, of hypercubes and of draws, in SI."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
-from flexapod.common.tables.field_help import Notes
 from flexapod.common.tables.key_paths import Step, key_text
-from flexapod.common.tables.named_files import NamedFiles
-from flexapod.common.tables.section import Section
 from flexapod.common.units import to_si
 from flexapod.design.sweeps.plan import Draws, Hypercube, Spaced
-from flexapod.model import ActuatorStudy, Study
-from flexapod.model.file.files import read_study
-
-
-def study_from_tables(data: Mapping[str, Any], files: Path | NamedFiles) -> Study | ActuatorStudy:
-    """The study of these tables.
-
-    Raises
-    ------
-    Malformed
-        A key or a value is none of a study file.
-    InputError
-        The values are not allowed together, or not physical.
-    """
-    return read_study(Section(data, "", None, files), "a point of a sweep")
-
-
-def read_with_dimensions(
-    data: Mapping[str, Any], files: Path | NamedFiles, dimensions: dict[str, str]
-) -> Study | ActuatorStudy:
-    """Read a study as `study_from_tables` does; `dimensions` receives that of every number, by key path."""
-    notes = Notes()
-    try:
-        return read_study(Section(data, "", None, files, notes), "a point of a sweep")
-    finally:
-        given = (field for field in notes.fields.values() if field.value is not None)
-        dimensions.update(number for field in given for number in field.numbers)
 
 
 def dimension_of(key: tuple[Step, ...], dimensions: Mapping[str, str]) -> str | None:

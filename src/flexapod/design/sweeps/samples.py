@@ -24,13 +24,12 @@ from flexapod.design.sweeps.reading import (
     dimension_of,
     hypercube_values,
     number,
-    read_with_dimensions,
     spaced_values,
     standard_draws,
-    study_from_tables,
 )
 from flexapod.model import ActuatorStudy, Study
 from flexapod.model.file.key_paths import leg_count, put, value_at
+from flexapod.model.file.variants import read_with_dimensions, study_from_tables
 from flexapod.model.stored_tables import files_of
 
 MEMORY = 64 << 20  # of studies that were read and wait to be computed; others are read again

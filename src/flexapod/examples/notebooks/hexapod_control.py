@@ -91,3 +91,6 @@ for name, law in {"open": None, "DVF": laws["DVF"]}.items():
     data = fx.simulate(study, fidelity="lumped", tolerance=1e-3, controller=law, sample=sample)
     z = data.tool_deviation.sel(axis="z").values[-100:]
     print(f"{name}: swings by {1e9 * np.ptp(z):.2f} nm in the last 10 ms")
+
+# %% [markdown]
+# In one file each, with a number by hand: `flexapod new --example force_feedback`, `two_loops`.

@@ -54,3 +54,6 @@ for name, study in robots.items():
 # %%
 figure = fx.plot.com_path(fx.simulate(robots["tripod"], tolerance=1e-3))
 figure
+
+# %% [markdown]
+# In one file each, with a number by hand: `flexapod new --example tripod_against_hexapod`, `delta`, `hexaglide`.

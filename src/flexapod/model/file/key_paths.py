@@ -83,9 +83,9 @@ def _no_item(steps: tuple[Step, ...], at: int, holder: object) -> InputError:
 def _spell_out(table: dict[str, Any], steps: tuple[Step, ...], at: int) -> None:
     """Replace a short form in `table` by the long one that the path goes into."""
     step, before = steps[at], steps[at - 1] if at else ""
-    numbered = at + 1 < len(steps) and isinstance(steps[at + 1], int)
-    if at == 0 and step == "leg" and numbered:
-        table["leg"] = _each_leg(table)
+    if at == 0 and numbers_a_leg(steps):
+        if (legs := each_leg(table)) is not table.get("leg"):
+            table["leg"] = legs
     elif before == "robot" and step in _ENDS and steps[at + 1 : at + 2] == ("joints",):
         _place(table.get(str(step)), str(step), table.get("plane"))
     elif step == "damping" and len(steps) == at + 2 and (at == 1 or isinstance(before, int)):
@@ -93,10 +93,11 @@ def _spell_out(table: dict[str, Any], steps: tuple[Step, ...], at: int) -> None:
             table["damping"] = {"ratio": table["damping"]}
     elif step in ("E", "density") and table.get("material") in MATERIALS:
         material = MATERIALS[table.pop("material")]
-        table |= {"E": material.E, "density": material.density}
-        if material.yield_stress is not None:
-            table.setdefault("yield_stress", material.yield_stress)
-        table.setdefault("poisson", material.poisson)
+        table.update({"E": material.E, "density": material.density})
+        others = {name: getattr(material, name) for name in ("yield_stress", "poisson", "expansion")}
+        for name, value in others.items():
+            if value is not None:
+                table.setdefault(name, value)
 
 
 def _place(circle: Any, end: str, plane: str | None) -> None:
@@ -112,13 +113,18 @@ def _place(circle: Any, end: str, plane: str | None) -> None:
     circle["joints"] = Circle(**given).joints(end, plane).tolist()
 
 
+def numbers_a_leg(steps: tuple[Step, ...]) -> bool:
+    """Tell whether a key is one of a single leg, by its number."""
+    return steps[0] == "leg" and len(steps) > 1 and isinstance(steps[1], int)
+
+
 def leg_count(data: Mapping[str, Any]) -> int:
     """Number of legs that the tables of a study file name: "6-UPS" six, "3-UPS+UP" four."""
     groups = re.findall(r"(?:^|\+)\s*(\d*)", str(data.get("robot", {}).get("type", "6-UPS")))
     return sum(int(number or 1) for number in groups)
 
 
-def _each_leg(data: Mapping[str, Any]) -> Any:
+def each_leg(data: Mapping[str, Any]) -> Any:
     """The table of every leg by itself; what is none as it is."""
     legs = data.get("leg")
     if isinstance(legs, dict):

@@ -10,12 +10,12 @@ from numpy.typing import ArrayLike
 
 from flexapod import model
 from flexapod.common.generalized_alpha import GeneralizedAlpha
+from flexapod.common.piecewise_chebyshev import NODES
 from flexapod.mechanics.symbolic.compiler import PRELUDE, STRAIGHT
 from flexapod.output.exchange.c_source_data import OF_PAYLOAD, Channel, CMarch, prepare_c_march
 from flexapod.output.exchange.formats import Content
 from flexapod.solve.kernel import FOR_LOOPS, Equations, text_of_one_unit
 from flexapod.solve.time import native
-from flexapod.solve.time.piecewise_chebyshev import NODES
 from flexapod.solve.time.recording import record_places
 
 HERE = Path(__file__).parent / "c"

@@ -213,18 +213,19 @@ def _runs_right(text: Text) -> bool:
 
 
 def _fitted(of: Figure | Axes, legend: Legend, room: float) -> None:
-    """The legend again, in as many columns as there is room for [in]."""
+    """The legend again, in as many columns as there is room for [in]: that of a figure above or below its panels."""
     fig = of.get_figure(root=True)
     names = [text.get_text() for text in legend.get_texts()]
     title, handles = legend.get_title().get_text() or None, [part for part in legend.legend_handles if part is not None]
-    outside = legend._outside_loc  # pyright: ignore[reportAttributeAccessIssue]
-    where: Any = f"outside {outside} center" if outside else legend._loc  # pyright: ignore[reportAttributeAccessIssue]
+    box = legend.get_window_extent()
+    edge = "upper" if box.y0 + box.y1 > of.bbox.y0 + of.bbox.y1 else "lower"
+    where = f"outside {edge} center" if isinstance(of, Figure) else "best"
     look = {"title": title, "handlelength": legend.handlelength, "loc": where}
     for columns in range(len(names), 0, -1):
         if isinstance(of, Figure):
             of.legends.clear()  # axes replace theirs
         made = of.legend(handles, names, ncols=columns, **look)
-        made.set_in_layout(bool(outside))
+        made.set_in_layout(isinstance(of, Figure))
         if fig is None or made.get_window_extent().width <= room * fig.dpi:
             return
 

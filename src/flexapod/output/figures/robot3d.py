@@ -36,19 +36,19 @@ _STEEP = 0.8  # sine of the slope beyond which a number would lie on the leg
 _LOW = 0.6  # heights against widths: names of axes keep a distance that shrinks with them
 _NEEDLE = 45  # distance of the name of the one axis that is left, in a measure that shrinks with the room
 _FREE: Any = {"axes.titley": None}  # titles go above what is drawn
+_GRID: Any = {"grid.color": "#E4E4E4", "grid.linewidth": 0.6}
 _NUMBER: dict[str, Any] = {"fontsize": NOTE, "path_effects": [withStroke(linewidth=2.0, foreground="white")]}
 
 
 def axes_3d(fig: Figure, place: SubplotSpec, *, turn: float = -62, tilt: float = 16) -> Any:
     """3D axes with equal scales on all three directions, seen from `turn` and `tilt` [deg]."""
-    with matplotlib.rc_context(_FREE):
+    with matplotlib.rc_context(_FREE | _GRID):
         made: Any = fig.add_subplot(place, projection="3d", computed_zorder=False)
     made.set_proj_type("ortho")
     made.view_init(elev=tilt, azim=turn)
     made.set_facecolor("none")  # names of axes reach into the next place
     for axis in (made.xaxis, made.yaxis, made.zaxis):
         axis.set_pane_color((1, 1, 1, 0))
-        axis._axinfo["grid"].update(color="#E4E4E4", linewidth=0.6)
     return made
 
 

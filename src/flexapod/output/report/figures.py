@@ -49,7 +49,7 @@ class StoredFigure(NamedTuple):
         return next(path for path in self.files if path.suffix == ".png")
 
 
-def draw_figures(data: Dataset, folder: str | Path, formats: Sequence[str] = ("png", "svg")) -> list[StoredFigure]:
+def draw_figures(data: Dataset, folder: str | Path, formats: Sequence[str] = ("png",)) -> list[StoredFigure]:
     """Draw the standard figures of a run, whole or partial, in the order of the report.
 
     `folder` is made if needed, figures of the same name are replaced; `formats` are of png, svg, pdf. InputError: the
@@ -72,7 +72,7 @@ def concurrent_drawing(
     return forked_map(draw_and_store, plans, processes)
 
 
-def store_figure(figure: Figure, title: str, stem: Path, formats: Sequence[str] = ("png", "svg")) -> StoredFigure:
+def store_figure(figure: Figure, title: str, stem: Path, formats: Sequence[str] = ("png",)) -> StoredFigure:
     """Write a figure as ``stem.png``, ``stem.svg``, ``stem.pdf``, as asked for."""
     files = figures.save(figure, stem, formats=formats)
     if "png" not in formats:

@@ -11,8 +11,10 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.backend_bases import RendererBase
 from matplotlib.colors import to_hex, to_rgba
 from matplotlib.container import BarContainer
+from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.text import Annotation
 from matplotlib.ticker import FixedLocator
@@ -22,8 +24,10 @@ from flexapod.output.scene.geometry import decimation_indices
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.backend_bases import GraphicsContextBase
     from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
+    from matplotlib.path import Path
+    from matplotlib.transforms import Transform
 
 
 PIXELS = 96 / 72  # of a point
@@ -218,9 +222,21 @@ def _look(line: Line2D) -> dict[str, Any]:
 
 
 def _dash(line: Line2D) -> str:
-    """Dashes in pixels."""
-    _, dashes = line._dash_pattern  # pyright: ignore[reportAttributeAccessIssue]
-    return "solid" if not dashes else ",".join(f"{max(d * PIXELS, 1):.1f}px" for d in dashes)
+    """Dashes in pixels: matplotlib tells those of its own making to a renderer alone."""
+    like, told = Line2D([0, 1], [0, 0]), _Dashes()
+    like.update_from(line)
+    like.set_marker("")
+    like.draw(told)
+    return "solid" if not told.dashes else ",".join(f"{max(d * PIXELS, 1):.1f}px" for d in told.dashes)
+
+
+class _Dashes(RendererBase):
+    """Renderer that keeps the dashes [points] of what was drawn last."""
+
+    dashes: Any = None
+
+    def draw_path(self, gc: GraphicsContextBase, path: Path, transform: Transform, rgbFace: Any = None) -> None:
+        self.dashes = gc.get_dashes()[1]
 
 
 def _color(color: Any, alpha: float | None = None) -> str:

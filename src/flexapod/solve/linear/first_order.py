@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, qr, solve_triangular
 
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Index
 from flexapod.common.errors import ComputationError
 from flexapod.solve.modal.eigenproblem import LIGHTEST
-from flexapod.solve.system import Index
 
 PLAIN = 1e-4  # smallest pivot of a mass matrix of unit diagonal at which nothing in it is without mass
 LEFT = 1e-9  # of a damper, over the largest, that acts on what has neither mass nor damper: less is rounding

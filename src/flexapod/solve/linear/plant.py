@@ -15,7 +15,7 @@ from typing import Literal, cast
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.common.arrays import Array, Mask
+from flexapod.common.arrays import Array, Index, Mask
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.kinematics.rotations import matrix
 from flexapod.mechanics.elements.element import Physics
@@ -37,7 +37,7 @@ from flexapod.solve.statics.locked_robot import LockedPoses
 from flexapod.solve.statics.reduction import Motions, independent_motions
 from flexapod.solve.statics.static_loads import push_ports
 from flexapod.solve.statics.stiffness import tool_motion
-from flexapod.solve.system import Index, System
+from flexapod.solve.system import System
 
 
 def gravity_forces(system: System, x: RestStates, command: Array, wrench: Array) -> Array:

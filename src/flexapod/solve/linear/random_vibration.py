@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Complex
 from flexapod.common.errors import InputError
+from flexapod.common.piecewise_chebyshev import Pieces
 from flexapod.common.quantities import fill_template
 from flexapod.model import Disturbance, Floor, Spectrum
 from flexapod.solve.linear.channels import plant_channels
@@ -24,11 +24,6 @@ from flexapod.solve.modal.eigenproblem import poles
 from flexapod.solve.modal.modal_loops import UNSTABLE, ModalLoops, growth_rate
 from flexapod.solve.modal.modes import loops_of, modal_damping, no_mass, unit_modes
 from flexapod.solve.statics.locked_robot import LockedPoses, single_equilibrium
-
-if TYPE_CHECKING:
-    pass  # FOLD
-
-Complex = NDArray[np.complex128]
 
 NODES, WEIGHTS = (0.5 * x for x in np.polynomial.legendre.leggauss(4))
 PER_DECADE = 12  # panels where nothing resonates
@@ -41,26 +36,17 @@ UNDAMPED = 1e-9  # damping ratio below which nothing limits a resonance
 FLOOR_RATES = {"acceleration": 0, "velocity": 1, "displacement": 2}
 
 
-class VibrationModel(Protocol):
-    """Interface of a linear model that the integral needs, as `LinearRobot` has it."""
+@dataclass(frozen=True, kw_only=True)
+class VibrationModel:
+    """Any linear system as the integral needs it, as a `LinearRobot` is by itself.
 
-    @property
-    def omega(self) -> Array:
-        """Angular frequencies of modes, (r,)."""
-        ...
+    ``tool`` (p, r): outputs by modes; ``poles`` [1/s] up to a rate [rad/s]; ``amplitudes``: modes (f, r, k) at
+    frequencies [Hz] under unit inputs, columns of (any, k).
+    """
 
-    @property
-    def tool(self) -> Array:
-        """Outputs by modes, (p, r)."""
-        ...
-
-    def poles(self, rate: float) -> Complex:
-        """Poles [1/s] up to a rate [rad/s]."""
-        ...
-
-    def amplitudes(self, frequency: Array, forces: Array) -> Complex:
-        """Modes (f, r, k) at frequencies [Hz] under unit inputs, columns of (any, k)."""
-        ...
+    tool: Array
+    poles: Callable[[float], Complex]
+    amplitudes: Callable[[Array, Array], Complex]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,6 +102,8 @@ class RandomVibration:
 
 #: What shakes a robot by the field of its disturbance.
 SOURCES = {"floor": "floor vibration", "wrench": "wrench noise", "force_noise": "force noise"}
+#: Groups of inputs likewise.
+GROUPS = {"floor": "floor", "wrench": "wrench", "force_noise": "drive"}
 
 
 def sources_of(given: Disturbance, model: LinearRobot) -> list[Source]:
@@ -126,21 +114,15 @@ def sources_of(given: Disturbance, model: LinearRobot) -> list[Source]:
     InputError
         A noise of drives that hold their positions whatever pushes them.
     """
-    found = []
-    if given.floor is not None:
-        found.append(_source(SOURCES["floor"], model.inputs["floor"], given.floor))
-    if given.wrench is not None:
-        found.append(_source(SOURCES["wrench"], model.inputs["wrench"], given.wrench))
-    if given.force_noise is not None:
-        if not model.inputs["drive"].any():
-            raise InputError(
-                "moves nothing: the drives hold their positions, whatever pushes them",
-                key="disturbance.force_noise",
-                allowed='drives that give way: "servo", or "screw" commanded by "servo" or "torque"',
-                next_step="Leave force_noise out, or choose another leg.drive",
-            )
-        found.append(_source(SOURCES["force_noise"], model.inputs["drive"], given.force_noise))
-    return found
+    tables = {field: getattr(given, field) for field in GROUPS}
+    if tables["force_noise"] is not None and not model.inputs["drive"].any():
+        raise InputError(
+            "moves nothing: the drives hold their positions, whatever pushes them",
+            key="disturbance.force_noise",
+            allowed='drives that give way: "servo", or "screw" commanded by "servo" or "torque"',
+            next_step="Leave force_noise out, or choose another leg.drive",
+        )
+    return [_source(SOURCES[f], model.inputs[GROUPS[f]], table) for f, table in tables.items() if table is not None]
 
 
 def _source(name: str, forces: Array, table: Floor | Spectrum) -> Source:
@@ -161,7 +143,7 @@ def density_at(frequency: Array, density: Array, f: Array) -> Array:
     return np.where(power, curved, straight) * inside[:, None]
 
 
-def random_vibration(model: VibrationModel, sources: list[Source], *, refine: int = 1) -> RandomVibration:
+def random_vibration(model: LinearRobot | VibrationModel, sources: list[Source], *, refine: int = 1) -> RandomVibration:
     """Response of p outputs (the tool) to independent sources; ``refine``: into how many each panel is cut further.
 
     Raises
@@ -177,7 +159,7 @@ def random_vibration(model: VibrationModel, sources: list[Source], *, refine: in
     response = _response(model, forces, f, refine)
     p = len(model.tool)
     psd, covariance = np.zeros((len(f), p)), np.zeros((p, p))
-    by_mode, by_input = np.zeros((model.omega.size, p)), np.zeros((forces.shape[1], p))
+    by_mode, by_input = np.zeros((model.tool.shape[1], p)), np.zeros((forces.shape[1], p))
     for start in range(0, len(f), BLOCK):
         some = slice(start, start + BLOCK)
         S = np.concatenate([source.at(f[some]) for source in sources], axis=1)
@@ -202,7 +184,7 @@ def random_vibration(model: VibrationModel, sources: list[Source], *, refine: in
     )
 
 
-def vibration_with_error(model: VibrationModel, sources: list[Source]) -> tuple[RandomVibration, float]:
+def vibration_with_error(model: LinearRobot | VibrationModel, sources: list[Source]) -> tuple[RandomVibration, float]:
     """Response on panels cut in two, and the largest relative difference of its rms from that on whole ones."""
     found, coarse = random_vibration(model, sources, refine=2), random_vibration(model, sources)
     moves = found.rms > ROUNDING * found.rms.max(initial=0.0)
@@ -210,33 +192,23 @@ def vibration_with_error(model: VibrationModel, sources: list[Source]) -> tuple[
     return found, float(np.abs(error).max(initial=0.0))
 
 
-def _response(model: VibrationModel, forces: Array, f: Array, refine: int) -> Callable[[Array], Complex]:
+def _response(model: LinearRobot | VibrationModel, forces: Array, f: Array, refine: int) -> Callable[[Array], Complex]:
     """Amplitudes (f, r, k) at frequencies: solved for, or where tables have many rows polynomials on wider panels."""
     span = Source(name="", forces=forces, frequency=f[[0, -1]], density=np.zeros((2, 1)))
     edges = panels(model, [span], 2 * refine)
     if len(f) <= 4 * POINTS * (len(edges) - 1):
         return lambda some: model.amplitudes(some, forces)
-    angle = np.pi * (np.arange(POINTS) + 0.5) / POINTS
-    nodes = 0.5 - 0.5 * np.cos(angle)
-    at = (edges[:-1, None] + np.diff(edges)[:, None] * nodes).ravel()
-    known = [model.amplitudes(at[i : i + BLOCK], forces) for i in range(0, len(at), BLOCK)]
-    values = np.concatenate(known).reshape(len(edges) - 1, POINTS, -1)
-    weights = np.sin(angle) * (-1.0) ** np.arange(POINTS)  # barycentric, of the zeros of Chebyshev's polynomial
 
-    def interpolate(some: Array) -> Complex:
-        panel = np.clip(np.searchsorted(edges, some, side="right") - 1, 0, len(edges) - 2)
-        away = (some - edges[panel])[:, None] / np.diff(edges)[panel, None] - nodes
-        share = weights / np.where(away == 0, 1e-300, away)
-        share /= share.sum(axis=1, keepdims=True)
-        found = np.empty((len(some), values.shape[2]), dtype=complex)
-        for p in np.unique(panel):
-            found[panel == p] = share[panel == p] @ values[p]
-        return found.reshape(len(some), *forces.shape)
+    def responses(at: Array) -> list[Array]:
+        parts = [model.amplitudes(at[i : i + BLOCK], forces) for i in range(0, len(at), BLOCK)]
+        return [np.concatenate(parts).view(float)]
 
-    return interpolate
+    pieces = Pieces(responses, edges, -np.cos(np.pi * (np.arange(POINTS) + 0.5) / POINTS), shortest=np.inf)
+    pieces.make_all()
+    return lambda some: pieces(some)[0].view(complex)
 
 
-def panels(model: VibrationModel, sources: list[Source], refine: int) -> Array:
+def panels(model: LinearRobot | VibrationModel, sources: list[Source], refine: int) -> Array:
     """Edges [Hz] of panels each as long as rows of the tables and poles let it be, Eq. (T18.11)."""
     breaks = np.unique(np.concatenate([source.frequency for source in sources]))
     z = _poles(model, breaks[0], breaks[-1])
@@ -262,7 +234,7 @@ def _free(z: Complex, start: float, widest: float, shares: Array) -> NDArray[np.
     return (np.maximum(np.abs(x + root), np.abs(x - root)) >= ELLIPSE).all(axis=1)
 
 
-def _poles(model: VibrationModel, low: float, high: float) -> Complex:
+def _poles(model: LinearRobot | VibrationModel, low: float, high: float) -> Complex:
     """Frequencies [Hz] at which responses are infinite, above the real axis.
 
     Raises

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Index
 from flexapod.common.errors import InputError
 from flexapod.kinematics.rotations import matrix
 from flexapod.solve.batch import residual
@@ -16,7 +16,6 @@ from flexapod.solve.linear.motions import coordinate_names, held_motions, projec
 from flexapod.solve.linear.plant import Plant, tilt_stiffness, turning_forces
 from flexapod.solve.modal.modes import mass_on_motions, no_mass
 from flexapod.solve.statics.stiffness import tool_motion
-from flexapod.solve.system import Index
 
 
 @dataclass(frozen=True, kw_only=True)

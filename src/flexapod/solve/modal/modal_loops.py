@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Complex
 from flexapod.mechanics.shapes.beam_functions import check_finite
 from flexapod.model import Robot
 from flexapod.solve.batch import RestStates
@@ -15,7 +15,6 @@ from flexapod.solve.kernel import evaluate
 from flexapod.solve.modal.eigenproblem import reacting_modes
 from flexapod.solve.system import System
 
-Complex = NDArray[np.complex128]
 GROWS = 1e-9  # real part over size of an eigenvalue: less is rounding
 UNSTABLE = (
     "the loops of the drives are unstable{where}: deviations grow by a factor of 2.7 in {time:~3 s}; smaller gains, a "

@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexapod.common.arrays import Array, Mask
+from flexapod.common.arrays import Array, Index, Mask
 from flexapod.solve.batch import RestMatrices
 from flexapod.solve.saddle_point import inverse_each, solve_each
-from flexapod.solve.system import Index, System
+from flexapod.solve.system import System
 
 
 @dataclass(frozen=True, kw_only=True)

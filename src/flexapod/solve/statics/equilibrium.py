@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexapod.common.arrays import Array, Mask
+from flexapod.common.arrays import Array, Index, Mask
 from flexapod.mechanics.leg.layout import LEG_PARAMETERS, PAYLOAD_PARAMETERS, columns
 from flexapod.solve.batch import RestMatrices, RestStates, matrices_at_rest, residual_at_rest
 from flexapod.solve.saddle_point import cholesky_each, solve_each
@@ -12,7 +12,7 @@ from flexapod.solve.statics.block_arrow import arrow_solve
 from flexapod.solve.statics.ideal_robot import with_substitutes
 from flexapod.solve.statics.minimum_energy_forces import least_energy
 from flexapod.solve.statics.reduction import Motions, independent_motions, reduce_stiffness
-from flexapod.solve.system import Index, State, System
+from flexapod.solve.system import State, System
 
 FOUND, SINGULAR, GIVES_WAY, NOT_SETTLED, UNSTABLE, TOO_FAR = range(6)
 FARTHEST = 100.0  # what stands for a held pivot may move by while another coordinate moves by one, [m] and [rad]

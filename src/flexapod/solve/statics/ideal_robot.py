@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.common.arrays import Array, Mask
+from flexapod.common.arrays import Array, Index, Mask
 from flexapod.common.ranking import EQUALS, first_largest, is_largest
 from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN
 from flexapod.kinematics.robot import cache_per_robot
@@ -22,7 +22,7 @@ from flexapod.solve.statics.elimination import LegBases, keep_held_pivots, leg_b
 from flexapod.solve.statics.minimum_energy_forces import open_forces
 from flexapod.solve.statics.reduction import border_rows, flat_columns
 from flexapod.solve.statics.rigid_forces import displacement_by_error, joint_forces
-from flexapod.solve.system import Index, System
+from flexapod.solve.system import System
 
 #: Frames of an ideal robot
 STILL = {"base_mount": None, "platform_mount": None, "base_motion": None}

@@ -8,7 +8,7 @@ from typing import cast
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.common.arrays import Array, Mask
+from flexapod.common.arrays import Array, Index, Mask
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.kinematics.leg_geometry import DRIVEN, FREE
 from flexapod.mechanics.elements.springs import springs_along
@@ -22,7 +22,7 @@ from flexapod.solve.statics.equilibrium import FOUND, TOO_FAR, Equilibria, Equil
 from flexapod.solve.statics.ideal_robot import with_substitutes
 from flexapod.solve.statics.reduction import Motions, independent_motions
 from flexapod.solve.statics.static_loads import RestLoad, rest_commands, rest_load
-from flexapod.solve.system import Index, System
+from flexapod.solve.system import System
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Index
 from flexapod.solve.batch import RestMatrices
 from flexapod.solve.saddle_point import solve_each
 from flexapod.solve.statics.elimination import LegBases, border_columns, keep_held_pivots, leg_bases
-from flexapod.solve.system import Index, System
+from flexapod.solve.system import System
 
 DEPENDENT = 1e-6  # by how much a row that others imply at home may miss what they imply elsewhere: elastic turns
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError
-from flexapod.kinematics.rotations import matrix
+from flexapod.kinematics.rotations import blocks, matrix
 from flexapod.solve.batch import Rates, RestStates, matrices_at_rest, residual
 from flexapod.solve.statics.minimum_energy_forces import closure_forces, open_forces
 from flexapod.solve.system import System
@@ -65,8 +65,7 @@ def joint_forces(
         A pose is singular.
     """
     wrench = np.broadcast_to(wrench, (len(x), 6))
-    blocks = [slice(at, at + BLOCK) for at in range(0, len(x), BLOCK)]
-    parts = [_joint_forces(system, x[b], rates[b], wrench[b], pushed) for b in blocks]
+    parts = [_joint_forces(system, x[b], rates[b], wrench[b], pushed) for b in blocks(len(x), BLOCK)]
     found = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     return JointForces(**found, open_forces=open_forces(system))
 

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Index
 from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN, HELD
 from flexapod.model import Drive, ForceDrive, Load, Robot, ScrewDrive
 from flexapod.solve.rigid_motion import leg_coordinates
 from flexapod.solve.statics.ideal_robot import rigid_forces
-from flexapod.solve.system import Index, System
+from flexapod.solve.system import System
 
 
 def push_ports(system: System, robot: Robot) -> Index:

@@ -13,7 +13,7 @@ from flexapod.solve.system import Flow
 from flexapod.solve.time import native
 from flexapod.solve.time.chebyshev import Series
 from flexapod.solve.time.problem import CAUSES, Chunk, Problem
-from flexapod.solve.time.radau import MOST, OUT_OF_REACH, SHORTEST, AdvanceResult, RadauMemory
+from flexapod.solve.time.radau import MOST, OUT_OF_REACH, SHORTEST, RadauMemory
 from flexapod.solve.time.recording import Counters, Recording, unpack
 from flexapod.solve.time.time_events import NEAR, Stop, just_after
 
@@ -137,7 +137,7 @@ class _Run:
         chunk = Chunk(recording=recording, error=self.within.spent, step=step, force_error=self.within.thrust)
         return chunk, flow, failure
 
-    def _advance(self, flow: Flow, stops: Sequence[float], done: int, to: int) -> AdvanceResult:
+    def _advance(self, flow: Flow, stops: Sequence[float], done: int, to: int) -> native.Advance:
         """Advance to the last of `stops`; where many steps lie between outputs, with looks at the scales on the way."""
         rows, control, now, step = [], [], self.within.time, self.problem.output_step
         while True:
@@ -164,7 +164,7 @@ class _Run:
         affordable = count * CHUNK_STEPS // max(self.steps, 1)
         return max(1, min(4 * count, MANY, affordable))
 
-    def _failure(self, found: AdvanceResult) -> ComputationError:
+    def _failure(self, found: native.Advance) -> ComputationError:
         if found.status == OUT_OF_REACH:
             return self._out_of_reach(
                 found.time,

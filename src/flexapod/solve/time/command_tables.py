@@ -6,11 +6,11 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.common.arrays import Array, Mask
+from flexapod.common.piecewise_chebyshev import Groups, Pieces
 from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN
 from flexapod.model import ForceDrive, Load, Robot
 from flexapod.solve.statics.static_loads import feed_forward, force_ports, is_turned
 from flexapod.solve.system import COLUMNS, System
-from flexapod.solve.time.piecewise_chebyshev import Groups, Pieces
 
 #: Of instants (T,): the table of the ports (T, legs, ports, 4), and the load (T, load_size), of a payload the wrench
 #: at the tool in world axes.

@@ -59,16 +59,18 @@ class _State(Structure):
 
 @dataclass(frozen=True, kw_only=True)
 class Advance:
-    """Outcome of a chunk: new flow, output rows, status (0 = done), where it failed, and C's memory of its end.
+    """Outcome of a call: new flow, output rows, status (0 = done), leg in which it failed, and how far it came.
 
-    ``control``: rows of a controller's record.
+    ``step``: number of fixed ones, ``time`` [s] of steps within a tolerance; ``memory``: that of C at the end of fixed
+    steps; ``control``: rows of a controller's record.
     """
 
     flow: Flow
     rows: Array
     status: int
-    step: int
     leg: int
+    step: int = 0
+    time: float = 0.0
     memory: Array | None = None
     control: Array | None = None
 

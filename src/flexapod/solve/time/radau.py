@@ -1,17 +1,16 @@
 """Time integration within a tolerance: Radau's method of order 5 with steps of its own, Eqs. (T6.28)-(T6.33)."""
 
 from ctypes import Structure, byref, c_double, c_long, c_void_p
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flexapod.common.arrays import Array
 from flexapod.common.generalized_alpha import GeneralizedAlpha
+from flexapod.common.piecewise_chebyshev import NODES
 from flexapod.solve.system import Flow, System
 from flexapod.solve.time.chebyshev import Series
-from flexapod.solve.time.native import Call, address, loops, memory, settings
-from flexapod.solve.time.piecewise_chebyshev import NODES
+from flexapod.solve.time.native import Advance, Call, address, loops, memory, settings
 from flexapod.solve.time.recording import Counters, record_width
 
 if TYPE_CHECKING:
@@ -37,21 +36,6 @@ class _Control(Structure):
         *[(name, c_long) for name in ("along", "springs")],
         ("forces", c_double),
     ]
-
-
-@dataclass(frozen=True, kw_only=True)
-class AdvanceResult:
-    """Outcome of a call: new flow, output rows so far, status (0: done), where it failed and when.
-
-    ``control``: rows of a controller's record.
-    """
-
-    flow: Flow
-    rows: Array
-    status: int
-    leg: int
-    time: float
-    control: Array | None = None
 
 
 class RadauMemory:
@@ -123,7 +107,7 @@ class RadauMemory:
         outputs: tuple[float, float, int],
         most: int,
         counters: Counters,
-    ) -> AdvanceResult:
+    ) -> Advance:
         """Advance to the last of `stops`, ascending instants on which steps end, or by `most` steps.
 
         `outputs`: first instant, distance and number of the records on the way.
@@ -150,7 +134,7 @@ class RadauMemory:
         counters.factorisations += call.state.factorisations
         counters.rejected += int(self._memory[REJECTED] - before)
         written = int(self._memory[RECORDED])
-        return AdvanceResult(
+        return Advance(
             flow=new, rows=rows[:written], status=status, leg=call.state.bad_leg, time=self.time,
             control=found[:written] if self.loop else None,
         )  # fmt: skip

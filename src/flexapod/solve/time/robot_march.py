@@ -10,6 +10,7 @@ from flexapod import kinematics
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.common.generalized_alpha import GeneralizedAlpha
+from flexapod.common.piecewise_chebyshev import Pieces
 from flexapod.kinematics.inverse import BETA_LIMIT
 from flexapod.kinematics.rotations import matrix
 from flexapod.mechanics.leg.layout import columns
@@ -28,7 +29,6 @@ from flexapod.solve.time.command_tables import Law, robot_law
 from flexapod.solve.time.march import initial_step, march
 from flexapod.solve.time.motor_lag import settle_motors
 from flexapod.solve.time.overconstrained import minimum_energy_recording, release_redundant
-from flexapod.solve.time.piecewise_chebyshev import Pieces
 from flexapod.solve.time.problem import OF_LOOPS, Chunk, Problem, Weight
 from flexapod.solve.time.radau import is_rigid
 from flexapod.solve.time.recording import Counters, Recording

@@ -30,9 +30,10 @@ from flexapod.solve.modal.actuator_modes import actuator_modes
 from flexapod.solve.modal.at_poses import robot_modes
 from flexapod.solve.modal.modes import RobotModes
 from flexapod.verification.case import Check, case, checks
+from flexapod.verification.cases.frequencies import ROLLED
 from flexapod.verification.engines import calculix
 from flexapod.verification.engines.engine import CALCULIX
-from flexapod.verification.robots import ROUND, STEEL, with_unequal_legs, without_cylinders, without_gravity
+from flexapod.verification.robots import ROUND, STEEL, with_legs, with_unequal_legs, without_cylinders, without_gravity
 
 ONE_ELEMENT = 2.0
 """E / k G of solid elements at Poisson's ratio 0, one across the height: their section stays plane, so k = 1."""
@@ -239,7 +240,6 @@ def _calculix_release() -> list[Check]:
     return checks(names, theirs[picks], tip, 0.022, "mm", absolute=True)
 
 
-ROLLED = (0.01, -0.02, 0.03, np.deg2rad(20.0), 0.05, 0.1)
 COUNT = 17  # the platform's six frequencies and first bending of the pistons
 BENDING = slice(3, 13)  # of these the ones of the pistons, of the preset at home
 SHAPES = model.Simulation(modes=6)  # to 1e-11 of the exact frequencies in first bending
@@ -258,8 +258,8 @@ def _robot_frequencies(name: str, robot: model.Robot, pose: tuple[float, ...] | 
     coarse, fine = (
         calculix.run(abaqus_deck(robot, pose, elements=n, modes=COUNT + 3)).frequencies()[:COUNT] for n in MESHES
     )
-    limit = fine + (fine - coarse) / 15  # half the edges, a sixteenth of the error
-    robot = robot.replace(legs=[leg.replace(axial_modes=4) for leg in robot.legs])
+    limit = _limit(coarse, fine)
+    robot = with_legs(robot, axial_modes=4)
     found = robot_modes(robot, SHAPES, as_pose(robot, pose))
     ours = robot_thick(robot, found, ONE_ELEMENT)[:COUNT]
     correction = 1 - ours / found.frequency[:COUNT]

@@ -18,6 +18,7 @@ from flexapod.verification.engines.engine import EXUDYN
 from flexapod.verification.engines.exudyn_actuator import simulate_actuator as exudyn_actuator
 from flexapod.verification.engines.exudyn_integration import Integration, extrapolate_first_order
 from flexapod.verification.engines.exudyn_robot import MESHES, STEP, simulate_robot
+from flexapod.verification.robots import with_legs
 
 SPIN_UP_STEP, ELEMENTS = 5e-3, 16
 
@@ -126,8 +127,7 @@ def _curve_pairs(
     preset: Literal["paper-robot", "tripod"], motion: model.Motion, duration: float
 ) -> Callable[[str], tuple[Array, Array]]:
     """Results of a preset's undamped robot by name: Exudyn's, extrapolated from two meshes, and ours."""
-    study = model.preset(preset)
-    robot = study.robot.replace(legs=tuple(leg.replace(damping=0.0) for leg in study.robot.legs))
+    robot = with_legs(model.preset(preset).robot, damping=0.0)
     plan = Integration(duration=duration, step=STEP)
     coarse, fine = (simulate_robot(robot, motion, plan, elements=n, guide=d, time_limit=900.0) for n, d in MESHES)
     data = simulate(robot, motion, modes=3, axial_modes=2, step=STEP, output_step=STEP, duration=duration)

@@ -91,7 +91,8 @@ FIRST = 0.56882574  # int x phi_1 of the first eigenfunction with unit norm
 TABLE = (("cycloidal", 10.0, 0.12510186), ("quintic", 10.0, 0.08083873))  # profile, omega T, residual over stroke
 
 
-def _closed(profile: str, s: float) -> float:
+def residual_share(profile: str, s: float) -> float:
+    """Amplitude that a turn or way of this profile leaves of an oscillator, over its size; s = omega T."""
     if profile == "cycloidal":
         return float(8 * np.pi**2 * abs(np.sin(s / 2)) / (s * abs(s**2 - 4 * np.pi**2)))
     return float(120 / s**5 * abs((12 - s**2) * np.sin(s / 2) - 6 * s * np.cos(s / 2)))
@@ -122,7 +123,7 @@ def residual_amplitude(profile: str, s: float) -> float:
     "below 0.2, 0.1, 0.01; the integral of the shape is printed with eight digits",
 )
 def _residual_vibration() -> list[Check]:
-    rows = [*TABLE, *((profile, s, _closed(profile, s)) for profile, _, _ in TABLE for s in (5.0, 25.0))]
+    rows = [*TABLE, *((profile, s, residual_share(profile, s)) for profile, _, _ in TABLE for s in (5.0, 25.0))]
     return [
         Check(f"{profile}, omega T = {s:g}", value, residual_amplitude(profile, s), 5e-8, absolute=True)
         for profile, s, value in rows

@@ -11,12 +11,12 @@ from flexapod.analysis.kinematics import inverse_dynamics
 from flexapod.analysis.linear import LinearModel, linearize
 from flexapod.analysis.static import stiffness
 from flexapod.analysis.tool_responses import compliance, transmissibility
-from flexapod.common.arrays import Array
 from flexapod.output.exchange.mjcf import mjcf
 from flexapod.verification.case import Check, case, checks
 from flexapod.verification.engines import mujoco_forces
 from flexapod.verification.engines.engine import MUJOCO
 from flexapod.verification.engines.mujoco_rest import MujocoStatics
+from flexapod.verification.robots import LOWER, ring
 
 SIMSCAPE = "T. Dehaeze, stewart-simscape (MIT), commit 32330b9"
 SPRING, DAMPER = 2e7, 20.0  # N/m, N s/m, of a strut
@@ -27,8 +27,8 @@ FIRST, SECOND = 2.365020372431352, 5.497803919000836  # of tan a + tanh a = 0
 def stewart(*, light: bool = False) -> model.Study:
     """A platform of 1 kg on struts of two rods of 0.1 kg, 50 mm, radius 5 mm; ``light``: without these masses."""
     m, L, r, M, R, h = (1e-9 if light else 0.1), 0.05, 0.005, 1.0, 0.1, 0.01
-    base = _circle(0.115, [-10, 10, 110, 130, 230, 250], 0.015)
-    platform = _circle(0.09, [-50, 50, 70, 170, 190, -70], 0.075)
+    base = ring(0.115, LOWER) + np.array([0.0, 0.0, 0.015])
+    platform = ring(0.09, [-50, 50, 70, 170, 190, -70]) + np.array([0.0, 0.0, 0.075])
     # a piston is a line: what its thickness adds across, m r^2 / 4, turns with the cylinder
     across = m * (3 * r**2 + L**2) / 12 + m * r**2 / 4
     cylinder = model.Cylinder(mass=m, com=L / 2, inertia=across, axial_inertia=m * r**2 / 2, mouth=0.05)
@@ -66,11 +66,6 @@ def hinged_beam(hub: float) -> model.ActuatorStudy:
         rhoA=1.2, EI=200.0, length=2.0, free_length=2.0, hub_radius=0.0, hub_inertia=hub, gravity=0.0, damping=0.0
     )
     return model.ActuatorStudy(actuator=actuator, simulation=model.Simulation(modes=6, basis="tip-load", duration=1.0))
-
-
-def _circle(radius: float, degrees: list[float], height: float) -> Array:
-    a = np.deg2rad(degrees)
-    return np.stack([radius * np.cos(a), radius * np.sin(a), np.full(len(a), height)], axis=1)
 
 
 def _plant() -> LinearModel:

@@ -21,14 +21,14 @@ from flexapod.model.leg.joint import Joint
 from flexapod.model.leg.material import Material
 from flexapod.model.leg.screw import Bearing, Limits, Nut
 from flexapod.verification.case import Check, case, checks
+from flexapod.verification.robots import with_legs
 
 UM = 1e6  # N/m of an N/um
 
 
 def machine(**changes: Any) -> Robot:
     """Preset machine-hexapod without heat, with parts of its legs changed."""
-    robot = model.preset("machine-hexapod").robot.replace(heat=None)
-    return robot.replace(legs=tuple(leg.replace(**changes) for leg in robot.legs))
+    return with_legs(model.preset("machine-hexapod").robot.replace(heat=None), **changes)
 
 
 def _screw(robot: Robot) -> ScrewDrive:

@@ -43,12 +43,13 @@ SIZE = 0.5  # "about 5 mm": from half to one and a half times the printed value 
 class Claim:
     """Claim of the paper and where, what we get, the verdict, and its reason, which explains the `expected` one.
 
-    `whose` it is, a key of `WHOSE`: the paper's own, a variant of ours, or what the paper asks for next.
+    `whose` it is, a key of `WHOSE`: the paper's own, a variant of ours, or what the paper asks for next. It, and
+    `where` and `says` unless they hold numbers, are those of the row of the table.
     """
 
-    whose: str
-    where: str
-    says: str
+    whose: str = ""
+    where: str = ""
+    says: str = ""
     ours: str
     verdict: str
     reason: str

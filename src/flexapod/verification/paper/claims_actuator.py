@@ -20,12 +20,13 @@ from flexapod.verification.paper.claim import (
     NOT,
     OPEN,
     WIDTH,
+    Claim,
     choose_verdict,
     is_unspecified,
     round_up,
 )
 from flexapod.verification.paper.energies import TIP_MASS
-from flexapod.verification.paper.rows import ClaimFinding, row
+from flexapod.verification.paper.rows import row
 from flexapod.verification.paper.study import ACTUATOR_MODES, PaperStudy
 
 ALUMINIUM = (70e9, 2700.0)  # E [Pa], density [kg/m^3]; its alloys lie within 5 %, steel at three times as much
@@ -47,11 +48,11 @@ def _actuator(data: Dataset) -> model.Actuator:
 
 
 @row("Eq. 2", f"Shapes normalised by the mass per length; {COPY} beta^4 = omega^4 rho / EI", expected=NOT)
-def _shapes(_: PaperStudy) -> ClaimFinding:
+def _shapes(_: PaperStudy) -> Claim:
     eps = np.array([shape.eps for shape in clamped_free(3)])
     alpha = (np.sin(eps) + np.sinh(eps)) / (np.cos(eps) + np.cosh(eps))
     norms = ", ".join(f"{norm:.4f}" for norm in alpha**2)
-    return ClaimFinding(
+    return Claim(
         ours=f"The integral of rho Y^2 is alpha^2 = {norms} for three shapes; normalised, it would be 1",
         verdict=choose_verdict(np.abs(alpha**2 - 1).max() < ROUNDED),
         reason="In any reading a factor 1 / alpha is missing; results do not depend on the norm unless it is taken as "
@@ -60,9 +61,9 @@ def _shapes(_: PaperStudy) -> ClaimFinding:
 
 
 @row("Eqs. 4-8", "Energies of the sliding, turning beam, as printed", "printed-lines")
-def _misprints(lines: Dataset) -> ClaimFinding:
+def _misprints(lines: Dataset) -> Claim:
     cost, size = _costs(lines)
-    return ClaimFinding(
+    return Claim(
         ours="Derived anew: one kinetic and one potential energy, differentiated. One line as printed, the others as "
         f"derived, and the tip is off by: Eq. 5 {cost['5, dots lost (copy)']}, with its dots {cost['5, with dots']}; "
         f"Eq. 8 {cost['8, linear']}, with a half and a square {cost['8, with half and square']}, of "
@@ -81,9 +82,9 @@ def _misprints(lines: Dataset) -> ClaimFinding:
     "The kinetic energy is that of Eqs. 4 and 5, the potential one that of Eqs. 6 to 8",
     "printed-lines",
 )
-def _omissions(lines: Dataset) -> ClaimFinding:
+def _omissions(lines: Dataset) -> Claim:
     cost, size = _costs(lines)
-    return ClaimFinding(
+    return Claim(
         ours=f"Without these terms, all else as derived, the tip is off by: Eq. 5 {cost['5, with dots and factor 2']} "
         f"of {size['5, with dots and factor 2']}; upright Eq. 7 {cost['7, nothing elastic']}, Eqs. 9-10 "
         f"{cost['9-10, centrifugal only']} of {size['7, nothing elastic']}",
@@ -101,11 +102,11 @@ def _costs(lines: Dataset) -> tuple[dict[str, str], dict[str, str]]:
 
 
 @row("Table 2", "15.24 x 0.95 cm^2, 4.02 kg/m, EI = 756.65 N m^2", f"actuator-{ACTUATOR_MODES[0]}", expected=HOLDS)
-def _table2(data: Dataset) -> ClaimFinding:
+def _table2(data: Dataset) -> Claim:
     actuator = _actuator(data)
     modulus, density = actuator.EI / (WIDTH * HEIGHT**3 / 12), actuator.rhoA / (WIDTH * HEIGHT)
     off = max(abs(modulus / ALUMINIUM[0] - 1), abs(density / ALUMINIUM[1] - 1))
-    return ClaimFinding(
+    return Claim(
         ours=f"E = {modulus / 1e9:.1f} GPa, density {density:.0f} kg/m^3",
         verdict=choose_verdict(off < ALLOYS),
         reason="The figures belong to one aluminium beam that bends about its weak axis: within "
@@ -115,8 +116,8 @@ def _table2(data: Dataset) -> ClaimFinding:
 
 
 @row("Fig. 2", "CAD model: the beam a deformable solid, the hub a rigid shell, no friction between them")
-def _figure2(_: PaperStudy) -> ClaimFinding:
-    return ClaimFinding(
+def _figure2(_: PaperStudy) -> Claim:
+    return Claim(
         ours="Hexahedra that slide through a plane in which their sections stay straight; drawn as actuator-solid",
         verdict=OPEN,
         reason=f"Length and play of the hub and the kind of contact are not printed. Ours guides without play.{FIGURE}",
@@ -124,7 +125,7 @@ def _figure2(_: PaperStudy) -> ClaimFinding:
 
 
 @row("Fig. 3", "Refined from 5 cm to 5 mm; with 5 mm cubic elements the response is converged", expected=IN_PART)
-def _figure3(result: PaperStudy) -> ClaimFinding:
+def _figure3(result: PaperStudy) -> Claim:
     peak, off = _differences(result, *(f"actuator-solid-{name}" for pair in LINEAR.values() for name in pair))
     _, best = _differences(result, "actuator-solid-quadratic")
     first = {name: float(result[name].frequency[0]) for name in (*off, *best)}
@@ -136,7 +137,7 @@ def _figure3(result: PaperStudy) -> ClaimFinding:
         gaps[kind] = 100 * (first[fine] / true - 1)
         words.append(f"{kind} {first[coarse]:.3g} and {first[fine]:.3g} Hz, the tip off by {text(off[fine], 'm', 2)}")
     converged = best["actuator-solid-quadratic"] < CONVERGED * peak
-    return ClaimFinding(
+    return Claim(
         ours=f"First frequency of linear hexahedra of 50 and of 5 mm instead of {true:.3g} Hz, largest error of the "
         f"latter in 10 s: {'; '.join(words)}. Quadratic ones of 5 mm: "
         f"{text(best['actuator-solid-quadratic'], 'm', 2)}",
@@ -149,10 +150,10 @@ def _figure3(result: PaperStudy) -> ClaimFinding:
 
 
 @row("Fig. 4", "Assumed modes and finite elements agree closely", expected=HOLDS)
-def _figure4(result: PaperStudy) -> ClaimFinding:
+def _figure4(result: PaperStudy) -> Claim:
     peak, off = _differences(result, "actuator-beam", "actuator-solid-quadratic")
     worst = max(off.values()) / peak
-    return ClaimFinding(
+    return Claim(
         ours=f"Over 10 s and a largest deflection of {text(peak, 'm')} the beam elements differ by at most "
         f"{text(round_up(off['actuator-beam']), 'm', 2)}, solid elements by "
         f"{text(round_up(off['actuator-solid-quadratic']), 'm', 2)}",
@@ -171,14 +172,14 @@ def _differences(result: PaperStudy, *names: str) -> tuple[float, dict[str, floa
 
 
 @row("Figs. 3-4, printed curves", "Tip vibration at 0.1 m/s and 0.785 rad/s", expected=OPEN)
-def _printed(result: PaperStudy) -> ClaimFinding:
+def _printed(result: PaperStudy) -> Claim:
     finest = result.actuator[ACTUATOR_MODES[-1]].tip_deflection
     peak = float(np.abs(finest).max())
     off = {k: float(np.abs(d.tip_deflection - finest).max()) for k, d in result.actuator.items()}
     open_here = is_unspecified("paper-actuator", "actuator.free_length", "actuator.tip_mass", "actuator.gravity")
     free = result["actuator-free"]
     swing = float(np.abs(free.tip_deflection).max())
-    return ClaimFinding(
+    return Claim(
         ours=f"Prescribed rates: largest deflection {text(peak, 'm')}; 3 shapes are within "
         f"{text(round_up(off[3]), 'm', 2)} of {ACTUATOR_MODES[-1]}. Set free with these rates: "
         f"{text(swing, 'm')} in {float(free.time[-1]):.3g} s, at the end of which {float(free.length[-1]):.3g} m "

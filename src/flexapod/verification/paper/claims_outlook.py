@@ -9,7 +9,15 @@ from xarray import Dataset
 
 from flexapod.analysis.results.attributes import robot_study
 from flexapod.common.quantities import along_axes, number, text
-from flexapod.verification.paper.claim import DONE, HOLDS, USELESS, choose_verdict, deviation_words, largest_deviation
+from flexapod.verification.paper.claim import (
+    DONE,
+    HOLDS,
+    USELESS,
+    Claim,
+    choose_verdict,
+    deviation_words,
+    largest_deviation,
+)
 from flexapod.verification.paper.outlook import (
     BLOW,
     BLOW_TIME,
@@ -22,7 +30,7 @@ from flexapod.verification.paper.outlook import (
     SHAPER,
     TOLERANCES,
 )
-from flexapod.verification.paper.rows import ClaimFinding, outlook
+from flexapod.verification.paper.rows import outlook
 
 MUCH, SOME = 0.2, 0.8  # of what was there before: what is left where a remedy helps, and where it helps a little
 
@@ -42,11 +50,11 @@ def _per_cent(ratios: Sequence[float] | np.ndarray) -> str:
 
 
 @outlook("Section 4.4, compensation", "Control that compensates elastic deformations is future work", "ahead")
-def _compensation(ahead: Dataset) -> ClaimFinding:
+def _compensation(ahead: Dataset) -> Claim:
     peak = ahead.miss_peak.values
     left = [float(np.linalg.norm(x, axis=1).max()) for x in ahead.miss.values]
     each = "; ".join(f"{name}: {along_axes(row)}" for name, row in zip(ahead.command.values[1:], peak[1:], strict=True))
-    return ClaimFinding(
+    return Claim(
         ours=f"The payload beside its path, at most: {along_axes(peak[0])}. With commands ahead of time that make up "
         f"for {each}",
         verdict=_helps(left[0], left[-1]),
@@ -56,13 +64,13 @@ def _compensation(ahead: Dataset) -> ClaimFinding:
 
 
 @outlook("Section 4.4, vibration", "Active vibration control is future work", "shaped")
-def _shaped(shaped: Dataset) -> ClaimFinding:
+def _shaped(shaped: Dataset) -> Claim:
     payload, tips, longer = (shaped[name].values for name in ("payload_vibration", "tip_vibration", "longer"))
     each = "; ".join(
         f"{name}: {text(float(a), 'm', 2)}, {text(float(b), 'm', 2)}"
         for name, a, b in zip(shaped.command.values, payload, tips, strict=True)
     )
-    return ClaimFinding(
+    return Claim(
         ours=f"Payload and tips after the roll, from peak to peak. {each[0].upper()}{each[1:]}",
         verdict=_helps(float(payload[0]), float(payload[-1])),
         reason=f"The roll is added up of delayed shares of itself ({SHAPER.upper()}), so that what they excite "
@@ -71,13 +79,13 @@ def _shaped(shaped: Dataset) -> ClaimFinding:
 
 
 @outlook("Section 4.4, feedback", "Real-time feedback is future work", "feedback")
-def _feedback(loops: Dataset) -> ClaimFinding:
+def _feedback(loops: Dataset) -> Claim:
     before, after = loops.damping_ratio.values
     peak = loops.compliance.max("frequency").values
     frequency = ", ".join(number(float(f), 3) for f in loops.mode_frequency.values[0])
     drive = robot_study(loops).robot.legs[0].drive
     stiffness = text(float(getattr(drive, "stiffness", np.nan)), "N/m")
-    return ClaimFinding(
+    return Claim(
         ours=f"On drives of {stiffness}, as stiff as the pistons, each of which gives way to the integral of its own "
         f"force: damping of the modes at {frequency} Hz {_per_cent(after)} in place of {_per_cent(before)}, largest "
         f"compliance {number(1e6 * float(peak[1]))} in place of {number(1e6 * float(peak[0]))} µm/N",
@@ -92,13 +100,13 @@ def _feedback(loops: Dataset) -> ClaimFinding:
 @outlook(
     "Section 4.3, friction", "Not accounted for: joint friction, which can influence vibration and accuracy", "friction"
 )
-def _friction(rubbing: Dataset) -> ClaimFinding:
+def _friction(rubbing: Dataset) -> Claim:
     ideal, rubs, ahead = rubbing.miss.values
     extra = np.abs(rubs - ideal).max(axis=0)
     own, kept, left = (along_axes(np.abs(x).max(axis=0)) for x in (ideal, rubs, ahead))
     lost = float(rubbing.lost[1] - rubbing.lost[0])
-    mu, width = FRICTION.mu or 0.0, FRICTION.diameter or 0.0
-    return ClaimFinding(
+    mu, width = FRICTION["mu"], FRICTION["diameter"]
+    return Claim(
         ours=f"Plain joints of {text(width, 'm')} with a coefficient of {mu:g}: {kept} in place of {own}, on the way "
         f"up to {along_axes(extra)} from there; {text(lost, 'J', 2)} are lost in the roll. With commands ahead for "
         f"weight and inertia {left} are left",
@@ -109,12 +117,12 @@ def _friction(rubbing: Dataset) -> ClaimFinding:
 
 
 @outlook("Section 4.3, imperfections", "Not accounted for: material imperfections", "tolerances", "robot")
-def _imperfections(spread: Dataset, robot: Dataset) -> ClaimFinding:
+def _imperfections(spread: Dataset, robot: Dataset) -> Claim:
     by_kind = np.sqrt((spread.pose_sigma_by_tolerance**2).sum("leg"))
     own = np.sqrt((by_kind.sel({"tolerance": list(MATERIAL)}).values[:, :3] ** 2).sum(axis=0))
     whole, drawn = spread.pose_sigma.values[:3], np.sqrt(np.diag(spread.sample_covariance.values))[:3]
     joints, legs, bow, stiffness, density = _spreads()
-    return ClaimFinding(
+    return Claim(
         ours=f"Pistons that scatter by {stiffness} in stiffness, {density} in density and {bow} in bow spread the "
         f"payload at home by {along_axes(own)} (standard deviations), with joints that lie within {joints} and legs "
         f"set to {legs} by {along_axes(whole)}; {DRAWS} machines that are drawn: {along_axes(drawn)}",
@@ -127,15 +135,14 @@ def _imperfections(spread: Dataset, robot: Dataset) -> ClaimFinding:
 
 def _spreads() -> tuple[str, ...]:
     """Spreads of joints, legs, bow, stiffness and density as text."""
-    lengths = (getattr(TOLERANCES, name).sigma for name in ("base_joints", "leg_offset", "bow"))
-    ratios = (getattr(TOLERANCES, name).sigma for name in ("EA", "density"))
-    return (*(text(x, "m", 2) for x in lengths), *(f"{100 * x:g} %" for x in ratios))
+    lengths = (text(TOLERANCES[name], "m", 2) for name in ("base_joints", "leg_offset", "bow"))
+    return (*lengths, *(f"{100 * TOLERANCES[name]:g} %" for name in ("EA", "density")))
 
 
 @outlook("Section 4.3, disturbances", "Not accounted for: external disturbances", "budget")
-def _disturbances(budget: Dataset) -> ClaimFinding:
+def _disturbances(budget: Dataset) -> Claim:
     floor = np.abs(budget.budget.sel(part="floor vibration", kind="random").values[:3])
-    return ClaimFinding(
+    return Claim(
         ours=f"A floor as bad as {FLOOR} allows shakes the payload at home by {along_axes(floor)} (rms)",
         verdict=_counts(float(np.linalg.norm(floor))),
         reason="The pistons' damping leaves the payload's modes nearly undamped: that is what force feedback is for. "
@@ -150,9 +157,9 @@ def _disturbances(budget: Dataset) -> ClaimFinding:
     "robot-radii",
     expected=HOLDS,
 )
-def _tripod(tripod: Dataset, robot: Dataset) -> ClaimFinding:
+def _tripod(tripod: Dataset, robot: Dataset) -> Claim:
     shares, own = (_bent(data) for data in (tripod, robot))
-    return ClaimFinding(
+    return Claim(
         ours=f"A 3-RPS of the same pistons, radii, payload and roll: {deviation_words(tripod)}; bending makes "
         f"{_shares(shares)} of it. The 6-UPS: {deviation_words(robot)}; {_shares(own)}",
         verdict=choose_verdict(shares.min() > 0.5 > own.max()),

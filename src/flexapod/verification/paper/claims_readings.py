@@ -10,14 +10,15 @@ from flexapod.common.quantities import number, text
 from flexapod.verification.paper.claim import (
     ELASTIC_LENGTH,
     MISSES,
+    Claim,
     axis_words,
     deviation_words,
     largest_deviation,
     ratio_words,
     size_verdict,
 )
-from flexapod.verification.paper.readings import CUBE, MODULI, cube_edge, inertia_about_com
-from flexapod.verification.paper.rows import ClaimFinding, variant
+from flexapod.verification.paper.rows import variant
+from flexapod.verification.paper.variants import CUBE, MODULI, cube_edge, inertia_about_com
 
 SAYS = "5 mm in Y and 10 mm in Z"
 PRINTED = f"{1e3 * ELASTIC_LENGTH:.0f} mm"
@@ -28,9 +29,9 @@ def _peak(readings: Dataset, name: str) -> np.ndarray:
 
 
 @variant("Section 2, assumption 3", f"The beam is inextensible; {SAYS}", "readings", expected=MISSES)
-def _inextensible(readings: Dataset) -> ClaimFinding:
+def _inextensible(readings: Dataset) -> Claim:
     peak, tip = _peak(readings, "inextensible"), float(readings.tip_peak.sel(reading="inextensible"))
-    return ClaimFinding(
+    return Claim(
         ours=f"Pistons that bend and do not stretch: {axis_words(peak)}, with tips {text(tip, 'm', 2)} off",
         verdict=size_verdict(peak),
         reason="With the paper's own assumption no deviation is left, let alone millimetres: between ideal joints all "
@@ -39,12 +40,12 @@ def _inextensible(readings: Dataset) -> ClaimFinding:
 
 
 @variant("Table 3, elastic length", f"{SAYS}; elastic length of piston {PRINTED}", "robot", "readings", expected=MISSES)
-def _elastic_length(robot: Dataset, readings: Dataset) -> ClaimFinding:
+def _elastic_length(robot: Dataset, readings: Dataset) -> Claim:
     piston = robot_study(robot).robot.legs[0].piston
     own, whole = largest_deviation(robot), _peak(readings, "elastic-length")
     less = 1 - whole / own
     stiffness = float(readings.stretch_stiffness.sel(reading="elastic-length"))
-    return ClaimFinding(
+    return Claim(
         ours=f"{1e3 * piston.length:.0f} mm that stretch, {PRINTED} of them free at home: "
         f"{text(piston.EA / piston.length, 'N/m')}, {axis_words(own)}. A piston of {PRINTED} in all: "
         f"{text(stiffness, 'N/m')}, {axis_words(whole)}",
@@ -58,10 +59,10 @@ def _elastic_length(robot: Dataset, readings: Dataset) -> ClaimFinding:
 @variant(
     "Section 3.2, Table 2", f"{SAYS}; the pistons' elastic properties are those of Table 2", "readings", expected=MISSES
 )
-def _table_2(readings: Dataset) -> ClaimFinding:
+def _table_2(readings: Dataset) -> Claim:
     row = readings.sel(reading="table-2")
     peak, share = row.deviation_peak.values, 100 * float(row.load_share)
-    return ClaimFinding(
+    return Claim(
         ours=f"Pistons with the EI, EA and mass of that beam: {axis_words(peak)}; tips "
         f"{text(float(row.tip_peak), 'm', 2)} off",
         verdict=size_verdict(peak),
@@ -71,11 +72,11 @@ def _table_2(readings: Dataset) -> ClaimFinding:
 
 
 @variant("Elastic modulus", f"{SAYS}, a mode of a piston in Fig. 10; E = 200 GPa", "readings", expected=MISSES)
-def _modulus(readings: Dataset) -> ClaimFinding:
+def _modulus(readings: Dataset) -> Claim:
     rows = {E: readings.sel(reading=f"modulus-{E:g}") for E in MODULI}
     sound = {E: row for E, row in rows.items() if not row.verdict.item()}
     last = sound[min(sound)] if sound else rows[min(rows)]
-    return ClaimFinding(
+    return Claim(
         ours=". ".join(f"{E:g} GPa: {_modulus_words(row)}" for E, row in rows.items()),
         verdict=size_verdict(*(row.deviation_peak.values for row in sound.values())),
         reason="With one digit lost the stretch is ten times larger. Near the Euler load millimetres come with a "
@@ -94,9 +95,9 @@ def _modulus_words(row: Dataset) -> str:
 @variant(
     "Circles as radii", f"{SAYS}; Table 3 calls 0.5 m and 0.3 m diameters", "robot", "robot-radii", expected=MISSES
 )
-def _radii(diameters: Dataset, radii: Dataset) -> ClaimFinding:
+def _radii(diameters: Dataset, radii: Dataset) -> Claim:
     (_, y0, z0), (_, y, z) = largest_deviation(diameters), largest_deviation(radii)
-    return ClaimFinding(
+    return Claim(
         ours=deviation_words(radii),
         verdict=size_verdict(largest_deviation(radii)),
         reason="A wider robot is stiffer against the moment of the offset payload: "
@@ -107,11 +108,11 @@ def _radii(diameters: Dataset, radii: Dataset) -> ClaimFinding:
 @variant(
     "Centre of mass on top", f"{SAYS}; Eqs. 11-12 put it beside the platform", "robot", "readings", expected=MISSES
 )
-def _com_on_top(robot: Dataset, readings: Dataset) -> ClaimFinding:
+def _com_on_top(robot: Dataset, readings: Dataset) -> Claim:
     payload = robot_study(robot).robot.payload
     d, edge = float(np.linalg.norm(payload.com)), cube_edge(payload)
     low, high = _peak(readings, "com-on-top"), _peak(readings, CUBE)
-    return ClaimFinding(
+    return Claim(
         ours=f"{1e3 * d:.0f} mm above the platform: {axis_words(low)}. {500 * edge:.0f} mm: {axis_words(high)}",
         verdict=size_verdict(low, high),
         reason=f"{payload.inertia.max():g} kg m^2 at {payload.mass:g} kg is a cube of {edge:.2f} m: standing on the "
@@ -120,12 +121,12 @@ def _com_on_top(robot: Dataset, readings: Dataset) -> ClaimFinding:
 
 
 @variant("Inertia about the platform", SAYS, "robot", "readings", expected=MISSES)
-def _about_platform(robot: Dataset, readings: Dataset) -> ClaimFinding:
+def _about_platform(robot: Dataset, readings: Dataset) -> Claim:
     payload = robot_study(robot).robot.payload
     moments = np.linalg.eigvalsh(inertia_about_com(payload))
     body = "no body has these" if moments[2] > moments[0] + moments[1] or moments[0] <= 0 else "a body has these"
     peak = _peak(readings, "inertia-of-platform")
-    return ClaimFinding(
+    return Claim(
         says=f"{SAYS}; {payload.inertia.max():g} kg m^2, about which point is not said",
         ours=f"About the platform's centre it would be {', '.join(f'{m:.3g}' for m in moments)} kg m^2 about the "
         f"centre of mass: {body}. With the largest lowered to the sum of the others: {axis_words(peak)}",

@@ -18,6 +18,7 @@ from flexapod.verification.paper.claim import (
     MISPRINT,
     NOT,
     PAPER_DEVIATION,
+    Claim,
     axis_motion,
     choose_verdict,
     deviation_words,
@@ -27,7 +28,7 @@ from flexapod.verification.paper.claim import (
     residual_vibration,
     round_up,
 )
-from flexapod.verification.paper.rows import ClaimFinding, row
+from flexapod.verification.paper.rows import row
 from flexapod.verification.paper.study import PaperStudy
 from flexapod.verification.paper.trials import load_share
 
@@ -48,12 +49,12 @@ def _axes(robot: Dataset) -> dict[str, AxisSummary]:
     "robot",
     expected=NOT,
 )
-def _figure9(robot: Dataset) -> ClaimFinding:
+def _figure9(robot: Dataset) -> Claim:
     found, piston = _axes(robot), robot_study(robot).robot.legs[0].piston
     ours = {axis: found[axis].peak for axis in PAPER_DEVIATION}
     ratios = ", ".join(f"{axis} is {ratio_words(ours[axis], paper)}" for axis, paper in PAPER_DEVIATION.items())
     sag = abs(float(robot.com_deviation.sel(axis="z")[0]))
-    return ClaimFinding(
+    return Claim(
         ours=f"{deviation_words(robot)}, of which {text(sag, 'm')} in z is sag at rest",
         verdict=choose_verdict(printed_deviation(ours["y"], ours["z"])),
         reason=f"{ratios} than printed. What counts between ideal joints is a piston's stretch, at "
@@ -63,11 +64,11 @@ def _figure9(robot: Dataset) -> ClaimFinding:
 
 
 @row("Abstract", f"Deviations of up to {PER_CENT:g} % of the end effector's position", "robot")
-def _six_per_cent(robot: Dataset) -> ClaimFinding:
+def _six_per_cent(robot: Dataset) -> Claim:
     found = {axis: _axes(robot)[axis] for axis in PAPER_DEVIATION}
     shares = {axis: a.per_cent or np.nan for axis, a in found.items()}
     printed = [f"{100 * PAPER_DEVIATION[axis] / a.excursion:.2g} % in {axis}" for axis, a in found.items()]
-    return ClaimFinding(
+    return Claim(
         ours=", ".join(f"{axis} {share:.2g} %" for axis, share in shares.items()),
         verdict=choose_verdict(any(is_similar(share, PER_CENT) for share in shares.values())),
         reason="Largest deviation over the rigid travel of the same axis. The printed 5 mm and 10 mm would be "
@@ -77,11 +78,11 @@ def _six_per_cent(robot: Dataset) -> ClaimFinding:
 
 
 @row("Title, section 4.1", "Lateral vibration of the actuators makes the deviation", "robot", expected=NOT)
-def _vibration(robot: Dataset) -> ClaimFinding:
+def _vibration(robot: Dataset) -> Claim:
     parts = np.abs(robot.deviation_by_cause.sum("leg")).max(("time", "axis"))
     bending, stretch = (float(parts.sel(cause=cause)) for cause in ("bending", "axial-strain"))
     tips, payload = (text(residual_vibration(robot, name), "m", 2) for name in ("tip_deflection", "com_deviation"))
-    return ClaimFinding(
+    return Claim(
         ours=f"Bending moves the payload by {text(bending, 'm', 2)} where that is most, stretch by "
         f"{text(stretch, 'm', 2)}. After the roll tips vibrate by {tips}, the payload by {payload} (peak to peak)",
         verdict=choose_verdict(bending >= stretch, bending >= 0.1 * stretch),
@@ -98,10 +99,10 @@ def _tip_words(robot: Dataset) -> str:
 
 
 @row("Sections 1, 4.1", "Lumped models are less suitable where accuracy matters", "robot", "robot-lumped", expected=NOT)
-def _lumped(robot: Dataset, lumped: Dataset) -> ClaimFinding:
+def _lumped(robot: Dataset, lumped: Dataset) -> Claim:
     one, whole = (np.abs(data.com_deviation).max("time") for data in (lumped, robot))
     apart = float(np.abs(one / whole - 1).max())
-    return ClaimFinding(
+    return Claim(
         ours=f"One axial spring a leg: {deviation_words(lumped)}; all shapes: within {round_up(100 * apart):.2g} %",
         verdict=choose_verdict(apart > 0.5, apart > 0.1),
         reason="True of one actuator loaded sideways. For this robot's payload a spring along each leg is enough.",
@@ -116,9 +117,9 @@ def _lumped(robot: Dataset, lumped: Dataset) -> ClaimFinding:
     "robot-fem",
     expected=HOLDS,
 )
-def _tips(robot: Dataset, lumped: Dataset, elements: Dataset) -> ClaimFinding:
+def _tips(robot: Dataset, lumped: Dataset, elements: Dataset) -> Claim:
     spring, beams, own = (float(np.abs(data.tip_deflection).max()) for data in (lumped, elements, robot))
-    return ClaimFinding(
+    return Claim(
         ours=f"Tips of the pistons: {text(beams, 'm')} off by beam elements, {text(own, 'm')} by assumed modes, "
         f"{text(spring, 'm')} by one spring a leg",
         verdict=choose_verdict(abs(beams / own - 1) < 0.01 and spring < 0.5 * own, spring < 0.9 * own),
@@ -128,12 +129,12 @@ def _tips(robot: Dataset, lumped: Dataset, elements: Dataset) -> ClaimFinding:
 
 
 @row("Fig. 10", "At the largest roll a mode of one piston is excited", "robot", "modes", expected=IN_PART)
-def _figure10(robot: Dataset, modes: Dataset) -> ClaimFinding:
+def _figure10(robot: Dataset, modes: Dataset) -> Claim:
     kinds, frequency = [str(kind) for kind in modes.kind.values], modes.frequency.values
     bending = [f for f, kind in zip(frequency, kinds, strict=True) if kind.endswith("bending")]
     first = f"the first bending of legs {bending[0]:.0f} Hz" if bending else "no leg bends in any"
     tips = float(np.abs(robot.tip_deflection).max())
-    return ClaimFinding(
+    return Claim(
         ours=f"There the lowest mode ({kinds[0]}) has {frequency[0]:.0f} Hz, {first}; tips are {_tip_words(robot)}",
         verdict=choose_verdict(bool(bending) and tips >= VISIBLE * ELASTIC_LENGTH, bool(bending)),
         reason=f"The modes exist. A roll of {axis_motion(robot_study(robot)).duration:g} s excites them to "
@@ -149,7 +150,7 @@ def _figure10(robot: Dataset, modes: Dataset) -> ClaimFinding:
     "light",
     expected=HOLDS,
 )
-def _light(light: Dataset) -> ClaimFinding:
+def _light(light: Dataset) -> Claim:
     payload, tips, off = light.payload_vibration.values, light.tip_vibration.values, light.deviation_peak.values
     each = "; ".join(
         f"{name}, {mass:.2g} kg: z {text(float(z), 'm')}, payload {text(float(a), 'm', 2)}, "
@@ -160,7 +161,7 @@ def _light(light: Dataset) -> ClaimFinding:
     )
     more = [bool(values[1:].min() > values[0]) for values in (payload, tips, off[:, 1], off[:, 2])]
     low, high = (float(light.lowest_frequency[i]) for i in (-1, 0))
-    return ClaimFinding(
+    return Claim(
         ours="Largest deviation in z; vibration of payload and tips after the roll, from peak to peak. " + each,
         verdict=choose_verdict(all(more), any(more)),
         reason="Hollow or thinner, every lighter piston lets the payload deviate more, and payload and tips vibrate "
@@ -173,8 +174,8 @@ def _light(light: Dataset) -> ClaimFinding:
     "Cross-references",
     f"{COPY.capitalize()}: section 2.2, properties of Table 1; section 3.2, pistons of Table 2",
 )
-def _cross_references(_: PaperStudy) -> ClaimFinding:
-    return ClaimFinding(
+def _cross_references(_: PaperStudy) -> Claim:
+    return Claim(
         ours="Table 1 classifies literature, Table 2 is the beam, Table 3 the pistons",
         verdict=MISPRINT,
         reason="A matter of the text. Also: I is called a mass inertia moment below Eq. 2 and a second moment of area "

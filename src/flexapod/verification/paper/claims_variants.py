@@ -16,6 +16,7 @@ from flexapod.verification.paper.claim import (
     MISSES,
     PAPER_DEVIATION,
     REACHES,
+    Claim,
     axis_words,
     choose_verdict,
     deviation_words,
@@ -28,19 +29,19 @@ from flexapod.verification.paper.claim import (
 )
 from flexapod.verification.paper.claims_readings import SAYS
 from flexapod.verification.paper.clamped_legs import SLOPE, travel_share
-from flexapod.verification.paper.rows import ClaimFinding, variant
+from flexapod.verification.paper.rows import variant
 
 FAR = 25.0  # half-angles up to here are one row [deg]
 NO_ANGLES = f"{SAYS}; no joint angles are given"
 
 
 @variant("Time of the roll", f"{SAYS}; no time is given", "assumptions", "robot")
-def _duration(data: Dataset, robot: Dataset) -> ClaimFinding:
+def _duration(data: Dataset, robot: Dataset) -> Claim:
     durations, rows = data.duration.values, data.deviation_by_duration.values
     parts = [f"{duration:g} s: {transverse_words(peak)}" for duration, peak in zip(durations, rows, strict=True)]
     sag = abs(float(robot.com_deviation.sel(axis="z")[0]))
     fast, slow = (text(float(rows[i, 2]) - sag, "m", 2) for i in (durations.argmin(), durations.argmax()))
-    return ClaimFinding(
+    return Claim(
         ours="; ".join(parts),
         verdict=size_verdict(*rows),
         reason=f"At rest it sags by {text(sag, 'm')} in z; to that the motion adds {fast} in {durations.min():g} s and "
@@ -49,14 +50,14 @@ def _duration(data: Dataset, robot: Dataset) -> ClaimFinding:
 
 
 @variant("Half-angles", NO_ANGLES, "half-angles", "half-angles-radii", expected=MISSES)
-def _half_angles(diameters: Dataset, radii: Dataset) -> ClaimFinding:
+def _half_angles(diameters: Dataset, radii: Dataset) -> Claim:
     own, other = (data.isel(half_angle=data.half_angle.values <= FAR) for data in (diameters, radii))
     angles, rows = own.half_angle.values, own.deviation_peak.values
     forces = np.fmax(own.force_peak, other.force_peak).values / _weight(own)
     each = "; ".join(f"{angle:g} deg: {transverse_words(peak)}" for angle, peak in zip(angles, rows, strict=True))
     most = transverse_words(other.deviation_peak.max("half_angle").values)
     to = f" to {angles[-1]:g}" if len(angles) > 1 else ""
-    return ClaimFinding(
+    return Claim(
         where=f"Half-angles {angles[0]:g}{to} deg",
         ours=f"Diameters: {each}. Radii: at most {most}",
         verdict=size_verdict(*rows, *other.deviation_peak.values),
@@ -72,17 +73,17 @@ def _weight(data: Dataset) -> float:
 
 
 @variant("Half-angles", NO_ANGLES, "half-angles", "half-angles-radii")
-def _beyond(diameters: Dataset, radii: Dataset) -> list[ClaimFinding]:
+def _beyond(diameters: Dataset, radii: Dataset) -> list[Claim]:
     angles = diameters.half_angle.values
     pairs = ((angle, *(data.sel(half_angle=angle) for data in (diameters, radii))) for angle in angles[angles > FAR])
     return [_half_angle(*pair) for pair in pairs]
 
 
-def _half_angle(angle: float, own: Dataset, other: Dataset) -> ClaimFinding:
+def _half_angle(angle: float, own: Dataset, other: Dataset) -> Claim:
     sound = [data.deviation_peak.values for data in (own, other) if str(data.verdict.item()) == ""]
     force = float(np.fmax(own.force_peak, other.force_peak)) / _weight(own)
     order = " y exceeds z, in the paper z is twice y." if sound and all(y > z for _, y, z in sound) else ""
-    return ClaimFinding(
+    return Claim(
         where=f"Half-angles {angle:g} deg",
         ours=f"Diameters: {_words(own)}. Radii: {_words(other)}",
         verdict=size_verdict(*sound) if sound else BREAKS,
@@ -110,10 +111,10 @@ def _near(force: float) -> str:
 @variant(
     "Start with a jump", f"{SAYS}; no law is given, it might start and stop at full rate", "jump", "jump-radii", "robot"
 )
-def _jump(diameters: Dataset, radii: Dataset, smooth: Dataset) -> ClaimFinding:
+def _jump(diameters: Dataset, radii: Dataset, smooth: Dataset) -> Claim:
     impact = text(float(diameters.attrs["impact_energy"]), "J")
     force, usual = (float(np.abs(data.actuator_force).max()) for data in (diameters, smooth))
-    return ClaimFinding(
+    return Claim(
         ours=f"Diameters: {deviation_words(diameters, 2)}. Radii: {deviation_words(radii, 2)}",
         verdict=size_verdict(largest_deviation(diameters), largest_deviation(radii)),
         reason=f"The impact of the first instant puts {impact} into the legs; driven on, they ring with a strain "
@@ -123,8 +124,8 @@ def _jump(diameters: Dataset, radii: Dataset, smooth: Dataset) -> ClaimFinding:
 
 
 @variant("Jump, half-angles 27 deg", SAYS, "jump-27")
-def _jump_near(data: Dataset) -> ClaimFinding:
-    return ClaimFinding(
+def _jump_near(data: Dataset) -> Claim:
+    return Claim(
         ours=f"Diameters: {deviation_words(data, 2)}",
         verdict=size_verdict(largest_deviation(data)),
         reason="The same jump in a robot that is nearly singular.",
@@ -132,11 +133,11 @@ def _jump_near(data: Dataset) -> ClaimFinding:
 
 
 @variant("What would give it: roll", f"{SAYS}, 6 %", "robot", expected=REACHES)
-def _roll_error(robot: Dataset) -> ClaimFinding:
+def _roll_error(robot: Dataset) -> Claim:
     roll, arm = roll_and_arm(robot)
     error = roll_error(arm)
     off = [0.0, *(float(arm * f(roll) * error) for f in (np.sin, np.cos))]
-    return ClaimFinding(
+    return Claim(
         ours=f"A roll that is off by {np.rad2deg(error):.2f} deg: {transverse_words(off)}",
         verdict=size_verdict(off),
         reason=f"{100 * error / roll:.2g} % of the roll. It fits by construction and shows nothing: this error, d = "
@@ -145,13 +146,13 @@ def _roll_error(robot: Dataset) -> ClaimFinding:
 
 
 @variant("What would give it: legs", SAYS, "assumptions", "robot")
-def _length_errors(data: Dataset, robot: Dataset) -> ClaimFinding:
+def _length_errors(data: Dataset, robot: Dataset) -> Claim:
     low, high = float(data.length_error.min()), float(data.length_error.max())
     most = max(-low, high)
     needed = robot_study(robot).robot.legs[0].piston.EA / ELASTIC_LENGTH * most
     given, wave = float(np.abs(robot.actuator_force).max()), _half_wave(most)
     tips = float(np.abs(robot.tip_deflection).max())
-    return ClaimFinding(
+    return Claim(
         ours=f"Legs that are off by {1e3 * low:.1f} to {1e3 * high:+.1f} mm",
         verdict=choose_verdict(is_similar(given, needed) or is_similar(tips, wave), best=REACHES, worst=MISSES),
         reason=f"To stretch by so much, {1e3 * ELASTIC_LENGTH:.0f} mm of piston need {text(needed, 'N')}, the drive "
@@ -166,10 +167,10 @@ def _half_wave(shortening: float) -> float:
 
 
 @variant("What would give it: drives", SAYS, "assumptions")
-def _drives(data: Dataset) -> ClaimFinding:
+def _drives(data: Dataset) -> Claim:
     peaks, (soft, real) = data.deviation_by_drive.values, data.drive_stiffness.values
     sag = float(data.sag_by_drive.values[0, 2])
-    return ClaimFinding(
+    return Claim(
         ours=f"Drives of {text(soft, 'N/m')}: {transverse_words(peaks[0])}",
         verdict=size_verdict(peaks[0]),
         reason=f"{100 * sag / peaks[0, 2]:.0f} % of z is sag. Ball screws have {text(real, 'N/m')} and more: "
@@ -250,10 +251,10 @@ def _off(name: str, row: Dataset) -> str:
 
 
 @variant("What would give it: joints", SAYS_MORE, "welded", expected=REACHES)
-def _six(found: Dataset) -> ClaimFinding:
+def _six(found: Dataset) -> Claim:
     rows = _nearest_by_reading(found, alone=False)
     *_, best = rows.values()
-    return ClaimFinding(
+    return Claim(
         ours="Legs fixed to the platform, at rest. "
         + ". ".join(_clamped_words(n.capitalize(), r) for n, r in rows.items()),
         verdict=size_verdict(*(row.deviation.values for row in rows.values())),
@@ -265,11 +266,11 @@ def _six(found: Dataset) -> ClaimFinding:
 
 
 @variant("What would give it: one joint", SAYS_MORE, "welded")
-def _one(found: Dataset) -> ClaimFinding:
+def _one(found: Dataset) -> Claim:
     rows = _nearest_by_reading(found, alone=True)
     verdict = size_verdict(*(row.deviation.values for row in rows.values()))
     words = ". ".join(_clamped_words(name.removesuffix("-one").capitalize(), row) for name, row in rows.items())
-    return ClaimFinding(
+    return Claim(
         ours=f"Leg 1 alone fixed to the platform. {words}",
         verdict=verdict,
         reason="One leg that is held at the platform pushes it aside: y is larger than z but for large rolls and arms. "

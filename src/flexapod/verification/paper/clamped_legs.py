@@ -6,7 +6,8 @@ figures.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -14,9 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from xarray import Dataset
 
-from flexapod import kinematics, model
-from flexapod.analysis.results.attributes import attributes
-from flexapod.analysis.results.time_history import Share
+from flexapod import model
 from flexapod.common.arrays import Array
 from flexapod.common.quantities import number
 from flexapod.mechanics.leg.layout import Shapes
@@ -24,54 +23,35 @@ from flexapod.output.figures.style import COLUMN, SMALL, figure, house_style, re
 from flexapod.output.scene.style import AXIS_COLORS
 from flexapod.solve.system import State
 from flexapod.verification.paper.claim import PAPER_DEVIATION
-from flexapod.verification.paper.readings import robot_preset
-from flexapod.verification.paper.trials import extend_strokes, locked_equilibrium, system_of
+from flexapod.verification.paper.equilibrium_path import locked_equilibrium, system_of
+from flexapod.verification.paper.trials import nothing
 
-#: Robots of the map: preset and how many legs are welded to the platform.
-READINGS = {
-    "diameters": ("paper-robot", 6),
-    "radii": ("paper-robot-radii", 6),
-    "diameters-one": ("paper-robot", 1),
-    "radii-one": ("paper-robot-radii", 1),
-}
-ROLLS = tuple(map(float, range(31)))  # deg; each equilibrium is sought from the one before
-ARMS = (0.2, 0.3, 0.373, 0.45, 0.6)  # m, of the centre of mass from the platform's centre
-SHAPES = 6  # per plane: the static shapes of a force and of a moment at the tip, and those of thrust
 SHARE = 0.06  # of the travel: the third figure that the paper prints
 SLOPE = 0.1  # of the tip: beyond, the bending of the legs is larger than the theory is made for
 STATIONS = np.linspace(0.0, 1.0, 41)
-COLUMNS = {
-    "deviation": "m",
-    "off_axis": "m",
-    "slope": "rad",
-    "shortening": "m",
-    "leg_force": "N",
-    "stress": "Pa",
-}
 
 
-def with_clamped_legs(study: model.Study, count: int = 6) -> model.Study:
-    """Study with the first ``count`` legs clamped to the platform in place of their ball joints."""
-    robot = study.robot
-    legs = tuple(leg.replace(chain="UPF" if i < count else "UPS") for i, leg in enumerate(robot.legs))
-    kind = "6-UPF" if count == 6 else f"{count}-UPF+{6 - count}-UPS"
-    return study.replace(robot=robot.replace(type=kind, legs=legs))
+def equilibria_at_rolls(
+    rolls: Sequence[float], study: model.Study, columns: Sequence[str], _: float | None
+) -> dict[str, Array]:
+    """Columns by name of the equilibrium at each roll [deg], from home on.
 
-
-def _walk(study: model.Study, rolls: Sequence[float]) -> Iterator[dict[str, object]]:
-    """Values of the equilibrium at each roll [deg], from home on; ends where none continues the one before."""
-    system, state = system_of(study), None
-    for roll in rolls:
-        R = kinematics.rotation_matrix(np.array([[np.deg2rad(roll), 0.0, 0.0]]))[0]
-        path = kinematics.Poses.at_rest(kinematics.home_pose(study.robot).position[0], R)
-        found = locked_equilibrium(study, system, path, state)
+    `deviation` (roll, axis) [m] of the centre of mass at rest; `off_axis` [m], the farthest tip from its cylinder's
+    axis, and its `slope`; `shortening` [m] of a leg by bending; `leg_force` [N]; `stress` [Pa] of a linear elastic
+    piston. NaN beyond the last equilibrium that continues the one before.
+    """
+    values, system, state = nothing(columns, roll=len(rolls)), system_of(study), None
+    for k, roll in enumerate(rolls):
+        found, sag = locked_equilibrium(study, system, [0.0, 0.0, 0.0, np.deg2rad(roll), 0.0, 0.0], state)
         if not found.found:
-            return
+            break
         state = found.state
-        yield _values(study.robot, system.kernel.shapes, path, state)
+        for name, value in _values(study.robot, system.kernel.shapes, sag, state).items():
+            values[name][k] = value
+    return values
 
 
-def _values(robot: model.Robot, shapes: Shapes, path: kinematics.Poses, x: State) -> dict[str, object]:
+def _values(robot: model.Robot, shapes: Shapes, sag: Array, x: State) -> dict[str, Any]:
     first = shapes.index("a")
     lateral = x.q[:, first : first + 2 * shapes.beam.a.count].reshape(len(x.q), 2, -1)
     free = x.q[:, shapes.index("l")] - np.array([leg.cylinder.mouth for leg in robot.legs])
@@ -80,7 +60,7 @@ def _values(robot: model.Robot, shapes: Shapes, path: kinematics.Poses, x: State
     curvature = lateral @ shapes.beam.a.values(STATIONS, 2) / free[:, None, None] ** 2
     thrust = np.abs(x.drive[:, 0])
     return {
-        "deviation": np.abs(x.pose[:3] - path.point(robot.payload.com)[0][0]),
+        "deviation": np.abs(sag),
         "off_axis": np.linalg.norm(lateral @ shapes.beam.a.tip, axis=1).max(),
         "slope": np.linalg.norm(slope, axis=1).max(),
         "shortening": short.max(),
@@ -96,50 +76,6 @@ def _stress(robot: model.Robot, bent: Array, thrust: Array) -> float:
         for p, k, f in zip((leg.piston for leg in robot.legs), bent, thrust, strict=True)
     ]
     return float(max(stress))
-
-
-def clamped_legs_map(report: Share, arms: Sequence[float] = ARMS, rolls: Sequence[float] = ROLLS) -> Dataset:
-    """Deviation with clamped legs over the roll, the place of the centre of mass, and the circles' readings.
-
-    Returns
-    -------
-    xarray.Dataset
-        Over `reading`, `arm` [m], `roll` [deg]: `deviation` (axis) [m] of the centre of mass at rest; `off_axis` [m],
-        the farthest tip from its cylinder's axis, and its `slope`; `shortening` [m] of a leg by bending; `leg_force`
-        [N]; `stress` [Pa] of a linear elastic piston. NaN beyond the last equilibrium.
-    """
-    shape = (len(READINGS), len(arms), len(rolls))
-    values = {name: np.full((*shape, 3) if name == "deviation" else shape, np.nan) for name in COLUMNS}
-    for i, (preset, count) in enumerate(READINGS.values()):
-        for j, arm in enumerate(arms):
-            study = model.override(
-                with_clamped_legs(with_arm(extend_strokes(robot_preset(preset)), arm), count), modes=SHAPES
-            )
-            for k, row in enumerate(_walk(study, rolls)):
-                for name, value in row.items():
-                    values[name][i, j, k] = value
-            report((i * len(arms) + j + 1) / (len(READINGS) * len(arms)))
-    dims = ("reading", "arm", "roll")
-    return Dataset(
-        {
-            name: ((*dims, "axis") if name == "deviation" else dims, values[name], {"units": unit})
-            for name, unit in COLUMNS.items()
-        },
-        {
-            "reading": list(READINGS),
-            "arm": ("arm", list(arms), {"units": "m"}),
-            "roll": ("roll", list(rolls), {"units": "deg"}),
-            "axis": list("xyz"),
-        },
-        attributes(robot_preset("paper-robot")),
-    )
-
-
-def with_arm(study: model.Study, arm: float) -> model.Study:
-    """Study with centre of mass and tool ``arm`` [m] beside the platform's centre, in y."""
-    beside = [0.0, arm, 0.0]
-    payload = study.robot.payload.replace(com=beside, tool=beside)
-    return study.replace(robot=study.robot.replace(payload=payload))
 
 
 def travel_share(found: Dataset) -> Array:
@@ -164,7 +100,7 @@ def clamped_legs_figure(found: xr.Dataset) -> Figure:
     Parameters
     ----------
     found : xarray.Dataset
-        From `with_clamped_legs.clamped_legs_map`.
+        Of the table `variants.clamped_legs`.
     """
     names = [str(name) for name in found.reading.values]
     fig = figure(2 * COLUMN, 7.0)

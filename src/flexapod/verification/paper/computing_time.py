@@ -13,6 +13,7 @@ from xarray import Dataset
 
 from flexapod import model
 from flexapod.analysis.results.attributes import attributes
+from flexapod.analysis.results.time_history import Share
 from flexapod.common.arrays import Array
 from flexapod.kinematics import dynamics
 from flexapod.kinematics.inverse import JointTurn
@@ -76,7 +77,7 @@ def _plain(number: CountedNumber | float) -> float:
     return number.value if isinstance(number, CountedNumber) else number
 
 
-def inverse_dynamics_cost(study: model.Study) -> Dataset:
+def inverse_dynamics_cost(_: Share) -> Dataset:
     """Operations of one rigid leg's inverse dynamics; they are the same for every robot of this kind.
 
     Returns
@@ -88,7 +89,7 @@ def inverse_dynamics_cost(study: model.Study) -> Dataset:
     _newton_euler_leg(lambda *shape: _numbers(shape, tally))
     lagrange = sum(operations(lagrange_leg().build()).values())
     values = ("formulation", [tally[0], lagrange], {"units": "1"})
-    return Dataset({"operations": values}, {"formulation": list(FORMULATIONS)}, attributes(study))
+    return Dataset({"operations": values}, {"formulation": list(FORMULATIONS)}, attributes(model.preset("paper-robot")))
 
 
 def _newton_euler_leg(numbers: Callable[..., Array]) -> tuple[Array, ...]:

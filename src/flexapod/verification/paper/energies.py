@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from flexapod import model
 from flexapod.common.arrays import Array
 from flexapod.mechanics import shapes
 from flexapod.mechanics.symbolic.functions import Lagrangian, NamedFunction, inverse_dynamics
@@ -24,7 +25,6 @@ from flexapod.mechanics.symbolic.vocabulary import (
     vertcat,
     zeros,
 )
-from flexapod.verification.paper.readings import actuator_preset
 
 SHAPES = 3  # of the paper
 TIP_MASS = 0.5  # kg, ours: with Table 2's beam alone the lines about the tip mass would cost nothing
@@ -132,7 +132,7 @@ def matrices(change: Change, gravity: float) -> Any:
 
     A function of casadi's own, from L, L', theta, theta'.
     """
-    beam, basis = actuator_preset().actuator, shapes.lateral_basis("clamped-free", SHAPES)
+    beam, basis = model.preset("paper-actuator").actuator, shapes.lateral_basis("clamped-free", SHAPES)
     q, v, a_ddot = symbol("q", SHAPES + 2), symbol("v", SHAPES + 2), symbol("a_ddot", SHAPES)
     p = BeamState(a=q[:SHAPES], length=q[SHAPES], angle=q[SHAPES + 1], a_dot=v[:SHAPES], length_dot=v[SHAPES],
               angle_dot=v[SHAPES + 1], basis=basis, rho=beam.rhoA, EI=beam.EI, gravity=gravity)  # fmt: skip

@@ -23,6 +23,7 @@ from flexapod.common.quantities import scale, text
 from flexapod.verification.engines.engine import EXUDYN
 from flexapod.verification.engines.exudyn_integration import Integration, extrapolate_first_order
 from flexapod.verification.engines.exudyn_robot import MESHES, STEP, RobotResult, simulate_robot
+from flexapod.verification.robots import with_legs
 
 NO_GUIDE = 0.0  # m; of rigid pistons
 RIGID_TOLERANCE = 1e-8  # N; Newton's method
@@ -53,8 +54,7 @@ def check_engine() -> None:
 
 def without_damping(study: model.Study) -> model.Study:
     """Study with undamped pistons: Exudyn's cables have no modal damping."""
-    legs = tuple(leg.replace(damping=0.0) for leg in study.robot.legs)
-    return study.replace(robot=study.robot.replace(legs=legs))
+    return study.replace(robot=with_legs(study.robot, damping=0.0))
 
 
 def run_undamped(study: model.Study, report: Share) -> Dataset:

@@ -5,7 +5,7 @@ The actuator is drawn in a rigid hub, beside the leg of the robot that it stands
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -25,7 +25,6 @@ from flexapod.output.scene.style import LEG_COLORS
 from flexapod.verification.paper import clamped_legs, engine_figures, outlook_figures, printed_figures
 from flexapod.verification.paper.claim import HEIGHT, PAPER_DEVIATION, WIDTH, force_gaps
 from flexapod.verification.paper.claims_actuator import LINEAR
-from flexapod.verification.paper.readings import actuator_preset, robot_preset
 from flexapod.verification.paper.study import PaperStudy
 
 _Plan = tuple[str, str, str, Callable[[], Figure]]
@@ -34,14 +33,16 @@ OUTLOOK = "What the paper asks for next"
 ENGINE = "Independent engine"
 
 
-def paper_figures(result: PaperStudy, folder: Path, progress: Report | None = None) -> dict[str, list[StoredFigure]]:
+def paper_figures(
+    result: PaperStudy, folder: Path, formats: Sequence[str], progress: Report | None = None
+) -> dict[str, list[StoredFigure]]:
     """Draw all figures of the paper's study, by group."""
     plans = [*_actuator(result), *_robot(result), *_outlook(result), *_variants(result), *_engine(result)]
     drawn: dict[str, list[StoredFigure]] = {}
     for i, (group, name, title, make) in enumerate(plans):
         if progress is not None:
             progress(f"figure {i + 1} of {len(plans)}", i / len(plans))
-        drawn.setdefault(group, []).append(store_figure(make(), title, folder / name))
+        drawn.setdefault(group, []).append(store_figure(make(), title, folder / name, formats))
     if progress is not None:
         progress("report", 1.0)
     return drawn
@@ -56,7 +57,7 @@ def _actuator(result: PaperStudy) -> Iterator[_Plan]:
         "behind; its deflection u(x, t) in the axes x, y of the hub; a tip body (m_e, J)"
     )
     yield ACTUATOR, "actuator-symbols", title, printed_figures.actuator_symbols
-    beam, robot = actuator_preset().actuator, robot_preset("paper-robot").robot
+    beam, robot = model.preset("paper-actuator").actuator, model.preset("paper-robot").robot
     title = (
         "Fig. 2: the actuator as a solid beam that slides through a rigid hub (A; 0.5 m of hub are ours), and the leg "
         "of the robot that it stands for (B; the cylinder is ours), to scale but for the beam's depth"

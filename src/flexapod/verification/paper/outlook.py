@@ -6,8 +6,9 @@ Values that the paper does not give are ours, here as constants.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Literal
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
 
 import numpy as np
 from xarray import Dataset
@@ -21,15 +22,16 @@ from flexapod.analysis.results.time_history import Share
 from flexapod.analysis.simulation import simulate
 from flexapod.commissioning.feedforward import compensate, shape
 from flexapod.control.controllers import IFF
-from flexapod.verification.paper.claim import axis_motion, residual_vibration
-from flexapod.verification.paper.readings import robot_preset, with_legs
+from flexapod.verification.paper.claim import axis_motion
+from flexapod.verification.paper.trials import trial_columns
+from flexapod.verification.paper.variants import Variant, VariantTable, compare
 
-#: Words for commands that make up for more and more, and the orders of `compensate` that do.
-COMMANDS: dict[str, Literal[0, 2, "stable-inversion"] | None] = {
-    "as it is": None,
-    "weight": 0,
-    "weight and inertia": 2,
-    "weight, inertia and modes": "stable-inversion",
+#: Commands that make up for more and more.
+COMMANDS = {
+    "as it is": Variant(),
+    "weight": Variant(change=partial(compensate, order=0)),
+    "weight and inertia": Variant(change=partial(compensate, order=2)),
+    "weight, inertia and modes": Variant(change=partial(compensate, order="stable-inversion")),
 }
 SHAPER, SHAPED_MODES = "zv", (1, 6)  # of the payload and of the legs, from the lowest on
 MODES = 3  # of the payload, below the first bending of the legs
@@ -39,31 +41,51 @@ DRIVE_DAMPING = 1e3  # N s/m, of drives as stiff as the pistons: a thousandth of
 BLOW, BLOW_START, BLOW_TIME = 100.0, 0.05, 0.01  # N down on the payload, half a sine from an instant on [s]
 RING = 0.6  # s
 HZ = np.geomspace(2.0, 300.0, 600)
-FRICTION = model.JointFriction(mu=0.1, diameter=0.04)  # plain joints: 0.02 to 0.25
-TOLERANCES = model.Tolerances(
-    base_joints=model.LengthSpread(sigma=20e-6),
-    platform_joints=model.LengthSpread(sigma=20e-6),
-    leg_offset=model.LengthSpread(sigma=10e-6),
-    EA=model.RatioSpread(sigma=0.02),
-    EI=model.RatioSpread(sigma=0.02),
-    density=model.RatioSpread(sigma=0.01),
-    bow=model.LengthSpread(sigma=0.3e-3),
-)
+FRICTION = {"mu": 0.1, "diameter": 0.04}  # plain joints: 0.02 to 0.25
+TOLERANCES = {
+    "base_joints": 20e-6, "platform_joints": 20e-6, "leg_offset": 10e-6,
+    "EA": 0.02, "EI": 0.02, "density": 0.01, "bow": 0.3e-3,
+}  # fmt: skip
 MATERIAL = ("EA", "EI", "density", "bow")  # of these: what is of the pistons themselves
 DRAWS = 1000
 FLOOR = "VC-C"
-_METRE, _SECOND = {"units": "m"}, {"units": "s"}
+RUBBING = {f"leg.{end}_joint.friction": FRICTION for end in ("base", "platform")}
 
 
-def _roll() -> model.Study:
-    return robot_preset("paper-robot")
+def _know_no_friction(study: model.Study) -> model.Study:
+    """Study with commands ahead of time of the robot with ideal joints."""
+    return study.replace(motion=compensate(model.preset("paper-robot"), 2).motion)
 
 
-def _stacked(
-    rows: Mapping[str, np.ndarray], dim: str, *more: str
-) -> tuple[tuple[str, ...], np.ndarray, dict[str, str]]:
-    """Lengths of several cases as a variable."""
-    return (dim, *more), np.stack(list(rows.values())), _METRE
+JOINTS = {
+    "ideal": Variant(),
+    "friction": Variant(values=RUBBING),
+    "friction, commands ahead": Variant(values=RUBBING, change=_know_no_friction),
+}
+#: With tolerances, friction in joints and a vibrating floor.
+AS_MADE = Variant(values={**RUBBING, "tolerances": TOLERANCES, "disturbance.floor": FLOOR})
+_SECOND = {"units": "s"}
+
+
+def _compare_paths(along: str, variants: Mapping[str, Variant], columns: Sequence[str], report: Share) -> Dataset:
+    """Table of variants by the way of the payload beside the path that the rigid robot takes by the preset's motion."""
+    own = simulate(model.preset("paper-robot"))
+
+    def beside_path(study: model.Study, _: Sequence[str], __: float | None) -> dict[str, Any]:
+        data = own if study.source_text == own.attrs["study"] else simulate(study)
+        miss = data.com_position.values - own.com_position_rigid.values
+        lost = float(data.energy_dissipated[-1])
+        return {"miss": miss, "miss_peak": np.abs(miss).max(axis=0), "lost": lost}
+
+    table = VariantTable(
+        along={along: list(variants)},
+        variants=list(variants.values()),
+        columns=columns,
+        shows=beside_path,
+        step=None,
+        coords={"time": ("time", own.time.values, _SECOND)},
+    )
+    return compare(table, report)
 
 
 def commands_ahead(report: Share) -> Dataset:
@@ -75,19 +97,7 @@ def commands_ahead(report: Share) -> Dataset:
         Over `command`, as in `COMMANDS`: `miss` (command, time, axis) [m], of the centre of mass beside the path that
         the rigid robot would take by the study's own motion; `miss_peak` (command, axis).
     """
-    study, rows = _roll(), {}
-    own = simulate(study)
-    for name, order in COMMANDS.items():
-        data = own if order is None else simulate(compensate(study, order))  # type: ignore[arg-type]
-        rows[name] = data.com_position.values - own.com_position_rigid.values
-        report(len(rows) / len(COMMANDS))
-    peaks = {name: np.abs(miss).max(axis=0) for name, miss in rows.items()}
-    values = {
-        "miss": _stacked(rows, "command", "time", "axis"),
-        "miss_peak": _stacked(peaks, "command", "axis"),
-    }
-    coords = {"command": list(rows), "time": ("time", own.time.values, _SECOND), "axis": list("xyz")}
-    return Dataset(values, coords, attributes(study))
+    return _compare_paths("command", COMMANDS, ("miss", "miss_peak"), report)
 
 
 def shaped_roll(report: Share) -> Dataset:
@@ -100,33 +110,45 @@ def shaped_roll(report: Share) -> Dataset:
         its mean; `payload_vibration` and `tip_vibration` (command) [m], from peak to peak, the largest along one
         direction; `longer` (command) [s], what the roll takes more.
     """
-    study, rows, columns = _roll(), {}, {name: [] for name in ("payload_vibration", "tip_vibration", "longer")}
-    hold, own = axis_motion(study).hold, axis_motion(study).end_time
-    time = np.arange(0.0, hold - 1e-9, study.simulation.output_step or 1e-3)
-    for count in (0, *SHAPED_MODES):
-        quiet = shape(study, SHAPER, modes=count) if count else study
+    study = model.preset("paper-robot")
+    own, counts = axis_motion(study), (0, *SHAPED_MODES)
+    time = np.arange(0.0, own.hold - 1e-9, study.simulation.output_step or 1e-3)
+
+    def after_roll(quiet: model.Study, columns: Sequence[str], _: float | None) -> dict[str, Any]:
         data = simulate(quiet)
         end = motion_end(data) or 0.0
         off = np.stack([np.interp(end + time, data.time, data.com_deviation[:, i]) for i in range(3)], axis=1)
-        rows[f"shaped for {count} mode{'s' * (count > 1)}" if count else "as it is"] = off - off.mean(axis=0)
-        columns["payload_vibration"].append(residual_vibration(data, "com_deviation"))
-        columns["tip_vibration"].append(residual_vibration(data, "tip_deflection"))
-        columns["longer"].append(quiet.motion.end_time - own)
-        report(len(rows) / (1 + len(SHAPED_MODES)))
-    values = {"vibration": _stacked(rows, "command", "time", "axis")} | {
-        name: ("command", found, _SECOND if name == "longer" else _METRE) for name, found in columns.items()
-    }
-    coords = {"command": list(rows), "time": ("time", time, _SECOND), "axis": list("xyz")}
-    return Dataset(values, coords, attributes(study))
+        own_columns = {"vibration": off - off.mean(axis=0), "longer": quiet.motion.end_time - own.end_time}
+        return trial_columns(data, columns) | own_columns
+
+    table = VariantTable(
+        along={"command": [f"shaped for {n} mode{'s' * (n > 1)}" if n else "as it is" for n in counts]},
+        variants=[Variant(change=partial(shape, kind=SHAPER, modes=n) if n else None) for n in counts],
+        columns=("vibration", "payload_vibration", "tip_vibration", "longer"),
+        shows=after_roll,
+        step=None,
+        coords={"time": ("time", time, _SECOND)},
+    )
+    return compare(table, report)
 
 
-def with_drives(study: model.Study) -> model.Study:
+def joint_friction(report: Share) -> Dataset:
+    """Roll with ideal joints, with friction in joints, and with friction and feedforward without knowledge of it.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `joints`: `miss` (joints, time, axis) [m] of the centre of mass beside its rigid path, `lost` (joints) [J]
+        in damping and friction.
+    """
+    return _compare_paths("joints", JOINTS, ("miss", "lost"), report)
+
+
+def _at_rest() -> model.Study:
     """Study at rest on drives as compliant as its pistons: prescribed ones feel nothing."""
-
-    def change_leg(leg: model.Leg) -> model.Leg:
-        return leg.replace(drive=model.ServoDrive(stiffness=leg.piston.EA / leg.piston.length, damping=DRIVE_DAMPING))
-
-    return with_legs(study, change_leg).replace(motion=axis_motion(study).replace(amplitude=0.0))
+    piston = model.preset("paper-robot").robot.legs[0].piston
+    drive = {"type": "servo", "stiffness": piston.EA / piston.length, "damping": DRIVE_DAMPING}
+    return Variant(values={"leg.drive": drive, "motion.amplitude": 0}).study
 
 
 def _struck(study: model.Study) -> model.Study:
@@ -148,7 +170,7 @@ def force_feedback(report: Share) -> Dataset:
         sampled controller; of the linear model `compliance` (loop, frequency) [m/N], the size of the payload's
         upward motion by an upward force, and of its lowest modes `mode_frequency` [Hz], `damping_ratio` (loop, mode).
     """
-    study, law = with_drives(_roll()), IFF(GAIN, high_pass=CORNER)
+    study, law = _at_rest(), IFF(GAIN, high_pass=CORNER)
     plant = linearize(study, inputs=["drive", "wrench"], outputs=["tool", "force-sensor:drive"])
     loops = {"open": plant, "force feedback": plant.close(law)}
     report(0.3)
@@ -164,7 +186,7 @@ def force_feedback(report: Share) -> Dataset:
         report(0.3 + 0.35 * len(rows))
     frequency, damping = np.transpose(lowest, (1, 0, 2))
     values = {
-        "ringing": _stacked(rows, "loop", "time", "axis"),
+        "ringing": (("loop", "time", "axis"), np.stack(list(rows.values())), {"units": "m"}),
         "compliance": (("loop", "frequency"), np.array(sizes), {"units": "m N-1"}),
         "mode_frequency": (("loop", "mode"), frequency, {"units": "Hz"}),
         "damping_ratio": (("loop", "mode"), damping, {"units": "1"}),
@@ -176,53 +198,11 @@ def force_feedback(report: Share) -> Dataset:
     return Dataset(values, coords, attributes(study))
 
 
-def with_friction(study: model.Study) -> model.Study:
-    """Study with plain joints that have friction at both ends of its legs."""
-
-    def change_leg(leg: model.Leg) -> model.Leg:
-        base, platform = (joint.replace(friction=FRICTION) for joint in (leg.base_joint, leg.platform_joint))
-        return leg.replace(base_joint=base, platform_joint=platform)
-
-    return with_legs(study, change_leg)
-
-
-def joint_friction(report: Share) -> Dataset:
-    """Roll with ideal joints, with friction in joints, and with friction and feedforward without knowledge of it.
-
-    Returns
-    -------
-    xarray.Dataset
-        Over `joints`: `miss` (joints, time, axis) [m] of the centre of mass beside its rigid path, `lost` (joints) [J]
-        in damping and friction.
-    """
-    study = _roll()
-    rubbing, ahead = with_friction(study), compensate(study, 2)
-    cases = {"ideal": study, "friction": rubbing, "friction, commands ahead": rubbing.replace(motion=ahead.motion)}
-    rows, lost, own = {}, [], simulate(study)
-    for name, case in cases.items():
-        data = simulate(case) if rows else own
-        rows[name] = data.com_position.values - own.com_position_rigid.values
-        lost.append(float(data.energy_dissipated[-1]))
-        report(len(rows) / len(cases))
-    values = {"miss": _stacked(rows, "joints", "time", "axis"), "lost": ("joints", lost, {"units": "J"})}
-    coords = {"joints": list(rows), "time": ("time", own.time.values, _SECOND), "axis": list("xyz")}
-    return Dataset(values, coords, attributes(rubbing))
-
-
-def _as_made() -> model.Study:
-    """Study with tolerances, friction in joints and a vibrating floor."""
-    study = with_friction(_roll())
-    return study.replace(
-        robot=study.robot.replace(tolerances=TOLERANCES),
-        disturbance=model.Disturbance(floor=model.Floor.by_curve(FLOOR)),
-    )
-
-
 def tolerances(_: Share) -> Dataset:
     """Spread of the payload's place at home by tolerances, to first order and of random draws (`accuracy`)."""
-    return accuracy(_as_made(), draws=DRAWS, seed=1)
+    return accuracy(AS_MADE.study, draws=DRAWS, seed=1)
 
 
 def error_budget(_: Share) -> Dataset:
     """Error budget at home of the robot with tolerances, friction and floor vibration (`budget`)."""
-    return budget(_as_made())
+    return budget(AS_MADE.study)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Sequence
 from pathlib import Path
 
 from xarray import Dataset
@@ -20,7 +21,11 @@ from flexapod.verification.paper.study import replicate as compute
 
 
 def replicate(
-    folder: str | Path, *, engines: bool = False, figures: bool = True, progress: Report | None = None
+    folder: str | Path,
+    *,
+    engines: bool = False,
+    formats: Sequence[str] = ("png",),
+    progress: Report | None = None,
 ) -> PaperStudy:
     """Compute the paper's whole study and write it into a folder.
 
@@ -33,8 +38,8 @@ def replicate(
         Made if needed.
     engines : bool
         Also with an independent engine, Exudyn; if it fails, the result says so and the rest is written.
-    figures : bool
-        Whether to draw them; the report is written in either case.
+    formats : sequence of str
+        Of the figures: of png, svg, pdf, none for no figures; the report is written in either case.
     progress : callable, optional
         Called with what is being done, in words, and the share of the whole that is done (0 to 1).
 
@@ -58,7 +63,7 @@ def replicate(
         progress=_upto(0.75, progress),
         keep=lambda name, data: _store(data, folder / "data" / name),
     )
-    groups = paper_figures(result, folder / "figures", _from(0.75, progress)) if figures else {}
+    groups = paper_figures(result, folder / "figures", formats, _from(0.75, progress)) if formats else {}
     table = claims(result)
     write_text(folder / "claims.md", claims_markdown(table))
     write_text(folder / "report.html", paper_page(result, table, groups))

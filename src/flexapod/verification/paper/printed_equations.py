@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from xarray import Dataset
 
+from flexapod import model
 from flexapod.analysis.results.attributes import attributes
 from flexapod.analysis.results.time_history import Share
 from flexapod.common.arrays import Array
@@ -28,7 +29,6 @@ from flexapod.verification.paper.energies import (
     quadratic_form,
     weighted_sum,
 )
-from flexapod.verification.paper.readings import actuator_preset
 
 GRAVITY = 9.81  # m/s^2, in the cases that are upright
 STEP, OUTPUT, DURATION = 5e-4, 1e-2, 10.0  # s; RK4 errs by (omega h)^4 / 120 a radian: 2e-6 for 40 Hz
@@ -108,7 +108,7 @@ def tip_paths(cases: Sequence[tuple[PrintedLine | None, bool]]) -> Array:
     cases : sequence of (PrintedLine or None, bool)
         The line that is as printed, none where all are as derived, and whether gravity acts in the plane of motion.
     """
-    study, basis = actuator_preset(), shapes.lateral_basis("clamped-free", SHAPES)
+    study, basis = model.preset("paper-actuator"), shapes.lateral_basis("clamped-free", SHAPES)
     static = np.linalg.solve(basis.stiffness, basis.tip)
     bent = study.initial.tip_displacement * static / (basis.tip @ static)  # (T9.3)
     state = np.tile(np.concatenate([bent, np.zeros(SHAPES)])[:, None], (len(cases), 1, 1))
@@ -126,7 +126,7 @@ def tip_paths(cases: Sequence[tuple[PrintedLine | None, bool]]) -> Array:
 
 def _first_order(equation: Any, time: Array) -> tuple[Array, Array]:
     """State matrices (n, 2k, 2k) and right sides (n, 2k, 1) at instants of the motion with the rates of section 2.2."""
-    study, count = actuator_preset(), len(time)
+    study, count = model.preset("paper-actuator"), len(time)
     turn, feed = (float(getattr(law, "rate", 0.0)) for law in (study.motion.rotation, study.motion.extension))
     beam = study.actuator
     motion = (beam.free_length + feed * time, np.full(count, feed), beam.angle + turn * time, np.full(count, turn))
@@ -169,4 +169,4 @@ def printed_lines(_: Share) -> Dataset:
         "upright": ("line", [int(line.upright) for line in LINES], {"units": "1"}),
     }
     coords = {"line": [line.name for line in LINES], "time": ("time", time, {"units": "s"})}
-    return Dataset(values, coords, attributes(actuator_preset()) | {"step": STEP, "tip_mass": TIP_MASS})
+    return Dataset(values, coords, attributes(model.preset("paper-actuator")) | {"step": STEP, "tip_mass": TIP_MASS})

@@ -3,25 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 from flexapod.verification.paper.claim import NEXT, OWN, VARIANT, Claim
 from flexapod.verification.paper.study import PaperStudy
 
-
-@dataclass(frozen=True, kw_only=True)
-class ClaimFinding:
-    """Result of ours, the verdict, its reason; `where`, `says`: in place of the row's, where they hold numbers."""
-
-    ours: str
-    verdict: str
-    reason: str
-    where: str = ""
-    says: str = ""
-
-
-Numbers = Callable[..., ClaimFinding | Sequence[ClaimFinding]]
+Numbers = Callable[..., Claim | Sequence[Claim]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,16 +27,14 @@ class ClaimRow:
         """Claims of the row: one, or one for each that the numbers tell apart."""
         found = self.numbers(*(study[name] for name in self.parts)) if self.parts else self.numbers(study)
         return [
-            Claim(
+            replace(
+                said,
                 whose=self.whose,
                 where=said.where or self.where,
                 says=said.says or self.says,
-                ours=said.ours,
-                verdict=said.verdict,
-                reason=said.reason,
                 expected=self.expected,
             )
-            for said in ([found] if isinstance(found, ClaimFinding) else found)
+            for said in ([found] if isinstance(found, Claim) else found)
         ]
 
 
