@@ -43,7 +43,7 @@ MORE = {
 OTHERS = {
     "file", "sweep_file", "name", "table", "--out", "--preset", "--example", "--notebook", "--markdown", "--schema",
     "--format", "--input", "--output", "--inputs", "--outputs", "--drives", "--friction", "--uff", "--mat",
-    "--direction", "--scheduler", "--only", "--html", "--fidelity", "--commands", "--host", "--name",
+    "--direction", "--scheduler", "--only", "--html", "--fidelity", "--commands", "--host", "--name", "--set",
 }  # fmt: skip
 #: Numbers that are counts, and two ratios.
 NUMBERS = {

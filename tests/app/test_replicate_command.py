@@ -12,7 +12,7 @@ ANGLES = (10.0, 29.0)
 
 
 def replaced(monkeypatch, action):
-    def repeat(folder, *, engines, figures, progress):
+    def repeat(folder, *, engines, formats, progress):
         progress("robot", 0.5)
         folder.mkdir()
         (folder / "report.html").write_text("page")

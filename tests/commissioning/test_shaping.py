@@ -90,6 +90,17 @@ def test_corners_that_are_cut_are_told() -> None:
     assert "cuts corners" not in fx.shape(brisk(), "zvd").notes[-1]
 
 
+def test_the_corner_that_is_cut_is_measured_by_hand() -> None:
+    """ZV of a right angle: halves of two straight moves of 50 mm, together on the diagonal for the delay at most."""
+    points = [{"time": 0.2, "surge": 0.05}, {"time": 0.4, "surge": 0.05, "sway": 0.05}]
+    study = fx.preset("paper-robot").replace(motion=fx.model.WaypointMotion(points=points))
+    found = shape_study(study, "zv")
+    way = poses(study.robot, found.study.motion, np.linspace(0.0, found.study.motion.end_time, 20001))
+    tool = way.place(study.robot.tool) - poses(study.robot, study.motion, np.array([0.2])).place(study.robot.tool)
+    by_hand = np.minimum(np.abs(tool[:, 0]), np.abs(tool[:, 1])).max()  # legs of the corner run along x and y
+    assert found.beside == pytest.approx(by_hand, rel=1e-3)
+
+
 def test_words_and_file(tmp_path: Path) -> None:
     study = brisk()
     shaped = fx.shape(study, "zv", out=tmp_path / "shaped.toml")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flexapod.common.errors import ComputationError
-from flexapod.solve.modal.eigenproblem import count_real, damping_ratios, natural_modes
+from flexapod.solve.modal.eigenproblem import count_real, damping_ratios, damping_ratios_of, natural_modes
 from flexapod.solve.statics.stiffness import compliance
 
 pytestmark = pytest.mark.unit
@@ -17,6 +17,7 @@ HUGE = 1e200 * np.eye(3)[None]
     [
         lambda: natural_modes(1e100 * HUGE, 1e-220 * HUGE, shapes=True),  # mass over stiffness overflows
         lambda: damping_ratios(np.ones(2), np.full((2, 2), np.inf)),
+        lambda: damping_ratios_of(0, np.ones((1, 2)), np.full((1, 2, 2), np.nan)),
         lambda: compliance(np.zeros((1, 6, 6))),
         lambda: compliance(np.full((1, 6, 6), np.nan)),
     ],

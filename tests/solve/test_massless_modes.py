@@ -6,7 +6,8 @@ from tests.helpers.machines import HEAVY, LIGHT, MOUNT, PLATE, SCREW, SERVO, TUB
 
 import flexapod as fx
 from flexapod.model import Feedback, Motor, preset_text
-from flexapod.solve.modal.eigenproblem import damping_ratios, natural_modes, poles
+from flexapod.model.study.mount import Mount
+from flexapod.solve.modal.eigenproblem import damping_ratios, damping_ratios_of, natural_modes, poles
 
 pytestmark = pytest.mark.analytic
 
@@ -30,6 +31,20 @@ def test_a_mass_behind_a_damper_without_mass(c):
     ratio = damping_ratios(omega, D)
     # Rounding is 1e-16 of the largest rate, c / k over that of the mass: 1e5 where the damper all but holds the point.
     assert ratio[0] == pytest.approx(-pair[0].real / abs(pair[0]), rel=1e-8, abs=1e-10)
+
+
+@pytest.mark.parametrize("loss", [0.0, 0.01, 0.1, 0.5, 3.0])
+def test_the_ratio_of_one_mode_is_that_among_all(loss: float) -> None:
+    """Light and heavy dampers, a pair of equal frequencies, modes without mass."""
+    seed = np.random.default_rng(7)
+    omega = np.sort(seed.uniform(1.0, 30.0, size=(4, 9)), axis=1)
+    omega[1, 1], omega[2, 7:], omega[3, 4:] = omega[1, 0], np.inf, np.inf
+    A = seed.normal(size=(4, 9, 9))
+    D = loss * 0.1 * A @ A.swapaxes(1, 2) / 9
+    D[1] *= np.eye(9)
+    whole = np.array([damping_ratios(w, d) for w, d in zip(omega, D, strict=True)])
+    for mode in range(9):
+        np.testing.assert_allclose(damping_ratios_of(mode, omega, D), whole[:, mode], rtol=1e-11, atol=1e-14)
 
 
 def test_what_has_neither_mass_nor_damper_has_no_pole():
