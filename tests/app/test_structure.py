@@ -6,7 +6,6 @@ import pytest
 
 from flexapod.app.browser.document import Document, read
 from flexapod.app.browser.structure import structure_edits
-from flexapod.common.errors import InputError
 from flexapod.model import PRESETS, preset_text
 
 pytestmark = pytest.mark.unit

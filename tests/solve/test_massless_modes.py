@@ -6,7 +6,6 @@ from tests.helpers.machines import HEAVY, LIGHT, MOUNT, PLATE, SCREW, SERVO, TUB
 
 import flexapod as fx
 from flexapod.model import Feedback, Motor, preset_text
-from flexapod.model.study.mount import Mount
 from flexapod.solve.modal.eigenproblem import damping_ratios, damping_ratios_of, natural_modes, poles
 
 pytestmark = pytest.mark.analytic
