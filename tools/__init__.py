@@ -1,1 +1,1 @@
-"""Programs for those who develop and publish flexapod; none is part of the package."""
+"""Programs about the tests: faults that they do not see, damaged files by the thousand, wheels, older processors."""

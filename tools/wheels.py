@@ -1,143 +1,122 @@
-"""``python -m tools.wheels FOLDER``: the source distribution, and wheels with the time loops compiled for each system.
+"""``python -m tools.wheels``: the source distribution builds a wheel; installed in clean environments, it runs.
 
-The wheel for any machine has none: loops are compiled at first use there. Those of Linux (x86-64) are made by gcc, as a
-checkout makes them, so that their numbers are the same to the bit; those of Windows (x86-64) and macOS (arm64) by
-``ziglang``, on the same machine. Names of systems after the folder build these alone: ``linux windows macos``.
+Each of Python 3.11 to 3.14 that is found on this machine (``python3.12``, or of pyenv) gets an environment of its own
+with the wheel and nothing else of ours; `flexapod new`, `check` and `run` and a call from Python are made there. With
+``--check`` the source distribution, by itself in a folder, also passes `make check`.
 """
 
-import base64
-import hashlib
+from __future__ import annotations
+
 import os
-import re
 import shutil
 import subprocess
 import sys
+import tarfile
 import tempfile
+import tomllib
 import zipfile
-from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
-from flexapod.mechanics.symbolic.compiler import COMMON, LOOPS, written_text
-from flexapod.mechanics.symbolic.processor import BUILT, LEVELS, file_name, x86_target
-from flexapod.solve.time.native import SOURCES
-
 ROOT = Path(__file__).parents[1]
-SOURCE = ROOT / "src"
-LEAST_GLIBC = 17  # no tag of a wheel is older
+VERSIONS = ("3.11", "3.12", "3.13", "3.14")
+CALL = """
+import flexapod as fx
+data = fx.simulate(fx.preset("paper-robot"))
+peak = 1e6 * float(abs(data.com_deviation.sel(axis="z")).max())
+assert 19.2 < peak < 19.4, peak  # um; an independent program gives 19.33
+"""
 
 
-@dataclass(frozen=True)
-class System:
-    """A system as Python names it, the tag of its wheel, and who compiles: with which words, for which targets."""
-
-    name: str
-    tag: str
-    compiler: Sequence[str]
-    targets: Sequence[str | None]
-
-
-X86 = tuple(map(x86_target, LEVELS))
-SYSTEMS = {
-    "linux": System("linux-x86_64", "manylinux_2_{glibc}_x86_64", ("gcc",), X86),
-    "windows": System("win32-amd64", "win_amd64", ("zig", "-target", "x86_64-windows-gnu"), X86),
-    "macos": System("darwin-arm64", "macosx_11_0_arm64", ("zig", "-target", "aarch64-macos.11.0"), (None,)),
-}
-
-
-def said(command: Sequence[str | Path], folder: Path) -> str:
-    """What a program says; it has to succeed, and sees no other copy of ours."""
-    known = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "FLEXAPOD"))}
-    done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True, env=known)
+def told(command: list[str | Path], folder: Path) -> str:
+    """What a command says; it has to succeed."""
+    done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True, env=alone())
     if done.returncode:
         raise SystemExit(f"{' '.join(map(str, command))}\n{done.stdout[-3000:]}{done.stderr[-3000:]}")
     return done.stdout
 
 
-def packer(folder: Path, *packages: str) -> Path:
-    """Python of an environment in `folder` with setuptools and these packages."""
-    python = folder / "packer" / "bin" / "python"
-    if not python.exists():
-        said([sys.executable, "-m", "venv", folder / "packer"], folder)
-    line = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-c", ROOT / "constraints.txt"]
-    said([*line, "setuptools>=77", *packages], folder)
-    return python
+def alone() -> dict[str, str]:
+    """The environment without what would let a checkout in."""
+    return {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "FLEXAPOD"))}
 
 
-def distributions(folder: Path, work: Path) -> tuple[Path, Path]:
-    """The source distribution, and the wheel for any machine that it gives."""
+def found(version: str) -> Path | None:
+    """The program of a version of Python, if there is one that starts."""
+    pyenv = sorted((Path.home() / ".pyenv" / "versions").glob(f"{version}.*/bin/python"))
+    for path in [*map(Path, filter(None, [shutil.which(f"python{version}")])), *pyenv]:
+        said = subprocess.run([path, "-c", "import sys; print(sys.version)"], capture_output=True, text=True)
+        if said.returncode == 0 and said.stdout.startswith(f"{version}."):
+            return path
+    return None
+
+
+def built(folder: Path) -> tuple[Path, Path]:
+    """The source distribution and the wheel that it gives; what has to be in both is, licence and all."""
+    pip = [sys.executable, "-m", "pip"]
     make = "import setuptools.build_meta as b, sys; print(b.build_sdist(sys.argv[1]))"
-    notes = SOURCE / "flexapod.egg-info"
+    packer = folder / "packer"
+    told([sys.executable, "-m", "venv", packer], folder)
+    told([packer / "bin" / "pip", "install", "--quiet", "setuptools>=77"], folder)
+    notes = ROOT / "src" / "flexapod.egg-info"
     kept = notes.exists()
-    sdist = folder / said([packer(work), "-c", make, folder], ROOT).splitlines()[-1]
+    sdist = folder / told([packer / "bin" / "python", "-c", make, folder], ROOT).splitlines()[-1]
     if not kept:
         shutil.rmtree(notes, ignore_errors=True)
-    made = work / "pure"
-    said([sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", made, sdist], work)
-    (wheel,) = made.glob("flexapod-*.whl")
-    return sdist, Path(shutil.copy(wheel, folder))
+    with tarfile.open(sdist) as archive:
+        names = {name.split("/", 1)[1] for name in archive.getnames() if "/" in name}
+    for name in ("Makefile", "constraints.txt", "tests/conftest.py", "docs/index.md", "LICENSE", "README.md"):
+        if name not in names:
+            raise SystemExit(f"{name} is not in the source distribution")
+    told([*pip, "wheel", "--quiet", "--no-deps", "--wheel-dir", folder, sdist], folder)
+    wheel = next(folder.glob("flexapod-*.whl"))
+    with zipfile.ZipFile(wheel) as archive:
+        inside = set(archive.namelist())
+    package = {path.relative_to(ROOT / "src").as_posix() for path in (ROOT / "src" / "flexapod").rglob("*.*")}
+    missing = {name for name in package if "__pycache__" not in name and (ROOT / "src" / name).is_file()} - inside
+    missing |= {"LICENSE"} - {Path(name).name for name in inside if ".dist-info/licenses/" in name}
+    if missing:
+        raise SystemExit(f"not in the wheel: {', '.join(sorted(missing))}")
+    return sdist, wheel
 
 
-def compiled_loops(system: System, work: Path) -> dict[str, bytes]:
-    """Files of loops of a system, by name."""
-    text, key = written_text(SOURCES)
-    (work / "loops.c").write_text(text)
-    command = list(system.compiler)
-    zig = command[0] == "zig"
-    if zig:
-        command[:1] = [str(packer(work, "ziglang")), "-m", "ziglang", "cc"]
-    found = {}
-    for target in system.targets:
-        words = [f"-march={target.replace('-', '_') if zig else target}"] if target else []
-        said([*command, *COMMON, *LOOPS, *words, "-shared", "-s", "-o", "loops.so", "loops.c", "-lm"], work)
-        content = (work / "loops.so").read_bytes()
-        found[file_name(system.name, target, key, content)] = content
-    return found
+def checked(sdist: Path, folder: Path) -> None:
+    """The source distribution by itself, as somebody gets it: `make check`."""
+    with tarfile.open(sdist) as archive:
+        archive.extractall(folder, filter="data")
+    told(["make", "check"], next(folder.iterdir()))
 
 
-def glibc(files: Sequence[bytes]) -> int:
-    """Release 2.x of the C library that libraries ask for."""
-    return max([LEAST_GLIBC, *(int(x) for content in files for x in re.findall(rb"GLIBC_2\.(\d+)", content))])
-
-
-def with_loops(wheel: Path, system: System, folder: Path, work: Path) -> Path:
-    """A copy of the wheel for any machine for one system, with its loops."""
-    loops = compiled_loops(system, work)
-    tag = f"py3-none-{system.tag.format(glibc=glibc(list(loops.values())))}"
-    made = folder / wheel.name.replace("py3-none-any", tag)
-    place = BUILT.relative_to(SOURCE).as_posix()
-    with zipfile.ZipFile(wheel) as old, zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as new:
-        content = {name: old.read(name) for name in old.namelist()}
-        content |= {f"{place}/{name}": text for name, text in loops.items()}
-        (record,) = (name for name in content if name.endswith(".dist-info/RECORD"))
-        head = record.replace("RECORD", "WHEEL")
-        content[head] = content[head].replace(b"Tag: py3-none-any", f"Tag: {tag}".encode())
-        content[head] = content[head].replace(b"Root-Is-Purelib: true", b"Root-Is-Purelib: false")
-        del content[record]
-        for name, text in content.items():
-            new.writestr(name, text)
-        lines = [f"{name},sha256={_urlsafe(text)},{len(text)}" for name, text in content.items()]
-        new.writestr(record, "\n".join([*lines, f"{record},,", ""]))
-    return made
-
-
-def _urlsafe(content: bytes) -> str:
-    return base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
+def tried(python: Path, wheel: Path, folder: Path) -> None:
+    """Install the wheel by itself, and use it as on the first day."""
+    folder.mkdir()
+    told([python, "-m", "venv", folder / "venv"], folder)
+    programs = folder / "venv" / "bin"
+    told([programs / "pip", "install", "--quiet", "--disable-pip-version-check", wheel], folder)
+    told([programs / "python", "-W", "error::SyntaxWarning", "-c", CALL], folder)
+    told([programs / "flexapod", "new", "robot.toml"], folder)
+    told([programs / "flexapod", "check", "robot.toml"], folder)
+    told([programs / "flexapod", "run", "robot.toml", "--no-figures", "--quiet"], folder)
+    told([programs / "flexapod", "new", "--example", "sag_by_hand"], folder)
+    told([programs / "python", "sag_by_hand.py"], folder)
 
 
 def main() -> None:
-    """Build all, or the systems that are named, and say what was made."""
-    if len(sys.argv) < 2 or not set(sys.argv[2:]) <= set(SYSTEMS):
-        raise SystemExit(f"python -m tools.wheels FOLDER [{' '.join(SYSTEMS)}]")
-    folder = Path(sys.argv[1]).absolute()
-    folder.mkdir(parents=True, exist_ok=True)
+    """Build, then try on all versions that there are; say which there are not."""
+    needed = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["requires-python"]
+    print(f"flexapod needs Python {needed}")
     with tempfile.TemporaryDirectory() as name:
-        sdist, wheel = distributions(folder, Path(name))
-        made = [sdist, wheel]
-        for each in sys.argv[2:] or SYSTEMS:
-            made.append(with_loops(wheel, SYSTEMS[each], folder, Path(name)))
-    for path in made:
-        print(f"{path.name}: {path.stat().st_size / 1e6:.2f} MB")
+        sdist, wheel = built(Path(name))
+        print(f"{wheel.name}: {wheel.stat().st_size / 1e6:.1f} MB, built of the source distribution")
+        for version in VERSIONS:
+            python = found(version)
+            if python is None:
+                print(f"{version}: not on this machine")
+                continue
+            tried(python, wheel, Path(name) / version)
+            print(f"{version}: installed by itself, runs")
+        if "--check" in sys.argv[1:]:
+            checked(sdist, Path(name) / "source")
+            print("the source distribution passes `make check`")
 
 
 if __name__ == "__main__":
