@@ -1,4 +1,4 @@
-"""``python -m tools.wheels FOLDER``: the source distribution, and wheels with the time loops compiled for each system.
+"""``python -m tools.build_wheels FOLDER``: source distribution, and wheels with compiled time loops for each system.
 
 The wheel for any machine has none: loops are compiled at first use there. Those of Linux (x86-64) are made by gcc, as a
 checkout makes them, so that their numbers are the same to the bit; those of Windows (x86-64) and macOS (arm64) by
@@ -45,22 +45,26 @@ SYSTEMS = {
 }
 
 
-def said(command: Sequence[str | Path], folder: Path) -> str:
-    """What a program says; it has to succeed, and sees no other copy of ours."""
-    known = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "FLEXAPOD"))}
-    done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True, env=known)
+def told(command: Sequence[str | Path], folder: Path) -> str:
+    """What a program says; it has to succeed."""
+    done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True, env=alone())
     if done.returncode:
         raise SystemExit(f"{' '.join(map(str, command))}\n{done.stdout[-3000:]}{done.stderr[-3000:]}")
     return done.stdout
+
+
+def alone() -> dict[str, str]:
+    """The environment without what would let a checkout in."""
+    return {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "FLEXAPOD"))}
 
 
 def packer(folder: Path, *packages: str) -> Path:
     """Python of an environment in `folder` with setuptools and these packages."""
     python = folder / "packer" / "bin" / "python"
     if not python.exists():
-        said([sys.executable, "-m", "venv", folder / "packer"], folder)
+        told([sys.executable, "-m", "venv", folder / "packer"], folder)
     line = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-c", ROOT / "constraints.txt"]
-    said([*line, "setuptools>=77", *packages], folder)
+    told([*line, "setuptools>=77", *packages], folder)
     return python
 
 
@@ -69,11 +73,11 @@ def distributions(folder: Path, work: Path) -> tuple[Path, Path]:
     make = "import setuptools.build_meta as b, sys; print(b.build_sdist(sys.argv[1]))"
     notes = SOURCE / "flexapod.egg-info"
     kept = notes.exists()
-    sdist = folder / said([packer(work), "-c", make, folder], ROOT).splitlines()[-1]
+    sdist = folder / told([packer(work), "-c", make, folder], ROOT).splitlines()[-1]
     if not kept:
         shutil.rmtree(notes, ignore_errors=True)
     made = work / "pure"
-    said([sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", made, sdist], work)
+    told([sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", made, sdist], work)
     (wheel,) = made.glob("flexapod-*.whl")
     return sdist, Path(shutil.copy(wheel, folder))
 
@@ -89,7 +93,7 @@ def compiled_loops(system: System, work: Path) -> dict[str, bytes]:
     found = {}
     for target in system.targets:
         words = [f"-march={target.replace('-', '_') if zig else target}"] if target else []
-        said([*command, *COMMON, *LOOPS, *words, "-shared", "-s", "-o", "loops.so", "loops.c", "-lm"], work)
+        told([*command, *COMMON, *LOOPS, *words, "-shared", "-s", "-o", "loops.so", "loops.c", "-lm"], work)
         content = (work / "loops.so").read_bytes()
         found[file_name(system.name, target, key, content)] = content
     return found
@@ -128,7 +132,7 @@ def _urlsafe(content: bytes) -> str:
 def main() -> None:
     """Build all, or the systems that are named, and say what was made."""
     if len(sys.argv) < 2 or not set(sys.argv[2:]) <= set(SYSTEMS):
-        raise SystemExit(f"python -m tools.wheels FOLDER [{' '.join(SYSTEMS)}]")
+        raise SystemExit(f"python -m tools.build_wheels FOLDER [{' '.join(SYSTEMS)}]")
     folder = Path(sys.argv[1]).absolute()
     folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as name:
