@@ -85,6 +85,7 @@ HOMES = {
     "damp": "linear",
     "budget": "poses",
     "map": "map",
+    "sensitivity": "design",
     "converge": "surveys",
     "sweep": "surveys",
     "verify": "proof",
