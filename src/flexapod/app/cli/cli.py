@@ -86,6 +86,7 @@ HOMES = {
     "budget": "poses",
     "map": "map",
     "sensitivity": "design",
+    "optimise": "design",
     "converge": "surveys",
     "sweep": "surveys",
     "verify": "proof",

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 LONGEST = 12  # characters of a bar
 SHOWN = 12  # keys of an output
 LEAST = 1e-3  # of the largest sensitivity of the output: what is less is left out
+UNITS = {"1": "", "N m-1": "N/m"}
 HELD = "Loss factors are made viscous at one frequency; it is held."
 
 
@@ -59,7 +60,7 @@ def sensitivity_items(data: Dataset) -> Iterator[Item]:
             ]
             for bar in rows[:SHOWN]
         ]
-        title = f"{output} {text(float(one.value), '' if unit == '1' else unit)}: per cent for a per cent"
+        title = f"{output} {text(float(one.value), UNITS.get(unit, unit))}: per cent for a per cent"
         yield Chapter(
             title, [TextTable(["key", "%/%", "", "instead"], table, left=(0, 2, 3))] if table else ["Nothing."]
         )

@@ -26,7 +26,6 @@ from flexapod.model import (
 from flexapod.solve.modal.modes import single_pose_modes
 from flexapod.solve.statics.locked_robot import lock
 
-
 _kept: ContextVar[float | None] = ContextVar("frequency of loss factors", default=None)
 
 
