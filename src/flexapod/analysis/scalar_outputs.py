@@ -165,7 +165,7 @@ def _budget_outputs() -> dict[str, ScalarOutput]:
 
 
 def _motion_outputs() -> dict[str, ScalarOutput]:
-    """Scalars of a simulation that have no dimension; those at home and at the pose have one name, and stand above."""
+    """Scalars of a simulation without dimensions; that of home has the name of one above."""
     found = {}
     for name, scalar in ROBOT_SCALARS.items():
         if scalar.dims or name == "first_frequency":

@@ -27,6 +27,7 @@ ROUNDING = 1e-11  # least relative error of a value
 TABLES = ("payload", "leg", "tolerances", "heat", "geometry")  # whose numbers are the keys, if none are given
 MATTERS = 1e-4  # per cent per per cent, of some output: a key with less is left out, if none are given
 CORNER = 1e-3  # of both slopes: what the slopes to both sides may differ by beyond a gradual change
+NOISY = 1e-4  # uncertainty from which on no effect is no finding
 DOUBLED = ("stiffness", "rotational stiffness", "axial stiffness", "bending stiffness")
 ERRORS = ("tolerances", "heat", "geometry")
 ERROR_NAMES = ("play", "backlash", "friction")
@@ -188,18 +189,31 @@ def _judged(
     base: Array, rows: Mapping[str, Values], names: Sequence[str], numbers: Mapping[str, Sequence[KeyNumber]]
 ) -> dict[str, list[Found]]:
     """Sensitivities of all keys; the rounding of an output is that of most of its keys at least."""
-    rest = {key: np.abs(values[[0, 3]].sum(axis=0) - 4 * values[[1, 2]].sum(axis=0) + 6 * base) for key, (values, _) in rows.items()}  # fmt: skip
     usual = np.zeros(len(names))
     for j in range(len(names)):
-        known = [row[j] for row in rest.values() if np.isfinite(row[j]) and row[j] > 0]
+        gradual = [values[:, j] for values, _ in rows.values() if not _has_corner(values[:, j], base[j])]
+        known = [rest for f in gradual if np.isfinite(rest := _fourth(f, base[j])) and rest > 0]
         usual[j] = np.median(known) if known else 0.0
-    found = {}
+    found: dict[str, list[Found]] = {}
     for key, (values, reasons) in rows.items():
+        columns = enumerate(zip(names, base.tolist(), usual.tolist(), strict=True))
         found[key] = [
-            _one(values[:, j], base[j], max(rest[key][j], usual[j]), reasons, bool(numbers[key]), CORNERS.get(names[j], ""))
-            for j in range(len(names))
-        ]  # fmt: skip
+            _one(values[:, j], f0, rest, reasons, bool(numbers[key]), CORNERS.get(name, ""))
+            for j, (name, f0, rest) in columns
+        ]
     return found
+
+
+def _fourth(f: Array, f0: float) -> float:
+    """Size of the fourth difference, which is rounding where the output changes gradually."""
+    return abs(float(f[0] + f[3] - 4 * (f[1] + f[2]) + 6 * f0))
+
+
+def _has_corner(f: Array, f0: float) -> bool:
+    """Tell whether slopes to both sides differ: second differences then grow with the step, not with its square."""
+    bend, wider = f[1] + f[2] - 2 * f0, f[0] + f[3] - 2 * f0
+    sharp = abs(bend) > CORNER * (abs(f[2] - f0) + abs(f0 - f[1]))
+    return bool(sharp and abs(wider - 4 * bend) > abs(bend) > 1e-10 * abs(f0))
 
 
 def _one(f: Array, f0: float, rest: float, reasons: Sequence[str], given: bool, where: str) -> Found:
@@ -217,10 +231,9 @@ def _one(f: Array, f0: float, rest: float, reasons: Sequence[str], given: bool, 
         return Found(np.nan, np.nan, "the output is 0: it has no per cent")
     narrow, wide = (f[2] - f[1]) / (2 * STEP), (f[3] - f[0]) / (4 * STEP)
     slope = narrow + (narrow - wide) / 3
-    bend, wider = f[1] + f[2] - 2 * f0, f[0] + f[3] - 2 * f0
     right, left = (f[2] - f0) / STEP, (f0 - f[1]) / STEP
-    size, error = abs(f0), max(rest, ROUNDING * abs(f0))
-    if abs(bend) > CORNER * STEP * (abs(right) + abs(left)) and abs(wider - 4 * bend) > abs(bend) > 1e-10 * size:
+    size, error = abs(f0), max(rest, _fourth(f, f0), ROUNDING * abs(f0))
+    if _has_corner(f, f0):
         words = f"a corner: {right / size:+.3g} % upwards, {-left / size:+.3g} % downwards for a per cent{where}"
         return Found(np.nan, np.nan, words)
     off = abs(slope - narrow)
@@ -228,14 +241,14 @@ def _one(f: Array, f0: float, rest: float, reasons: Sequence[str], given: bool, 
     uncertainty = (1.5 * error / (12 * STEP) + step + STEP * off) / size
     note = ""
     if abs(slope) / size < 3 * uncertainty:
-        note = "no effect"
-        if abs(bend) > 100 * error:
+        note = "no effect" if uncertainty < NOISY else f"lost in rounding: within {3 * uncertainty:.2g}"
+        if abs(f[1] + f[2] - 2 * f0) > 100 * error:
             note = "zero by symmetry: the effect is of second order"
     return Found(slope / size, uncertainty, note)
 
 
 def _matters(found: Sequence[Found]) -> bool:
-    return any(one.note.startswith(("a gap", "a corner")) or abs(one.slope) > MATTERS for one in found)
+    return any(one.note.startswith(("a gap", "a corner", "lost")) or abs(one.slope) > MATTERS for one in found)
 
 
 def _described(

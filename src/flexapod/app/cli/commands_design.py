@@ -29,8 +29,8 @@ from flexapod.output.text import terminal
 
 if TYPE_CHECKING:
     from flexapod.analysis import store
-    from flexapod.app.cli import pose_options
     from flexapod.analysis.results import attributes
+    from flexapod.app.cli import pose_options
     from flexapod.design import sensitivity as design_sensitivity
     from flexapod.design.optimisation import optimise as design_optimise
     from flexapod.output import figures

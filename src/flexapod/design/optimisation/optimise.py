@@ -11,10 +11,10 @@ import numpy as np
 from flexapod.analysis.results.arguments import PoseLike, RobotLike, as_study
 from flexapod.analysis.results.attributes import attributes
 from flexapod.analysis.results.variables import Variable, dataset
-from flexapod.analysis.scalar_outputs import OUTPUTS
+from flexapod.analysis.scalar_outputs import OUTPUTS, StudyValues
 from flexapod.common.errors import InputError
 from flexapod.common.resources import one_thread
-from flexapod.design.optimisation.problem import Limit, Problem, read_problem
+from flexapod.design.optimisation.problem import Front, Limit, Problem, read_problem
 from flexapod.design.optimisation.search import (
     Best,
     Evaluation,
@@ -80,8 +80,7 @@ def optimise(
     -------
     xarray.Dataset
         `optimum` (variable), `chosen` (list), `objective`; of each constraint `limit`, `reached`, `kept`, and
-        `multiplier`, what one unit more of the limit costs. Attributes: `status` "kept" or "cannot", `calls`, `summary`,
-        a line each, and the study at the optimum, as of other results. Of a front also `target`, `front_objective`,
+        `multiplier`, what one unit more of the limit costs. Attributes: `status` "kept" or "cannot", `calls`, and the study at the optimum, as of other results. Of a front also `target`, `front_objective`,
         `front_output`, `front_optimum` (point).
 
     Raises
@@ -108,14 +107,12 @@ def optimise(
     with hold_loss_frequency(whole.robot, whole.simulation):
         begin = _start(evaluation)
         best = best_of_lists(evaluation, problem.limits)
-        front = _front(evaluation, best, progress) if problem.front and best.kept else None
+        front = _front(evaluation, problem.front, best, progress) if problem.front and best.kept else None
     return _described(whole, evaluation, begin, best, front)
 
 
 def _start(evaluation: Evaluation) -> Mapping[str, float]:
     """Outputs of the study as it is, which must be there."""
-    from flexapod.analysis.scalar_outputs import StudyValues
-
     evaluation.calls += 1
     found = StudyValues(evaluation.variants.study, evaluation.pose).values(evaluation.problem.outputs)
     for name, value in found.items():
@@ -124,10 +121,11 @@ def _start(evaluation: Evaluation) -> Mapping[str, float]:
     return found
 
 
-def _front(evaluation: Evaluation, best: Best, progress: Callable[[str, float], None] | None) -> dict[str, np.ndarray]:
+def _front(
+    evaluation: Evaluation, front: Front, best: Best, progress: Callable[[str, float], None] | None
+) -> dict[str, np.ndarray]:
     """Best objectives for targets of a second output, from the one that the best has to the least that can be had."""
-    problem, front = evaluation.problem, evaluation.problem.front
-    assert front is not None
+    problem = evaluation.problem
     other = Problem(
         variables=problem.variables, choices=problem.choices, objective=front.output, sense=1, limits=problem.limits,
         front=front,
@@ -215,4 +213,6 @@ def _remarks(problem: Problem, follows: Follows | None) -> list[str]:
     keys = [v.key for v in problem.variables] + [key for c in problem.choices for key in c.rows[0][1]]
     if follows is not None or not any(key.startswith(SIZED) for key in keys):
         return []
-    return ["Masses and inertias of drives and cylinders stay as written. What follows from a size is a function, follows."]
+    return [
+        "Masses and inertias of drives and cylinders stay as written. What follows from a size is a function, follows."
+    ]

@@ -12,9 +12,10 @@ from flexapod.analysis.scalar_outputs import OUTPUTS
 from flexapod.common.arguments import integer
 from flexapod.common.errors import InputError, check_kind, check_known
 from flexapod.common.units import to_si
-from flexapod.design.first_robot.catalogue import SCREWS
+from flexapod.design.first_robot.catalogue import SCREWS, Screw
 from flexapod.design.sensitivity import check_outputs
 from flexapod.design.variants import Variants
+from flexapod.model import ScrewDrive
 
 DIMENSIONS = {
     "Hz": "frequency", "N m-1": "stiffness", "m": "length", "kg": "mass", "rad": "angle", "N": "force", "Pa": "stress",
@@ -132,7 +133,9 @@ def _variable(entry: Mapping[str, Any], place: str, variants: Variants) -> Varia
     _known(entry, ("key", "low", "high", "ties"), place)
     for name in ("key", "low", "high"):
         if name not in entry:
-            raise InputError("is missing", key=f"{place}.{name}", allowed="key, low and high; or values, or a catalogue")
+            raise InputError(
+                "is missing", key=f"{place}.{name}", allowed="key, low and high; or values, or a catalogue"
+            )
     key = str(entry["key"])
     start, dimension = _number(key, variants)
     ties = tuple(map(str, entry.get("ties", ())))
@@ -163,19 +166,31 @@ def _choice(entry: Mapping[str, Any], place: str, variants: Variants) -> Choice:
     if "catalogue" in entry:
         _known(entry, ("catalogue",), place)
         check_known(entry["catalogue"], ("screws",), f"{place}.catalogue")
-        rows = [(f"screw {screw.name}", _screw(screw)) for screw in SCREWS]
+        share = _preload_share(variants)
+        rows = [(f"screw {screw.name}", _screw(screw, share)) for screw in SCREWS]
         for key in rows[0][1]:
             variants.numbers(key)
         return Choice(name="screws", rows=tuple(rows))
     _known(entry, ("key", "values"), place)
     values, key = entry["values"], str(entry.get("key", ""))
     if not key or not isinstance(values, list) or not values:
-        raise InputError("is no list of values of a key", key=place, allowed='key = "leg.piston.material", values = [...]')
+        raise InputError(
+            "is no list of values of a key", key=place, allowed='key = "leg.piston.material", values = [...]'
+        )
     return Choice(name=key, rows=tuple((f"{key} = {value}", {key: value}) for value in values))
 
 
-def _screw(screw: Any) -> dict[str, object]:
-    return {
+def _preload_share(variants: Variants) -> float | None:
+    """Preload of the study's nuts over their dynamic load, which other screws then have too; None without one."""
+    nuts = [leg.drive.nut for leg in variants.study.robot.legs if isinstance(leg.drive, ScrewDrive)]
+    nut = nuts[0] if nuts else None
+    return nut.preload / nut.dynamic_load if nut is not None and nut.preload and nut.dynamic_load else None
+
+
+def _screw(screw: Screw, share: float | None) -> dict[str, object]:
+    """Values of a screw by key, with bearing, nut and the nut's preload."""
+    preload = {} if share is None else {"leg.drive.nut.preload": share * screw.dynamic_load}
+    return preload | {
         "leg.drive.lead": screw.lead,
         "leg.drive.root_diameter": screw.root,
         "leg.drive.bearing.stiffness": screw.bearing,

@@ -215,7 +215,9 @@ def multipliers(best: Best, problem: Problem, limits: Sequence[Limit]) -> Array:
 
     found = np.zeros(len(limits))
     place = best.point.place
-    active = [k for k, one in enumerate(limits) if best.kept and abs(one.margin(best.point.outputs[one.output])) < ACTIVE]
+    active = [
+        k for k, one in enumerate(limits) if best.kept and abs(one.margin(best.point.outputs[one.output])) < ACTIVE
+    ]
     if not active or not len(place):
         return found
     columns = [limits[k].sense * best.slopes[limits[k].output] for k in active]

@@ -50,7 +50,9 @@ def optimum_items(data: Dataset) -> Iterator[Item]:
 def optimum_sentences(data: Dataset) -> Iterator[str]:
     """The answer in words."""
     name = data.attrs["objective_name"]
-    rows = list(zip(*(data[key].values for key in ("output", "sense", "limit", "reached", "kept", "multiplier")), strict=True))
+    rows = list(
+        zip(*(data[key].values for key in ("output", "sense", "limit", "reached", "kept", "multiplier")), strict=True)
+    )
     if data.attrs["status"] != "kept":
         for output, sense, limit, reached, kept, _ in rows:
             if not kept:

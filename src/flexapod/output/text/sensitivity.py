@@ -89,7 +89,7 @@ def _notes(data: Dataset) -> Iterator[str]:
         said: dict[str, list[str]] = {}
         for j, output in enumerate(map(str, data.output.values)):
             note = str(data.note.values[k, j])
-            if note and note != "no effect":
+            if note not in ("", "no effect"):
                 said.setdefault(note, []).append(output)
         for note, outputs in said.items():
             yield f"{key}, {', '.join(outputs)}: {note}."
