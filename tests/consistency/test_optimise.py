@@ -125,11 +125,14 @@ def test_screws_of_a_catalogue():
     found = fx.optimise(study, most)
     tried = {}
     for screw in SCREWS:
-        one = study.with_values({
-            "leg.drive.lead": screw.lead, "leg.drive.root_diameter": screw.root,
-            "leg.drive.bearing.stiffness": screw.bearing, "leg.drive.nut.rigidity": screw.rigidity,
-            "leg.drive.nut.dynamic_load": screw.dynamic_load, "leg.drive.nut.preload": 0.05 * screw.dynamic_load,
-        })  # fmt: skip
+        try:
+            one = study.with_values({
+                "leg.drive.lead": screw.lead, "leg.drive.root_diameter": screw.root,
+                "leg.drive.bearing.stiffness": screw.bearing, "leg.drive.nut.rigidity": screw.rigidity,
+                "leg.drive.nut.dynamic_load": screw.dynamic_load, "leg.drive.nut.preload": 0.05 * screw.dynamic_load,
+            })  # fmt: skip
+        except fx.InputError:  # too thick for the bore of the piston
+            continue
         if least_stiffness(one) >= 30e6:
             tried[f"screw {screw.name}"] = fx.modes(one).frequency.values[0]
     assert found.chosen.values[0] == max(tried, key=tried.get)

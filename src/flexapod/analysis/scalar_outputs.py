@@ -129,7 +129,7 @@ def _pose_outputs() -> dict[str, ScalarOutput]:
         ),
         **{
             f"stiffness_{axis}": ScalarOutput(
-                units="N m-1", long_name=f"stiffness at the tool against a force along {axis}", of="pose", value=along(k)
+                units="N m-1", long_name=f"stiffness at the tool along {axis}", of="pose", value=along(k)
             )
             for k, axis in enumerate(AXES)
         },

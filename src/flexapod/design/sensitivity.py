@@ -133,7 +133,7 @@ def check_outputs(outputs: Sequence[str] | str | None) -> list[str]:
     InputError
         No output of that name, or one that has no derivative.
     """
-    names = list(DEFAULTS) if outputs is None else list(dict.fromkeys(names_of(outputs, "outputs")))
+    names: list[str] = [*DEFAULTS] if outputs is None else list(dict.fromkeys(names_of(outputs, "outputs")))
     for name in names:
         check_output(name)
         if OUTPUTS[name].smooth:

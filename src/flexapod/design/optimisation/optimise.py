@@ -80,8 +80,9 @@ def optimise(
     -------
     xarray.Dataset
         `optimum` (variable), `chosen` (list), `objective`; of each constraint `limit`, `reached`, `kept`, and
-        `multiplier`, what one unit more of the limit costs. Attributes: `status` "kept" or "cannot", `calls`, and the study at the optimum, as of other results. Of a front also `target`, `front_objective`,
-        `front_output`, `front_optimum` (point).
+        `multiplier`, what one unit more of the limit costs. Attributes: `status` "kept" or "cannot", `calls`,
+        and the study at the optimum, as of other results. Of a front also `target`, `front_objective`, `front_output`,
+        `front_optimum` (point).
 
     Raises
     ------

@@ -189,7 +189,7 @@ def _preload_share(variants: Variants) -> float | None:
 
 def _screw(screw: Screw, share: float | None) -> dict[str, object]:
     """Values of a screw by key, with bearing, nut and the nut's preload."""
-    preload = {} if share is None else {"leg.drive.nut.preload": share * screw.dynamic_load}
+    preload: dict[str, object] = {} if share is None else {"leg.drive.nut.preload": share * screw.dynamic_load}
     return preload | {
         "leg.drive.lead": screw.lead,
         "leg.drive.root_diameter": screw.root,

@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from flexapod.design.tornado import bars, factor_words
 from flexapod.output.figures.style import NOTE, PAGE, figure, house_style, require_variables
-from flexapod.output.text.sensitivity import bars, factor_words
 
 MOST = 10  # bars of an output
 UP, DOWN = "#b5442c", "#2c6fb5"

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, NamedTuple
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from flexapod.common.quantities import text
+from flexapod.design.tornado import bars, factor_words
 from flexapod.output.text.parts import Bullets, Chapter, Item, TextTable
 
 if TYPE_CHECKING:
@@ -15,34 +14,8 @@ if TYPE_CHECKING:
 
 LONGEST = 12  # characters of a bar
 SHOWN = 12  # keys of an output
-LEAST = 1e-3  # of the largest sensitivity of the output: what is less is left out
 UNITS = {"1": "", "N m-1": "N/m"}
 HELD = "Loss factors are made viscous at one frequency; it is held."
-
-
-class Bar(NamedTuple):
-    """A key and what it does to an output: sensitivity, change by its `factor` [%], both perhaps NaN."""
-
-    key: str
-    sensitivity: float
-    factor: float
-    effect: float
-
-
-def bars(data: Dataset, output: str) -> list[Bar]:
-    """Keys that an output depends on, the strongest first."""
-    one = data.sel(output=output)
-    rows = zip(one.key.values, one.sensitivity.values, one.factor.values, one.factor_effect.values, strict=True)
-    known = [Bar(str(key), *map(float, rest)) for key, *rest in rows if np.isfinite(rest[0])]
-    known.sort(key=lambda bar: (-abs(bar.sensitivity), bar.key))
-    return [bar for bar in known if abs(bar.sensitivity) > LEAST * abs(known[0].sensitivity)]
-
-
-def factor_words(bar: Bar) -> str:
-    """Change of the output by halving or doubling, in words; empty where nothing of that kind is asked."""
-    if not np.isfinite(bar.effect):
-        return ""
-    return f"{'half' if bar.factor < 1 else 'double'}: {bar.effect:+.2g} %"
 
 
 def sensitivity_items(data: Dataset) -> Iterator[Item]:
@@ -96,10 +69,8 @@ def _notes(data: Dataset) -> Iterator[str]:
 
 
 def sensitivity_as_dict(data: Dataset) -> dict[str, Any]:
-    """Keys, outputs, and all numbers of each pair, None where there is none."""
-    plain = {
-        name: np.where(np.isfinite(data[name].values), data[name].values.astype(object), None).tolist()
-        for name in ("sensitivity", "uncertainty", "factor", "factor_effect", "value")
-    }
+    """Keys, outputs, and all numbers of each pair, NaN where there is none."""
+    names = ("sensitivity", "uncertainty", "factor", "factor_effect", "value")
+    plain = {name: data[name].values.tolist() for name in names}
     words = {name: data[name].values.tolist() for name in ("key", "output", "output_units", "note")}
     return {**words, **plain, "remarks": [HELD]}
