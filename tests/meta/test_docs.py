@@ -8,6 +8,8 @@ from markdown_it import MarkdownIt
 
 from flexapod.common.version import __version__
 
+pytestmark = pytest.mark.meta
+
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([*(ROOT / "docs").rglob("*.md"), *ROOT.glob("*.md")])
 LINK = re.compile(r"\]\((?!https?://|mailto:|#)([^)#\s]+)")

@@ -121,7 +121,7 @@ def loads(text: str, *, path: str | Path | None = None) -> Study | ActuatorStudy
     Examples
     --------
     >>> study = fx.loads(fx.preset("paper-robot").source_text)
-    >>> study == fx.preset("paper-robot")
+    >>> study.robot == fx.preset("paper-robot").robot
     True
     """
     return loads_among(text, path)
