@@ -43,7 +43,9 @@ def plate_frames(system: System, robot: Robot, q: Array, pose: Array) -> list[tu
 
     By cause: seen from the floor, where it is below the mount of the platform, as seen from the base plate.
     """
-    place, R = floor(system, robot, q).seen(*platform_frame(robot, pose))
+    place, R = platform_frame(robot, pose)
+    if system.kernel.shapes.has("g"):
+        place, R = floor(system, robot, q).seen(place, R)
     found = [("", place, R)]
     if robot.platform_mount is not None:
         below = kinematics.placed(shared_by_legs(system, q, "m"), robot.platform_mount.at)

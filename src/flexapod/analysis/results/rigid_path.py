@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,7 +12,11 @@ from flexapod import kinematics
 from flexapod.analysis.results.remarks import remark
 from flexapod.common.arrays import Array
 from flexapod.model import ActuatorStudy, Robot, Study
-from flexapod.solve.statics.ideal_robot import RobotForces, rigid_forces
+from flexapod.solve.statics.ideal_robot import RobotForces, is_hexapod, rigid_forces
+from flexapod.solve.time.result_rows import inverse_dynamics
+
+if TYPE_CHECKING:
+    from flexapod.solve.kernel import Kernel
 
 FEWEST, MOST = 2000, 50_000  # intervals at which a path is looked at
 SAME = 1e-9  # instants nearer to each other than this part of the step between them are the same
@@ -83,9 +88,24 @@ class RigidPath(kinematics.RigidPoses):
         return kinematics.wrench(self.study.load, self.time)
 
     @cached_property
+    def lengths(self) -> Array:
+        """Lengths of the legs, (T, n) [m]."""
+        robot = self.robot
+        if "legs" in self.__dict__ or not kinematics.rigid_limbs(robot).plain:
+            return self.legs.length
+        joints = robot.base_joints, robot.platform_joints
+        return kinematics.leg_lengths(*joints, self.poses.position, self.poses.rotation)
+
+    @cached_property
     def forces(self) -> RobotForces:
         """Forces of drives and joints."""
         return rigid_forces(self, self.wrench)
+
+    def forces_of_simulation(self, kernel: Kernel) -> RobotForces:
+        """Forces of drives and joints; of six legs UPS by compiled loops, where the equations are compiled."""
+        if "forces" in self.__dict__ or kernel.library is None or not is_hexapod(self.robot):
+            return self.forces
+        return RobotForces.from_balances(inverse_dynamics(kernel, self, self.wrench))
 
     def at(self, t: Array) -> RigidPath:
         """The path at other instants: this one, or what is known of its poses, where it has them."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.analysis.results.causes import deviation_by_cause, errors_of
+from flexapod.analysis.results.causes import shares_and_sums
 from flexapod.analysis.results.lazy_arrays import ArraySource
 from flexapod.analysis.results.leg_results import leg_labels, leg_results, sliding_words
 from flexapod.analysis.results.legs import bending_basis, has_strokes, screw_travel, stroke_forces
@@ -20,6 +21,9 @@ from flexapod.kinematics.trajectory import coordinates, turning_axes
 from flexapod.model import Robot, Study
 from flexapod.solve.frames import base_on_mount, floor, shared_by_legs
 from flexapod.solve.system import System
+
+if TYPE_CHECKING:
+    from flexapod.solve.kernel import Kernel
 
 
 def robot_results(system: System, path: RigidPath, record: Record) -> dict[str, ArraySource]:
@@ -72,27 +76,22 @@ def payload_results(path: RigidPath, record: Record) -> dict[str, ArraySource]:
 
 def cause_results(system: System, path: RigidPath, record: Record) -> dict[str, ArraySource]:
     """Deviation of the centre of mass by cause."""
-
-    @cache
-    def shares() -> Array:
-        found = deviation_by_cause(path, errors_of(system, path, record))
-        return found if path.base is None else np.einsum("txy,tcly->tclx", path.base.rotation, found)
-
-    def residual() -> Array:
-        deviation = record.pose[:, :3] - path.place(path.robot.com)
-        return deviation - shares().reshape(len(deviation), -1, 3).sum(axis=1)
-
-    return {"deviation_by_cause": shares, "deviation_residual": residual}
+    found = cache(lambda: shares_and_sums(system, path, record))
+    return {
+        "deviation_by_cause": lambda: found()[0],
+        "deviation_residual": lambda: record.pose[:, :3] - path.place(path.robot.com) - found()[1],
+    }
 
 
-def rigid_force_results(path: RigidPath) -> dict[str, ArraySource]:
-    """Drive and joint forces of the rigid robot."""
+def rigid_force_results(path: RigidPath, kernel: Kernel | None = None) -> dict[str, ArraySource]:
+    """Drive and joint forces of the rigid robot; `kernel`: equations of a simulation that has integrated the robot."""
+    forces = cache(lambda: path.forces if kernel is None else path.forces_of_simulation(kernel))
     found: dict[str, ArraySource] = {
-        "drive_force_rigid": lambda: path.forces.drive_force * screw_travel(path.robot),
-        "joint_force_rigid": lambda: path.forces.joint_force,
+        "drive_force_rigid": lambda: forces().drive_force * screw_travel(path.robot),
+        "joint_force_rigid": lambda: forces().joint_force,
     }
     if has_strokes(path.robot):
-        found["actuator_force_rigid"] = lambda: stroke_forces(robot_limbs(path.robot), path.forces.drive_force)
+        found["actuator_force_rigid"] = lambda: stroke_forces(robot_limbs(path.robot), forces().drive_force)
     return found
 
 

@@ -177,14 +177,14 @@ def compiled_library(
     return found
 
 
-def written_library(sources: Sequence[Path], command: list[str]) -> ctypes.CDLL:
+def written_library(sources: Sequence[Path], command: list[str], flags: Sequence[str] = LOOPS) -> ctypes.CDLL:
     """Load (compiling on first use) hand-written C `sources`, in this order; raises as `compiled_library`."""
     unit = "\n".join([PRELUDE.read_text(), *(path.read_text() for path in sources), _signatures({})])
-    cache, name = open_cache(), _name([unit], LOOPS, command)
+    cache, name = open_cache(), _name([unit], flags, command)
     if cache and (found := _first(intact_libraries(cache, name))):
         return found[0]
     with _announced(), temporary_folder() as folder:
-        return _library(name, [unit], LOOPS, command, cache, folder)[0]
+        return _library(name, [unit], flags, command, cache, folder)[0]
 
 
 def shared_object(texts: Mapping[str, str], sources: Sequence[str], flags: Sequence[str]) -> bytes:
