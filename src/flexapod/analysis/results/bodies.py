@@ -141,7 +141,7 @@ def flexible_axes(robot: Robot, system: System, record: Record | RestStates) -> 
 
 def draw(robot: Robot, system: System, record: Record | RestStates) -> Drawn:
     """The robot as it is drawn at the instants of a record."""
-    place, R = rigid_pose(system, robot, record.q, record.pose)
+    place, R = rigid_pose(system, robot, record.q, record.pose, getattr(record, "attitude", None))
     shapes = system.kernel.shapes
     base = base_points(rigid_limbs(robot), record.q[..., shapes.index("chi")] if shapes.has("chi") else None)
     return Drawn(place=place, rotation=R, base=base if base.ndim == 3 else base[None])

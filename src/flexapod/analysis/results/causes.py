@@ -14,6 +14,7 @@ from flexapod.analysis.results.elongations import (
     elongations,
     frame_names,
     gap_elongations,
+    has_gap,
     part_names,
     tip_displacements,
 )
@@ -212,7 +213,8 @@ def shares_and_sums(system: System, path: RigidPath, record: Record) -> tuple[Ar
         time=record.time,
         q=record.q,
         pose=record.pose,
-        played=gap_elongations(system, record.q) if system.kernel.shapes.has("r") else None,
+        turn=record.attitude,
+        played=gap_elongations(system, record.q) if has_gap(system) else None,
         rubs=record.friction[..., -1] if "drive" in places_with_friction(robot) else None,
     )
     moves = None if is_hexapod(robot) else _by_error(path)[:, :, L]

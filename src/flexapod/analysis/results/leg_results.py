@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -49,6 +50,10 @@ from flexapod.solve.friction import sliding_jacobian
 from flexapod.solve.statics.ideal_robot import RobotForces, idealize_robot, rigid_system
 from flexapod.solve.statics.lost_motion import places_with_friction
 from flexapod.solve.system import System
+from flexapod.solve.time import result_rows
+
+if TYPE_CHECKING:
+    from flexapod.solve.kernel import Kernel
 
 STROKES = ("leg_length_command", "leg_length", "leg_stroke", "actuator_force")
 """Variables of robots whose legs have strokes."""
@@ -65,7 +70,7 @@ def leg_results(system: System, path: RigidPath, record: Record) -> dict[str, Ar
     results: dict[str, ArraySource] = {
         "leg_angle": lambda: np.stack([q[..., shapes.index(x)] for x in by_name.angle_names(found).values()], axis=-1),
         "drive_position": lambda: _drive_positions(robot, system, record) / turns + zero,
-        "drive_command": lambda: _commands(found, path) / turns + zero,
+        "drive_command": lambda: _commands(found, path, system.kernel) / turns + zero,
         "drive_force": lambda: _motor_forces(robot, system, forces()) * turns,
         "tip_deflection": lambda: _tip_deflections(robot, system, q),
         "joint_force": record.lam[..., :3],
@@ -73,7 +78,7 @@ def leg_results(system: System, path: RigidPath, record: Record) -> dict[str, Ar
     results |= body_results(robot, system.kernel, drawn, length)
     if by_name.has_strokes(robot):
         made = (
-            lambda: path.lengths,
+            lambda: path.lengths_of_simulation(system.kernel),
             length,
             q[..., shapes.l_index],
             lambda: by_name.stroke_forces(found, drive_forces(robot, system, record)),
@@ -187,11 +192,11 @@ def drive_forces(robot: Robot, system: System, record: Record) -> Array:
     return found
 
 
-def _commands(found: Limbs, path: RigidPath) -> Array:
+def _commands(found: Limbs, path: RigidPath, kernel: Kernel | None = None) -> Array:
     """Places of the drives on the rigid path, (T, legs)."""
     names = by_name.drive_names(found)
-    if {*names} == {"l"}:
-        return path.lengths
+    if kernel is not None and {*names} == {"l"}:
+        return path.lengths_of_simulation(kernel)
     of = {name: path.legs.coordinate(name)[0] for name in {*names}}
     return np.stack([of[name][:, i] for i, name in enumerate(names)], axis=1)
 
@@ -247,8 +252,12 @@ def drive_forms(robot: Robot) -> dict[str, Variable]:
 def flexible_lengths(robot: Robot, system: System, record: Record, at: Drawn) -> Array:
     """Joint-to-joint lengths of the flexible robot, (T, legs) [m], Eq. (T8.1)."""
     built = built_limbs(robot, robot_limbs(robot))
-    tips = at.place[:, None] + (built.platform - robot.com) @ at.rotation.swapaxes(1, 2)
-    return np.linalg.norm(tips - by_name.base_points(built, _carriages(system, record.q)), axis=-1)
+    base, platform = by_name.base_points(built, _carriages(system, record.q)), built.platform - robot.com
+    if system.kernel.library is not None:
+        base = base if base.ndim == 3 else base[None]
+        return result_rows.lengths(system.kernel, at.place, at.rotation, base, platform)
+    tips = at.place[:, None] + platform @ at.rotation.swapaxes(1, 2)
+    return np.linalg.norm(tips - base, axis=-1)
 
 
 def _carriages(system: System, q: Array) -> Array | None:

@@ -13,7 +13,7 @@ from flexapod.analysis.results.remarks import remark
 from flexapod.common.arrays import Array
 from flexapod.model import ActuatorStudy, Robot, Study
 from flexapod.solve.statics.ideal_robot import RobotForces, is_hexapod, rigid_forces
-from flexapod.solve.time.result_rows import inverse_dynamics
+from flexapod.solve.time.result_rows import inverse_dynamics, lengths
 
 if TYPE_CHECKING:
     from flexapod.solve.kernel import Kernel
@@ -88,18 +88,16 @@ class RigidPath(kinematics.RigidPoses):
         return kinematics.wrench(self.study.load, self.time)
 
     @cached_property
-    def lengths(self) -> Array:
-        """Lengths of the legs, (T, n) [m]."""
-        robot = self.robot
-        if "legs" in self.__dict__ or not kinematics.rigid_limbs(robot).plain:
-            return self.legs.length
-        joints = robot.base_joints, robot.platform_joints
-        return kinematics.leg_lengths(*joints, self.poses.position, self.poses.rotation)
-
-    @cached_property
     def forces(self) -> RobotForces:
         """Forces of drives and joints."""
         return rigid_forces(self, self.wrench)
+
+    def lengths_of_simulation(self, kernel: Kernel) -> Array:
+        """Lengths of the legs, (T, n) [m]; of legs UPS by compiled loops, where the equations are compiled."""
+        limbs = kinematics.rigid_limbs(self.robot)
+        if "legs" in self.__dict__ or kernel.library is None or not limbs.plain:
+            return self.legs.length
+        return lengths(kernel, self.poses.position, self.poses.rotation, limbs.base[None], limbs.platform)
 
     def forces_of_simulation(self, kernel: Kernel) -> RobotForces:
         """Forces of drives and joints; of six legs UPS by compiled loops, where the equations are compiled."""

@@ -16,7 +16,7 @@ from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.analysis.results.time_history import Record
 from flexapod.common.arrays import Array
 from flexapod.kinematics.robot import robot_limbs
-from flexapod.kinematics.rotations import canonical, difference, matrix, quaternion
+from flexapod.kinematics.rotations import canonical, difference, quaternion
 from flexapod.kinematics.trajectory import coordinates, turning_axes
 from flexapod.model import Robot, Study
 from flexapod.solve.frames import base_on_mount, floor, shared_by_legs
@@ -57,9 +57,11 @@ def payload_results(path: RigidPath, record: Record) -> dict[str, ArraySource]:
     robot, com = path.robot, record.pose[:, :3]
     e = cache(lambda: canonical(record.pose[:, 3:]))
     e_rigid = cache(lambda: quaternion(path.rotation))
-    R = cache(lambda: matrix(e()))
     com_rigid = cache(lambda: path.place(robot.com))
-    tool, tool_rigid = cache(lambda: com + R() @ (robot.tool - robot.com)), cache(lambda: path.place(robot.tool))
+    tool, tool_rigid = (
+        cache(lambda: com + record.attitude @ (robot.tool - robot.com)),
+        cache(lambda: path.place(robot.tool)),
+    )
     return {
         "com_position_rigid": com_rigid,
         "com_position": com,
@@ -70,7 +72,7 @@ def payload_results(path: RigidPath, record: Record) -> dict[str, ArraySource]:
         "rotation_deviation": lambda: difference(e(), e_rigid()),
         "platform_quaternion": e,
         "platform_quaternion_rigid": e_rigid,
-        "platform_angular_velocity": lambda: np.einsum("tij,tj->ti", R(), record.turn),
+        "platform_angular_velocity": lambda: np.einsum("tij,tj->ti", record.attitude, record.turn),
     }
 
 
@@ -136,7 +138,7 @@ def frame_results(system: System, path: RigidPath, record: Record) -> dict[str, 
 
 def _from_the_base(robot: Robot, system: System, record: Record) -> tuple[Array, Array]:
     """Tool (T, 3) and attitude of the payload (T, 3, 3) as seen from the base plate."""
-    R = matrix(record.pose[:, 3:])
+    R = record.attitude
     tool = record.pose[:, :3] + R @ (robot.tool - robot.com)
     return base_on_mount(system, robot, record.q).seen(*floor(system, robot, record.q).seen(tool, R))
 

@@ -58,7 +58,7 @@ class _Causes(Given):
 
 
 class Moved(NamedTuple):
-    """State of a robot at T instants: `time` [s], `q` (T, legs, n), `pose` (T, 7) of the payload.
+    """State of a robot at T instants: `time` [s], `q` (T, legs, n), `pose` (T, 7) and attitude of the payload.
 
     ``played`` (T, legs): elongation of legs by their gaps [m]; ``rubs`` (T, legs): friction of the drives [N]; each
     None where there is none.
@@ -67,6 +67,7 @@ class Moved(NamedTuple):
     time: Array
     q: Array
     pose: Array
+    turn: Array
     played: Array | None
     rubs: Array | None
 
@@ -169,7 +170,7 @@ def _built(robot: Robot) -> list[_Built]:
 def _stages(system: System, at: kinematics.RigidPoses, moved: Moved, index: dict[str, int]) -> dict[str, Any]:
     """Frames and joints, stage by stage, from those of the nominal robot to where the legs have them."""
     robot, legs, built = at.robot, rigid_limbs(at.robot), _built(at.robot)
-    frames = plate_frames(system, robot, moved.q, moved.pose)
+    frames = plate_frames(system, robot, moved.q, moved.pose, moved.turn)
     last, none = len(frames) - 1, np.zeros(robot.count)
     nominal = _Stage(legs.base, legs.platform, none, none)
     numbers = [(k, int(k > 0), index.get(name, 0)) for k, (name, *_) in enumerate(frames)]

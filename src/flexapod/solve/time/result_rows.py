@@ -79,9 +79,17 @@ class _Balances(Given):
 def result_loops(command: tuple[str, ...]) -> ctypes.CDLL:
     """Compiled loops over rows, the same for all robots."""
     library = written_library(SOURCES, list(command), FLAGS)
-    for name in ("joint_turns", "leg_clearance"):
+    for name in ("joint_turns", "leg_lengths", "leg_clearance"):
         getattr(library, name).restype = None
     return library
+
+
+def lengths(kernel: Kernel, place: Array, rotation: Array, base: Array, platform: Array) -> Array:
+    """Distances of joints `base` (T or 1, n, 3) and `platform` (n, 3) of a frame at T poses, (T, n) [m]."""
+    found = np.empty((len(place), len(platform)))
+    drawn = _Drawn(legs=len(platform), platform=platform, place=place, rotation=rotation, base=base)
+    result_loops(kernel.compiler).leg_lengths(byref(drawn), c_long(len(place)), to(found))
+    return found
 
 
 class DrawnLegs:

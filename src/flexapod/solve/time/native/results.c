@@ -92,6 +92,15 @@ INLINE vector tip_of(const Drawn *d, const Block *b, matrix R, long i) {
   return plus(vector_of(d->place, b, 0), turned(R, same(d->platform + 3*i)));
 }
 
+/* length (count, legs) between the joints */
+void leg_lengths(const Drawn *d, long count, double *length) {
+  EACH_BLOCK(b, count) {
+    matrix R = matrix_of(d->rotation, &b);
+    for (long i = 0; i < d->legs; i++)
+      put(length, &b, d->legs, i, norm(minus(tip_of(d, &b, R, i), vector_of(d->base, &b, 3*i))));
+  }
+}
+
 INLINE vector axis_of(const Drawn *d, const Block *b, vector tip, long i) {
   vector s = minus(tip, vector_of(d->base, b, 3*i));
   return times(1.0 / norm(s), s);
