@@ -25,13 +25,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
-@lru_cache(maxsize=64)
-def _first_equal(robot: Robot) -> Robot:
-    """The first one of robots that are equal: what is known of it is found by identity, equals are compared once."""
-    return robot
-
-
-def cache_per_robot(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
+def _latest_kept(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
     """Compute it once for each of the last 64 robots; the same robot again is not compared with its equals."""
     of_equals = cast("Callable[[Robot], T]", lru_cache(maxsize=64)(compute))
     latest: tuple[Robot, T] | None = None
@@ -40,10 +34,25 @@ def cache_per_robot(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
         nonlocal latest
         known = latest
         if known is None or known[0] is not robot:
-            known = latest = robot, of_equals(_first_equal(robot))
+            known = latest = robot, of_equals(robot)
         return known[1]
 
     return wraps(compute)(look_up)
+
+
+@_latest_kept
+def _first_equal(robot: Robot) -> Robot:
+    """The first one of robots that are equal."""
+    return robot
+
+
+def cache_per_robot(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
+    """Compute it once for each of the last 64 robots.
+
+    A robot is compared with its equals once for all that is computed of it, not for each.
+    """
+    of_first = _latest_kept(compute)
+    return wraps(compute)(lambda robot: of_first(_first_equal(robot)))
 
 
 @cache_per_robot

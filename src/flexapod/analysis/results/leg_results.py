@@ -5,9 +5,9 @@ Accuracy of forces of a run within a tolerance: estimate over peak, Eq. (T6.34),
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -52,9 +52,6 @@ from flexapod.solve.statics.lost_motion import places_with_friction
 from flexapod.solve.system import System
 from flexapod.solve.time import result_rows
 
-if TYPE_CHECKING:
-    from flexapod.solve.kernel import Kernel
-
 STROKES = ("leg_length_command", "leg_length", "leg_stroke", "actuator_force")
 """Variables of robots whose legs have strokes."""
 _BASE_ANGLES = ("alpha", "beta", "spin")
@@ -65,12 +62,13 @@ def leg_results(system: System, path: RigidPath, record: Record) -> dict[str, Ar
     robot, shapes, q = path.robot, system.kernel.shapes, record.q
     found = robot_limbs(robot)
     forces, drawn = cache(lambda: _port_forces(system, record)), cache(lambda: draw(robot, system, record))
+    commanded = cache(lambda: path.lengths_of_simulation(system.kernel))
     length = cache(lambda: flexible_lengths(robot, system, record, drawn()))
     zero, turns = _zero(found), by_name.screw_travel(robot)
     results: dict[str, ArraySource] = {
         "leg_angle": lambda: np.stack([q[..., shapes.index(x)] for x in by_name.angle_names(found).values()], axis=-1),
         "drive_position": lambda: _drive_positions(robot, system, record) / turns + zero,
-        "drive_command": lambda: _commands(found, path, system.kernel) / turns + zero,
+        "drive_command": lambda: _commands(found, path, commanded) / turns + zero,
         "drive_force": lambda: _motor_forces(robot, system, forces()) * turns,
         "tip_deflection": lambda: _tip_deflections(robot, system, q),
         "joint_force": record.lam[..., :3],
@@ -78,7 +76,7 @@ def leg_results(system: System, path: RigidPath, record: Record) -> dict[str, Ar
     results |= body_results(robot, system.kernel, drawn, length)
     if by_name.has_strokes(robot):
         made = (
-            lambda: path.lengths_of_simulation(system.kernel),
+            commanded,
             length,
             q[..., shapes.l_index],
             lambda: by_name.stroke_forces(found, drive_forces(robot, system, record)),
@@ -151,10 +149,10 @@ def _drive_positions(robot: Robot, system: System, record: Record) -> Array:
     """Positions of the drives, (T, legs): strokes, carriages, travel of rotors; of a servo its end of the spring."""
     shapes, q = system.kernel.shapes, record.q
     found = by_name.drive_values(robot_limbs(robot), shapes, q)
-    gives = elongations(robot, system, q, ("nut",))
-    give = np.sum(list(gives.values()), axis=0)
-    give = give + gap_elongations(system, q)
-    return found - give if shapes.has("r") else found
+    if not shapes.has("r"):
+        return found
+    gap = gap_elongations(system, q)
+    return found - (np.sum(list(elongations(robot, system, q, ("nut",), gap).values()), axis=0) + gap)
 
 
 def _motor_forces(robot: Robot, system: System, forces: Array) -> Array:
@@ -192,11 +190,11 @@ def drive_forces(robot: Robot, system: System, record: Record) -> Array:
     return found
 
 
-def _commands(found: Limbs, path: RigidPath, kernel: Kernel | None = None) -> Array:
+def _commands(found: Limbs, path: RigidPath, lengths: Callable[[], Array] | None = None) -> Array:
     """Places of the drives on the rigid path, (T, legs)."""
     names = by_name.drive_names(found)
-    if kernel is not None and {*names} == {"l"}:
-        return path.lengths_of_simulation(kernel)
+    if lengths is not None and {*names} == {"l"}:
+        return lengths()
     of = {name: path.legs.coordinate(name)[0] for name in {*names}}
     return np.stack([of[name][:, i] for i, name in enumerate(names)], axis=1)
 

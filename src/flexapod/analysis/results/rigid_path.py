@@ -13,7 +13,7 @@ from flexapod.analysis.results.remarks import remark
 from flexapod.common.arrays import Array
 from flexapod.model import ActuatorStudy, Robot, Study
 from flexapod.solve.statics.ideal_robot import RobotForces, is_hexapod, rigid_forces
-from flexapod.solve.time.result_rows import inverse_dynamics, lengths
+from flexapod.solve.time.result_rows import balances, lengths
 
 if TYPE_CHECKING:
     from flexapod.solve.kernel import Kernel
@@ -100,10 +100,10 @@ class RigidPath(kinematics.RigidPoses):
         return lengths(kernel, self.poses.position, self.poses.rotation, limbs.base[None], limbs.platform)
 
     def forces_of_simulation(self, kernel: Kernel) -> RobotForces:
-        """Forces of drives and joints; of six legs UPS by compiled loops, where the equations are compiled."""
+        """Forces of drives and on the platform; of six legs UPS by compiled loops, where the equations are compiled."""
         if "forces" in self.__dict__ or kernel.library is None or not is_hexapod(self.robot):
             return self.forces
-        return RobotForces.from_balances(inverse_dynamics(kernel, self, self.wrench))
+        return RobotForces(**balances(kernel, self, self.wrench))
 
     def at(self, t: Array) -> RigidPath:
         """The path at other instants: this one, or what is known of its poses, where it has them."""

@@ -12,7 +12,6 @@ import numpy as np
 from flexapod import kinematics
 from flexapod.common.arrays import Array, Index, Mask
 from flexapod.common.ranking import EQUALS, first_largest, is_largest
-from flexapod.kinematics.dynamics import RigidForces
 from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN
 from flexapod.kinematics.robot import cache_per_robot
 from flexapod.model import ForceDrive, Leg, PrescribedDrive, Robot, Simulation
@@ -95,16 +94,6 @@ class RobotForces:
     closure: Array | None = None
     open_forces: int = 0
 
-    @classmethod
-    def from_balances(cls, found: RigidForces) -> RobotForces:
-        """Forces of legs UPS by Newton and Euler."""
-        return cls(
-            drive_force=found.actuator_force,
-            joint_force=found.joint_force,
-            base_force=found.base_force,
-            base_moment=found.base_moment,
-        )
-
 
 def rigid_forces(at: kinematics.RigidPoses, wrench: Array) -> RobotForces:
     """Forces of drives and joints of the robot of the rigid path.
@@ -125,7 +114,13 @@ def rigid_forces(at: kinematics.RigidPoses, wrench: Array) -> RobotForces:
     """
     robot = at.robot
     if is_hexapod(robot):
-        return RobotForces.from_balances(at.inverse_dynamics(wrench))
+        found = at.inverse_dynamics(wrench)
+        return RobotForces(
+            drive_force=found.actuator_force,
+            joint_force=found.joint_force,
+            base_force=found.base_force,
+            base_moment=found.base_moment,
+        )
     system = rigid_system(robot)
     states, rates = rigid_motion(system, _ideal_poses(at))
     pushed, loose = _constant(robot, system)

@@ -15,7 +15,6 @@ import numpy as np
 
 from flexapod.common.errors import ComputationError
 from flexapod.kinematics.bodies import Nearest
-from flexapod.kinematics.dynamics import RigidForces
 from flexapod.kinematics.robot import home_frames, leg_bodies, payload_body
 from flexapod.mechanics.symbolic.compiler import FLAGS, written_library
 from flexapod.solve.time.native import NATIVE
@@ -134,8 +133,10 @@ class DrawnLegs:
         return found
 
 
-def inverse_dynamics(kernel: Kernel, at: RigidPoses, wrench: Array) -> RigidForces:
-    """Drive forces and joint reactions of six legs UPS, `wrench` (T, 6) at the tool; see `kinematics.dynamics`.
+def balances(kernel: Kernel, at: RigidPoses, wrench: Array) -> dict[str, Array]:
+    """Forces ``drive_force`` (T, 6) and ``joint_force`` (T, 6, 3) of six legs UPS; `wrench` (T, 6) at the tool.
+
+    Those of `kinematics.dynamics.inverse_dynamics`, Eqs. (T2.26)-(T2.34).
 
     Raises
     ------
@@ -144,21 +145,21 @@ def inverse_dynamics(kernel: Kernel, at: RigidPoses, wrench: Array) -> RigidForc
     """
     robot, poses, bodies, load = at.robot, at.poses, leg_bodies(at.robot), payload_body(at.robot)
     count, legs = len(poses), robot.count
-    axial = bodies.cylinder_axial, bodies.piston_mass, bodies.piston_length, bodies.piston_axial
-    masses = np.stack([bodies.cylinder_mass, bodies.cylinder_com, bodies.cylinder_inertia, *axial], axis=1)
-    balances = _Balances(
-        frames=home_frames(robot), base=robot.base_joints, platform=robot.platform_joints, legs=masses,
+    axial = bodies.axial, bodies.piston_mass, bodies.piston_length
+    given = _Balances(
+        frames=home_frames(robot), base=robot.base_joints, platform=robot.platform_joints,
+        legs=np.stack([bodies.cylinder_mass, bodies.cylinder_com, bodies.cylinder_inertia, *axial], axis=1),
         inertia=load.inertia, com=load.com, tool=load.tool, gravity=robot.gravity, mass=load.mass,
         position=poses.position, velocity=poses.velocity, acceleration=poses.acceleration, rotation=poses.rotation,
         omega=poses.omega, alpha=poses.alpha, wrench=wrench,
     )  # fmt: skip
-    found = [np.empty((count, legs)), *np.empty((3, count, legs, 3))]
-    if result_loops(kernel.compiler).rigid_forces(byref(balances), c_long(count), *map(to, found)):
+    drive, joint = np.empty((count, legs)), np.empty((count, legs, 3))
+    if result_loops(kernel.compiler).rigid_forces(byref(given), c_long(count), to(drive), to(joint)):
         raise ComputationError(
             "The legs cannot carry the payload: a pose of the path is singular",
             next_step="Check the path for singular poses and change the layout or the motion",
         )
-    return RigidForces(**dict(zip(("actuator_force", "joint_force", "base_force", "base_moment"), found, strict=True)))
+    return {"drive_force": drive, "joint_force": joint}
 
 
 def to(array: NDArray[Any]) -> c_void_p:

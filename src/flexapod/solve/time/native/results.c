@@ -181,9 +181,9 @@ void leg_clearance(const Drawn *d, long count, double *gap, long long *legs) {
   }
 }
 
-/* ---- balances of Newton and Euler of a payload on six legs UPS, Eqs. (T2.16)-(T2.35) ---- */
+/* ---- balances of Newton and Euler of a payload on six legs UPS, Eqs. (T2.16)-(T2.34) ---- */
 
-typedef struct { double mass, com, inertia, axial, piston_mass, piston_length, piston_axial; } LegMasses;
+typedef struct { double mass, com, inertia, axial, piston_mass, piston_length; } LegMasses;   /* axial: of all */
 
 typedef struct {
   const double *frames, *base, *platform; /* (6, 3, 3) of the legs at home; joints (6, 3) */
@@ -196,7 +196,7 @@ typedef struct {
 
 typedef struct { lanes ca, sa, cb, sb; } JointTurn;
 typedef struct { JointTurn at; matrix frame; } LegAxes;
-typedef struct { vector side, axis, moment, inertial; lanes piston; } LegForces;
+typedef struct { vector side, axis; lanes piston; } LegForces;   /* across and along the leg, on the piston less weight */
 
 INLINE vector into_leg(const LegAxes *a, vector world) {
   JointTurn t = a->at;
@@ -221,20 +221,14 @@ INLINE LegForces forces_of_leg(const LegMasses *m, matrix frame, vector s, vecto
   lanes wx = -v.y/l, wy = v.x/l, alpha = wx/cb, wz = alpha*sb;                       /* (T2.18) */
   lanes wx_dot = (-a.y - 2.0*v.z*wx)/l + wy*wz, wy_dot = (a.x - 2.0*v.z*wy)/l - wx*wz;   /* (T2.19) */
   lanes wz_dot = (wx_dot + alpha*wy*sb)/cb*sb + alpha*wy*cb, accel = a.z + l*(wx*wx + wy*wy);   /* (T2.20) */
-  vector swing = {wy_dot + wx*wz, wy*wz - wx_dot, -(wx*wx + wy*wy)};   /* acceleration for each metre from the joint */
-  lanes r = l - m->piston_length/2;
-  vector piston = plus(times(r, swing), (vector){2.0*v.z*wy, -2.0*v.z*wx, accel}), cylinder = times(all(m->com), swing);
+  lanes r = l - m->piston_length/2, piston = accel - r*(wx*wx + wy*wy);
   lanes transverse = m->inertia + m->mass*m->com*m->com + m->piston_mass*(m->piston_length*m->piston_length/12 + r*r);
   lanes growth = 2.0*m->piston_mass*r*v.z, fixed = m->mass*m->com + m->piston_mass*r;
-  double axial = m->axial + m->piston_axial;
-  lanes twist = axial*wz_dot/cb;                                       /* (T2.29) */
-  vector moment = {-twist*sb, all(0.0), twist*cb};
-  lanes hx = transverse*wx_dot + growth*wx + (axial - transverse)*wy*wz;
-  lanes hy = transverse*wy_dot + growth*wy + (transverse - axial)*wx*wz;
-  vector side = {(fixed*g.x - hy)/l, (hx + fixed*g.y - moment.x)/l, all(0.0)};
-  vector inertial = plus(times(all(m->mass), minus(cylinder, g)), times(all(m->piston_mass), minus(piston, g)));
-  return (LegForces){out_of_leg(&axes, side), out_of_leg(&axes, (vector){all(0.0), all(0.0), all(1.0)}),
-                     out_of_leg(&axes, moment), out_of_leg(&axes, inertial), m->piston_mass*(piston.z - g.z)};
+  lanes moment = -m->axial*wz_dot*sb/cb;                               /* (T2.29) */
+  lanes hx = transverse*wx_dot + growth*wx + (m->axial - transverse)*wy*wz;
+  lanes hy = transverse*wy_dot + growth*wy + (transverse - m->axial)*wx*wz;
+  vector side = {(fixed*g.x - hy)/l, (hx + fixed*g.y - moment)/l, all(0.0)};
+  return (LegForces){out_of_leg(&axes, side), times(1.0/l, s), m->piston_mass*(piston - g.z)};
 }
 
 INLINE void put_line(lanes A[SIX][MOST], long i, vector force, vector moment) {
@@ -242,8 +236,8 @@ INLINE void put_line(lanes A[SIX][MOST], long i, vector force, vector moment) {
   for (int k = 0; k < SIX; k++) A[k][i] = line[k];
 }
 
-/* drive (count, 6), joint, foot and moment (count, 6, 3) as in `kinematics.dynamics.RigidForces`; 1: a pose is singular */
-int rigid_forces(const Balances *d, long count, double *drive, double *joint, double *foot, double *moment) {
+/* drive (count, 6) and joint (count, 6, 3): of the drives, and of the legs on the platform; 1: a pose is singular */
+int rigid_forces(const Balances *d, long count, double *drive, double *joint) {
   int failed = 0;
   EACH_BLOCK(b, count) {
     lanes A[SIX][MOST];
@@ -268,11 +262,8 @@ int rigid_forces(const Balances *d, long count, double *drive, double *joint, do
     put_line(A, SIX, force, about);
     failed |= solved(A, SIX + 1);
     for (long i = 0; i < SIX; i++) {
-      vector whole = plus(leg[i].side, times(A[i][SIX], leg[i].axis));
       put(drive, &b, SIX, i, A[i][SIX] + leg[i].piston);                /* (T2.34) */
-      put_vector(joint, &b, 3*SIX, 3*i, whole);
-      put_vector(foot, &b, 3*SIX, 3*i, plus(leg[i].inertial, whole));    /* (T2.35) */
-      put_vector(moment, &b, 3*SIX, 3*i, leg[i].moment);
+      put_vector(joint, &b, 3*SIX, 3*i, plus(leg[i].side, times(A[i][SIX], leg[i].axis)));
     }
   }
   return failed;
