@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod.common.arrays import Array, Mask
 from flexapod.kinematics import dynamics, inverse, jacobian, mechanism, workspace
-from flexapod.kinematics.closures import Closed
+from flexapod.kinematics.closures import Closed, ClosureMotion
 from flexapod.kinematics.dynamics import LoadSharing, RigidForces
 from flexapod.kinematics.inverse import LegState
 from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN
@@ -47,17 +47,27 @@ class RigidPoses:
         Of the platform frame.
     legs : LegState, optional
         There, where they are known.
+    moved : ClosureMotion, optional
+        Coordinates of the legs there with two derivatives, where they are known.
     """
 
-    def __init__(self, robot: Robot, poses: Poses, legs: LegState | None = None) -> None:
+    moved: ClosureMotion | None = None
+
+    def __init__(
+        self, robot: Robot, poses: Poses, legs: LegState | None = None, moved: ClosureMotion | None = None
+    ) -> None:
         self.robot = robot
         self.poses = poses
         if legs is not None:
             self.legs = legs
+        self.moved = moved
 
     @cached_property
     def closed_legs(self) -> Closed:
         """Coordinates of the legs by their closures, NaN where they do not reach."""
+        moved = self.moved
+        if moved is not None:
+            return Closed(q=moved.q, x=moved.platform.position, gap=np.zeros(moved.q.shape[:2]))
         return mechanism.legs_at(rigid_limbs(self.robot), self.poses)
 
     @cached_property
@@ -82,7 +92,7 @@ class RigidPoses:
         legs = rigid_limbs(self.robot)
         if legs.plain:
             return inverse.state_of(leg_map(self.robot), self.poses)
-        return mechanism.leg_state(legs, self.poses, self.closed_legs)
+        return mechanism.leg_state(legs, self.poses, self.closed_legs, self.moved)
 
     @cached_property
     def axes(self) -> Array:
