@@ -31,8 +31,14 @@ def legs_at(limbs: Limbs, path: Poses) -> Closed:
     return found
 
 
-def leg_state(limbs: Limbs, path: Poses, found: Closed) -> LegState:
-    """Legs at T poses with two derivatives; `found`: as of `legs_at` there.
+def moved_legs(limbs: Limbs, path: Poses, found: Closed) -> ClosureMotion:
+    """Coordinates of the legs at T poses with two derivatives; `found`: as of `legs_at` there."""
+    task = Task(limbs.unknown, np.zeros(6, dtype=bool), np.zeros(3))
+    return solve_rates(limbs, task, found, path)
+
+
+def leg_state(limbs: Limbs, path: Poses, found: Closed, moved: ClosureMotion | None = None) -> LegState:
+    """Legs at T poses with two derivatives; `found`: as of `legs_at` there; `moved`: of them, where it is known.
 
     Raises
     ------
@@ -41,8 +47,7 @@ def leg_state(limbs: Limbs, path: Poses, found: Closed) -> LegState:
     """
     refuse_lost(limbs, found)
     _refuse_folded(limbs, found.q)
-    task = Task(limbs.unknown, np.zeros(6, dtype=bool), np.zeros(3))
-    return _as_state(limbs, solve_rates(limbs, task, found, path))
+    return _as_state(limbs, moved_legs(limbs, path, found) if moved is None else moved)
 
 
 def follow(limbs: Limbs, unknown: Mask, law: Law, pivot: Array, t: Array | None = None) -> Poses:

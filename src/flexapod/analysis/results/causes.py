@@ -23,7 +23,7 @@ from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.analysis.results.time_history import Record
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError
-from flexapod.kinematics.closures import Task, solve_closures
+from flexapod.kinematics.closures import Task, close_nearby
 from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN, FREE, Limbs
 from flexapod.kinematics.robot import cache_per_robot
 from flexapod.kinematics.screws import screws
@@ -32,7 +32,7 @@ from flexapod.mechanics.elements.springs import Place
 from flexapod.model import Robot
 from flexapod.solve.batch import RestStates
 from flexapod.solve.frames import plate_frames
-from flexapod.solve.statics.ideal_robot import is_hexapod, rigid_errors
+from flexapod.solve.statics.ideal_robot import is_hexapod
 from flexapod.solve.statics.lost_motion import before_friction, places_with_friction
 from flexapod.solve.system import System
 from flexapod.solve.time import cause_rows
@@ -184,7 +184,7 @@ def _straight(robot: Robot, found: Limbs, platform: Sequence[Array], q: Array) -
         q = q.copy()
         q[..., L] = kinematics.leg_lengths(found.base, found.platform, at.position, at.rotation)
         return q
-    needed = solve_closures(found, Task(closure_coordinates(found), np.zeros(6, dtype=bool), np.zeros(3)), q, at).q
+    needed = close_nearby(found, Task(closure_coordinates(found), np.zeros(6, dtype=bool), np.zeros(3)), q, at).q
     needed[..., CHI] = q[..., CHI]
     return needed
 
@@ -242,7 +242,7 @@ def _by_error(path: RigidPath) -> Array:
     robot, poses = path.robot, path.poses
     found = kinematics.rigid_limbs(robot)
     if not is_hexapod(robot):
-        return rigid_errors(path)[..., :3]
+        return path.displacement_by_error[..., :3]
     moves = np.zeros((len(poses), *found.state.shape, 3))
     jacobian = path.drive_jacobian(robot.com)
     try:

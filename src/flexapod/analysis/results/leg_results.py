@@ -47,7 +47,7 @@ from flexapod.model import Robot, Study
 from flexapod.solve.batch import RestStates
 from flexapod.solve.frames import to_world
 from flexapod.solve.friction import sliding_jacobian
-from flexapod.solve.statics.ideal_robot import RobotForces, idealize_robot, rigid_system
+from flexapod.solve.statics.ideal_robot import idealize_robot, reactions, rigid_system
 from flexapod.solve.statics.lost_motion import places_with_friction
 from flexapod.solve.system import System
 from flexapod.solve.time import result_rows
@@ -120,15 +120,17 @@ def rigid_leg_results(path: RigidPath) -> dict[str, Array]:
     return values
 
 
-def rigid_reactions(robot: Robot, forces: RobotForces) -> dict[str, Array]:
+def rigid_reactions(path: RigidPath) -> dict[str, Array]:
     """Reactions of the rigid robot's joints, other than forces on the platform."""
-    if forces.states is None or forces.held is None or forces.closure is None:
-        return {"base_force_rigid": forces.base_force, "base_moment_rigid": forces.base_moment}  # type: ignore[dict-item]
+    robot, on_base = path.robot, (path.forces.base_force, path.forces.base_moment)
+    if on_base[0] is not None and on_base[1] is not None:
+        return {"base_force_rigid": on_base[0], "base_moment_rigid": on_base[1]}
+    states, forces = reactions(path, path.wrench)
     system, found, values = rigid_system(robot), robot_limbs(idealize_robot(robot)), {}
     if held := by_name.held_names(found):
         values["held_force_rigid"] = _held_forces(found, system, forces.held, held)
     if _bears_moments(found):
-        states = replace(forces.states, lam=forces.closure)
+        states = replace(states, lam=forces.closure)
         values["joint_moment_rigid"] = _joint_moments(idealize_robot(robot), found, system, states, forces.held)
     return values
 

@@ -11,8 +11,11 @@ import numpy as np
 from flexapod import kinematics
 from flexapod.analysis.results.remarks import remark
 from flexapod.common.arrays import Array
+from flexapod.kinematics.closures import Closed
+from flexapod.kinematics.inverse import LegState
 from flexapod.model import ActuatorStudy, Robot, Study
-from flexapod.solve.statics.ideal_robot import RobotForces, is_hexapod, rigid_forces
+from flexapod.solve.statics.ideal_robot import RobotForces, is_hexapod, rigid_errors, rigid_forces
+from flexapod.solve.statics.path_forces import PathForces
 from flexapod.solve.time.result_rows import balances, lengths
 
 if TYPE_CHECKING:
@@ -46,26 +49,60 @@ class RigidPath(kinematics.RigidPoses):
     time : ndarray, shape (T,), optional
         [s]; default: `path_instants`.
     poses : Poses, optional
-        Of the platform frame at these instants, where they are known.
+        Of the platform frame at these instants, where they are others than those of the motion.
+    loads : PathForces, optional
+        Series of this path and of its forces, where they are known.
     """
 
-    def __init__(self, study: Study, time: Array | None = None, poses: kinematics.Poses | None = None) -> None:
+    def __init__(
+        self,
+        study: Study,
+        time: Array | None = None,
+        poses: kinematics.Poses | None = None,
+        loads: PathForces | None = None,
+    ) -> None:
         self.study: Study = study
         self.robot: Robot = study.robot
         self.time: Array = path_instants(study) if time is None else time
+        self._loads = loads
         if poses is not None:
             self.poses = poses
 
     @cached_property
+    def loads(self) -> PathForces:
+        """Series of the path's forces, shared by all of its instants."""
+        series = kinematics.PathSeries(self.robot, self.study.motion, self.study.duration)
+        return PathForces(series) if self._loads is None else self._loads
+
+    @property
+    def series(self) -> kinematics.PathSeries:
+        """The path as series, shared by all of its instants."""
+        return self.loads.path
+
+    @cached_property
     def poses(self) -> kinematics.Poses:
         """Poses of the platform frame with rates and accelerations."""
-        return kinematics.poses(self.robot, self.study.motion, self.time)
+        found = self.series.at(self.time)
+        self.moved = found.moved
+        return found.poses
+
+    @cached_property
+    def closed_legs(self) -> Closed:
+        """Coordinates of the legs by their closures, NaN where they do not reach."""
+        _ = self.poses  # with them comes what the legs do
+        return super().closed_legs
+
+    @cached_property
+    def legs(self) -> LegState:
+        """Legs with two derivatives, arrays (T, n); raises as `RigidPoses.legs`."""
+        _ = self.poses
+        return super().legs
 
     @property
     def coarse_paths(self) -> Iterator[RigidPath]:
         """The path at few instants, ever farther from home, where it leads far; none where its poses are known."""
         looks = () if "poses" in self.__dict__ else kinematics.first_looks(self.robot, self.study.motion, self.time)
-        return (RigidPath(self.study, self.time[at]) for at in looks)
+        return (RigidPath(self.study, self.time[at], loads=self.loads) for at in looks)
 
     @cached_property
     def base(self) -> kinematics.Placed | None:
@@ -90,6 +127,9 @@ class RigidPath(kinematics.RigidPoses):
     @cached_property
     def forces(self) -> RobotForces:
         """Forces of drives and joints."""
+        _ = self.poses
+        if self.is_commanded:
+            return self.loads.forces(self, self.time, self.wrench)
         return rigid_forces(self, self.wrench)
 
     def lengths_of_simulation(self, kernel: Kernel) -> Array:
@@ -105,12 +145,25 @@ class RigidPath(kinematics.RigidPoses):
             return self.forces
         return RobotForces(**balances(kernel, self, self.wrench))
 
+    @cached_property
+    def displacement_by_error(self) -> Array:
+        """Displacement of the payload for unit errors of what is held, (T, legs, 8, 6); see `rigid_errors`."""
+        _ = self.poses
+        return self.loads.errors(self, self.time) if self.is_commanded else rigid_errors(self)
+
+    @property
+    def is_commanded(self) -> bool:
+        """Test whether the poses are those of the path's series."""
+        return self.moved is not None
+
     def at(self, t: Array) -> RigidPath:
         """The path at other instants: this one, or what is known of its poses, where it has them."""
         count = len(t)
         known = self.time[:count]
         if len(known) != count or np.abs(known - t).max() > SAME * (self.time[-1] / len(self.time)):
-            return RigidPath(self.study, t)
+            return RigidPath(self.study, t, loads=self.loads)
         if count == len(self.time):
             return self
-        return RigidPath(self.study, t, self.poses.part(slice(0, count)))
+        found = RigidPath(self.study, t, self.poses.part(slice(0, count)), self.loads)
+        found.moved = None if self.moved is None else self.moved.part(slice(0, count))
+        return found
