@@ -23,8 +23,8 @@ from flexapod.kinematics.dynamics import inverse_dynamics
 from flexapod.kinematics.robot import home_frames, leg_bodies, payload_body
 from flexapod.model import Expansion, Geometry, Heat, Load, ServoDrive, SineWrench
 from flexapod.model.study.mount import BaseMotion
+from flexapod.solve.result_rows import balances
 from flexapod.solve.statics.ideal_robot import is_hexapod
-from flexapod.solve.time.result_rows import balances
 
 RNG = np.random.default_rng(11)
 GEOMETRY = Geometry(

@@ -17,7 +17,7 @@ from flexapod.common.arrays import Array
 from flexapod.kinematics.robot import cache_per_robot, rigid_limbs
 from flexapod.model import Robot
 from flexapod.solve.frames import rigid_pose, to_world
-from flexapod.solve.time.result_rows import DrawnLegs
+from flexapod.solve.result_rows import DrawnLegs
 
 if TYPE_CHECKING:
     from flexapod.analysis.results.time_history import Record

@@ -32,10 +32,10 @@ from flexapod.mechanics.elements.springs import Place
 from flexapod.model import Robot
 from flexapod.solve.batch import RestStates
 from flexapod.solve.frames import plate_frames
+from flexapod.solve.statics import cause_rows
 from flexapod.solve.statics.ideal_robot import is_hexapod
 from flexapod.solve.statics.lost_motion import before_friction, places_with_friction
 from flexapod.solve.system import System
-from flexapod.solve.time import cause_rows
 
 CHI, L = COORDINATES.index("chi"), COORDINATES.index("l")
 
@@ -214,6 +214,7 @@ def shares_and_sums(system: System, path: RigidPath, record: Record) -> tuple[Ar
         q=record.q,
         pose=record.pose,
         turn=record.attitude,
+        command=path.lengths,
         played=gap_elongations(system, record.q) if has_gap(system) else None,
         rubs=record.friction[..., -1] if "drive" in places_with_friction(robot) else None,
     )

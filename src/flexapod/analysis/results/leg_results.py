@@ -5,7 +5,6 @@ Accuracy of forces of a run within a tolerance: estimate over peak, Eq. (T6.34),
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -44,13 +43,13 @@ from flexapod.kinematics.rotations import exponential, matrix
 from flexapod.mechanics.elements.springs import twist_share
 from flexapod.mechanics.leg.layout import columns, leg_parameters
 from flexapod.model import Robot, Study
+from flexapod.solve import result_rows
 from flexapod.solve.batch import RestStates
 from flexapod.solve.frames import to_world
 from flexapod.solve.friction import sliding_jacobian
 from flexapod.solve.statics.ideal_robot import idealize_robot, reactions, rigid_system
 from flexapod.solve.statics.lost_motion import places_with_friction
 from flexapod.solve.system import System
-from flexapod.solve.time import result_rows
 
 STROKES = ("leg_length_command", "leg_length", "leg_stroke", "actuator_force")
 """Variables of robots whose legs have strokes."""
@@ -62,13 +61,12 @@ def leg_results(system: System, path: RigidPath, record: Record) -> dict[str, Ar
     robot, shapes, q = path.robot, system.kernel.shapes, record.q
     found = robot_limbs(robot)
     forces, drawn = cache(lambda: _port_forces(system, record)), cache(lambda: draw(robot, system, record))
-    commanded = cache(lambda: path.lengths_of_simulation(system.kernel))
     length = cache(lambda: flexible_lengths(robot, system, record, drawn()))
     zero, turns = _zero(found), by_name.screw_travel(robot)
     results: dict[str, ArraySource] = {
         "leg_angle": lambda: np.stack([q[..., shapes.index(x)] for x in by_name.angle_names(found).values()], axis=-1),
         "drive_position": lambda: _drive_positions(robot, system, record) / turns + zero,
-        "drive_command": lambda: _commands(found, path, commanded) / turns + zero,
+        "drive_command": lambda: _commands(found, path) / turns + zero,
         "drive_force": lambda: _motor_forces(robot, system, forces()) * turns,
         "tip_deflection": lambda: _tip_deflections(robot, system, q),
         "joint_force": record.lam[..., :3],
@@ -76,7 +74,7 @@ def leg_results(system: System, path: RigidPath, record: Record) -> dict[str, Ar
     results |= body_results(robot, system.kernel, drawn, length)
     if by_name.has_strokes(robot):
         made = (
-            commanded,
+            lambda: path.lengths,
             length,
             q[..., shapes.l_index],
             lambda: by_name.stroke_forces(found, drive_forces(robot, system, record)),
@@ -192,11 +190,11 @@ def drive_forces(robot: Robot, system: System, record: Record) -> Array:
     return found
 
 
-def _commands(found: Limbs, path: RigidPath, lengths: Callable[[], Array] | None = None) -> Array:
+def _commands(found: Limbs, path: RigidPath) -> Array:
     """Places of the drives on the rigid path, (T, legs)."""
     names = by_name.drive_names(found)
-    if lengths is not None and {*names} == {"l"}:
-        return lengths()
+    if {*names} == {"l"}:
+        return path.lengths
     of = {name: path.legs.coordinate(name)[0] for name in {*names}}
     return np.stack([of[name][:, i] for i, name in enumerate(names)], axis=1)
 

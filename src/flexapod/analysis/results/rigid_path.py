@@ -12,11 +12,12 @@ from flexapod import kinematics
 from flexapod.analysis.results.remarks import remark
 from flexapod.common.arrays import Array
 from flexapod.kinematics.closures import Closed
-from flexapod.kinematics.inverse import LegState
+from flexapod.kinematics.inverse import LegState, lengths_of
+from flexapod.kinematics.robot import leg_map
 from flexapod.model import ActuatorStudy, Robot, Study
+from flexapod.solve.result_rows import balances
 from flexapod.solve.statics.ideal_robot import RobotForces, is_hexapod, rigid_errors, rigid_forces
 from flexapod.solve.statics.path_forces import PathForces
-from flexapod.solve.time.result_rows import balances, lengths
 
 if TYPE_CHECKING:
     from flexapod.solve.kernel import Kernel
@@ -132,12 +133,13 @@ class RigidPath(kinematics.RigidPoses):
             return self.loads.forces(self, self.time, self.wrench)
         return rigid_forces(self, self.wrench)
 
-    def lengths_of_simulation(self, kernel: Kernel) -> Array:
-        """Lengths of the legs, (T, n) [m]; of legs UPS by compiled loops, where the equations are compiled."""
-        limbs = kinematics.rigid_limbs(self.robot)
-        if "legs" in self.__dict__ or kernel.library is None or not limbs.plain:
+    @cached_property
+    def lengths(self) -> Array:
+        """Lengths of the legs, (T, n) [m]: those of `legs`, to the bit."""
+        _ = self.poses
+        if "legs" in self.__dict__ or not kinematics.rigid_limbs(self.robot).plain:
             return self.legs.length
-        return lengths(kernel, self.poses.position, self.poses.rotation, limbs.base[None], limbs.platform)
+        return lengths_of(leg_map(self.robot), self.poses)
 
     def forces_of_simulation(self, kernel: Kernel) -> RobotForces:
         """Forces of drives and on the platform; of six legs UPS by compiled loops, where the equations are compiled."""

@@ -293,11 +293,11 @@ typedef struct {
   const long *frame, *moved, *cause;       /* (stages): pose of the platform frame; whether joints or pose differ; cause of that */
   const Spring *spring;
   const long *first;                       /* (legs + 1): springs of each leg */
-  const double *turning, *loop;            /* (legs): lead of a nut that turns; compliance of the loop of a drive that rubs */
+  const double *loop;                      /* (legs): compliance of the loop of a drive that rubs */
   const long *inside, *given;              /* (legs) */
-  long unkeyed, friction;                  /* causes, -1: none */
-  long size, l, c, r, spin, u, e;          /* coordinates of a leg, and places of some, -1: none */
-  Rows q, played, rubs, longer;            /* (legs, size), (legs), (legs), (stages, legs) */
+  long friction;                           /* its cause, -1: none */
+  long size, l, c, r, u, e;                /* coordinates of a leg, and places of some, -1: none */
+  Rows q, command, played, rubs, longer;   /* (legs, size), (legs) each, (stages, legs) */
   Rows origin[FRAMES], axes[FRAMES];       /* of the platform frame */
   Rows position, rotation;                 /* on the rigid path */
   Rows turn, moves;                        /* of a base that moves; what errors do to the payload, (legs, 3), if known */
@@ -329,7 +329,7 @@ INLINE lanes softness(const Spring *s, lanes l) {
 static void share_out(const Causes *d, const Block *b, long i, lanes l, lanes *error) {
   long first = d->first[i], count = d->first[i + 1] - first;
   const Spring *spring = d->spring + first;
-  lanes soft[count + 1], give[PLACES], whole[PLACES] = {all(0.0), all(0.0), all(0.0)}, turn = all(0.0), lag = value(d->rubs, b, i);
+  lanes soft[count + 1], give[PLACES], whole[PLACES] = {all(0.0), all(0.0), all(0.0)}, lag = value(d->rubs, b, i);
   lanes before = all(0.0), twist = all(0.0);
   for (long k = 0; k < count; k++) {
     soft[k] = softness(spring + k, l);
@@ -340,11 +340,7 @@ static void share_out(const Causes *d, const Block *b, long i, lanes l, lanes *e
   give[BASE] = coordinate(d, b, i, d->u);
   give[PLATFORM] = coordinate(d, b, i, d->e);
   give[NUT] = all(0.0);
-  if (d->r >= 0) {
-    turn = d->turning[i]*coordinate(d, b, i, d->spin);
-    give[NUT] = l - coordinate(d, b, i, d->r) - turn - value(d->played, b, i);
-  }
-  if (d->unkeyed >= 0 && d->inside[i] == OPEN) { error[d->unkeyed] += turn; error[DRIVE] -= turn; }
+  if (d->r >= 0) give[NUT] = l - coordinate(d, b, i, d->r) - value(d->played, b, i);
   for (long k = 0; k < count; k++) {
     if (spring[k].cause < 0) continue;
     lanes own = soft[k] / whole[spring[k].at] * give[spring[k].at];
@@ -387,14 +383,13 @@ static void errors_of_leg(const Causes *d, const Block *b, long i, lanes command
 int deviation_by_cause(const Causes *d, long count, double *shares, double *sum) {
   long width = 3*d->causes*d->legs, failed = 0;
   EACH_BLOCK(b, count) {
-    lanes A[SIX][MOST] = {{{0}}}, error[d->causes], command[d->legs];
+    lanes A[SIX][MOST] = {{{0}}}, error[d->causes];
     vector p = vector_of(d->position, &b, 0), whole = {all(0.0), all(0.0), all(0.0)}, com = same(d->com);
     matrix R = matrix_of(d->rotation, &b);
     for (long i = 0; i < d->legs; i++) {
       vector s = along(d->joints + i, p, R);
-      command[i] = norm(s);
       if (d->moves.at) continue;
-      vector axis = times(1.0 / command[i], s);
+      vector axis = times(1.0 / norm(s), s);
       put_line(A, i, axis, cross(turned(R, minus(same(d->joints[i].platform), com)), axis));
     }
     if (!d->moves.at) {
@@ -404,7 +399,7 @@ int deviation_by_cause(const Causes *d, long count, double *shares, double *sum)
     for (long i = 0; i < d->legs; i++) {
       vector move = d->moves.at ? vector_of(d->moves, &b, 3*i) : (vector){A[i][SIX], A[i][SIX + 1], A[i][SIX + 2]};
       if (d->turn.at) move = turned(matrix_of(d->turn, &b), move);
-      errors_of_leg(d, &b, i, command[i], error);
+      errors_of_leg(d, &b, i, taken(d->command, &b, i), error);
       for (long k = 0; k < d->causes; k++) {
         vector own = times(error[k], move);
         put_vector(shares, &b, width, 3*(k*d->legs + i), own);

@@ -1,6 +1,6 @@
 """Deviation by cause of legs UPS over rows of instants by compiled loops, Eqs. (T8.1)-(T8.8).
 
-Numbers that ``native/results.c`` reads: springs along the legs, joints as built, frames.
+Numbers that ``time/native/results.c`` reads: springs along the legs, joints as built, frames.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from flexapod.mechanics.elements.flexure import Flexures
 from flexapod.mechanics.elements.springs import servo_spring, springs_along
 from flexapod.model import ServoDrive
 from flexapod.solve.frames import plate_frames
+from flexapod.solve.result_rows import Given, Rows, result_loops, to
 from flexapod.solve.statics.lost_motion import before_friction
-from flexapod.solve.time.result_rows import Given, Rows, result_loops, to
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -48,26 +48,28 @@ SPRING = np.dtype(
 class _Causes(Given):
     _fields_: ClassVar = [
         *[(name, c_long) for name in ("legs", "causes", "stages")],
-        *[(x, c_void_p) for x in ("com", "joints", "frame", "moved", "cause", "spring", "first", "turning", "loop")],
+        *[(x, c_void_p) for x in ("com", "joints", "frame", "moved", "cause", "spring", "first", "loop")],
         *[(name, c_void_p) for name in ("inside", "given")],
-        *[(name, c_long) for name in ("unkeyed", "friction", "size", "l", "c", "r", "spin", "u", "e")],
-        *[(name, Rows) for name in ("q", "played", "rubs", "longer")],
+        *[(name, c_long) for name in ("friction", "size", "l", "c", "r", "u", "e")],
+        *[(name, Rows) for name in ("q", "command", "played", "rubs", "longer")],
         *[(name, Rows * MOST_FRAMES) for name in ("origin", "axes")],
         *[(name, Rows) for name in ("position", "rotation", "turn", "moves")],
     ]
 
 
 class Moved(NamedTuple):
-    """State of a robot at T instants: `time` [s], `q` (T, legs, n), `pose` (T, 7) and attitude of the payload.
+    """State of a robot at T instants.
 
-    ``played`` (T, legs): elongation of legs by their gaps [m]; ``rubs`` (T, legs): friction of the drives [N]; each
-    None where there is none.
+    ``time`` [s]; ``q`` (T, legs, n); ``pose`` (T, 7) and attitude ``turn`` (T, 3, 3) of the payload; ``command``
+    (T, legs): lengths on the rigid path [m]; ``played`` (T, legs): elongation of legs by their gaps [m]; ``rubs``
+    (T, legs): friction of the drives [N]; both None where there is none.
     """
 
     time: Array
     q: Array
     pose: Array
     turn: Array
+    command: Array
     played: Array | None
     rubs: Array | None
 
@@ -110,17 +112,18 @@ def deviation_by_cause(
     legs, count, index = robot.count, len(moved.q), {name: k for k, name in enumerate(names)}
     coordinates = {"l": shapes.l_index, "c": shapes.index("c") if shapes.beam.axial.count else -1}
     flexed = shapes.holds(Flexures)
-    for name, key in (("r", "r"), ("spin", "spin"), ("u", "u3"), ("e", "e3")):
+    for name, key in (("r", "r"), ("u", "u3"), ("e", "e3")):
         coordinates[name] = shapes.index(key) if shapes.has(key) and not (flexed and key in ("u3", "e3")) else -1
     springs = _springs(robot)
     table = springs.table.copy()
     table["cause"] = [index.get(name, -1) for name in springs.names]
     given: dict[str, Any] = {"played": moved.played, "rubs": moved.rubs, "turn": turn, "moves": moves}
+    given["command"] = moved.command
     given |= _stages(system, at, moved, index) | springs.others | coordinates
     causes = _Causes(
         legs=legs, causes=len(names), com=robot.com, size=shapes.size, q=moved.q, spring=table,
         position=at.poses.position, rotation=at.poses.rotation,
-        unkeyed=index.get("unkeyed", -1), friction=-1 if moved.rubs is None else index["friction"],
+        friction=-1 if moved.rubs is None else index["friction"],
         **{name: value for name, value in given.items() if value is not None},
     )  # fmt: skip
     shares, whole = np.empty((count, len(names), legs, 3)), np.empty((count, 3))
@@ -183,7 +186,7 @@ def _stages(system: System, at: kinematics.RigidPoses, moved: Moved, index: dict
     if any(one.growing for one in built):
         longer = np.zeros((len(moved.q), len(numbers), robot.count))
         for k, one in enumerate(built, start=len(frames)):
-            longer[:, k] = _grown(one.growing, at.poses, moved.time, robot)
+            longer[:, k] = _grown(one.growing, at.poses, moved, robot)
     return {
         "stages": len(numbers), "joints": joints, "longer": longer,
         "origin": [place for _, place, _ in frames], "axes": [R for _, _, R in frames],
@@ -191,12 +194,11 @@ def _stages(system: System, at: kinematics.RigidPoses, moved: Moved, index: dict
     }  # fmt: skip
 
 
-def _grown(parts: tuple[BuiltPart, ...], path: Poses, t: Array, robot: Robot) -> Array:
+def _grown(parts: tuple[BuiltPart, ...], path: Poses, moved: Moved, robot: Robot) -> Array:
     """Lengths that parts of a temperature over time add, (T, legs) [m]."""
-    found, legs = np.zeros((len(t), robot.count)), rigid_limbs(robot)
-    command = kinematics.leg_lengths(legs.base, legs.platform, path.position, path.rotation)
+    found, t = np.zeros(moved.command.shape), moved.time
     for part in parts:
-        found += part.size(t).position * (part.fixed[:, L] + part.share[:, L] * command)
+        found += part.size(t).position * (part.fixed[:, L] + part.share[:, L] * moved.command)
         if kinematics.is_plate(part):
             found += kinematics.plate_grows(part, t, path, robot).position
     return found
@@ -229,7 +231,6 @@ def _springs(robot: Robot) -> _Springs:
             rows.append((spring.compliance, columns, PLACES.index(spring.at), -1, yields, spring.name == "twist"))
     others = {
         "first": np.cumsum([0, *counts], dtype=NUMBER),
-        "turning": np.array([leg.turning for leg in robot.legs], dtype=float),
         "loop": np.array([rubs["drive"][0] if "drive" in rubs else 0.0 for rubs in rubbing]),
         "inside": np.array([INSIDE.index(leg.closed_about) for leg in robot.legs], dtype=NUMBER),
         "given": rigid_limbs(robot).given[:, L].astype(NUMBER),

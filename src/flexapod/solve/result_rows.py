@@ -1,4 +1,4 @@
-"""Results over rows of instants by compiled loops, ``native/results.c``; structures mirror it field by field.
+"""Results over rows of instants by compiled loops, ``time/native/results.c``; structures mirror it field by field.
 
 For simulations whose equations are compiled: where they are interpreted, or where there are none, the same results are
 those of `kinematics` and `analysis.results`.
@@ -9,6 +9,7 @@ from __future__ import annotations
 import ctypes
 from ctypes import Structure, byref, c_double, c_long, c_void_p
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -17,7 +18,6 @@ from flexapod.common.errors import ComputationError
 from flexapod.kinematics.bodies import Nearest
 from flexapod.kinematics.robot import home_frames, leg_bodies, payload_body
 from flexapod.mechanics.symbolic.compiler import FLAGS, written_library
-from flexapod.solve.time.native import NATIVE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from flexapod.model import Robot
     from flexapod.solve.kernel import Kernel
 
-SOURCES = (NATIVE / "results.c",)
+SOURCES = (Path(__file__).parent / "time" / "native" / "results.c",)
 
 
 class Rows(Structure):
