@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import InputError
 from flexapod.kinematics import forward, inverse, mechanism, motions, trajectory, workspace
+from flexapod.kinematics.closures import ClosureMotion
 from flexapod.kinematics.dynamics import LegBodies, PayloadBody
 from flexapod.kinematics.laws import Law
 from flexapod.kinematics.leg_geometry import Limbs, limbs
@@ -122,6 +123,25 @@ def poses_of_law(robot: Robot, motion: Motion, law: Law, t: Array) -> Poses:
     if legs.guides:
         return _following(robot, commanded_axes(robot, motion), law, motion.pivot, t)
     return trajectory.poses_from_coordinates(home_pose(robot), law, motion.pivot)
+
+
+def poses_with_legs(robot: Robot, motion: Motion, t: Array) -> tuple[Poses, ClosureMotion]:
+    """Poses of a motion at instants `t` (T,) [s] and the legs there by their closures; NaN where legs do not reach.
+
+    Raises
+    ------
+    InputError
+        The robot does not have a motion that is asked for, or the motion leads beyond all robots.
+    """
+    legs = rigid_limbs(robot)
+    unknown = ~(commanded_axes(robot, motion) | legs.hub_held)
+    if not legs.guides or not unknown.any():
+        path = poses(robot, motion, t)
+        return path, mechanism.moved_legs(legs, path, mechanism.legs_at(legs, path))
+    law = trajectory.coordinates(motion, t)
+    mechanism.refuse_far(legs, law, motion.pivot, t)
+    moved = mechanism.follow_with_legs(legs, unknown, law, motion.pivot)
+    return mechanism.poses_of(legs, moved, motion.pivot), moved
 
 
 def commanded_axes(robot: Robot, motion: Motion) -> Mask:
