@@ -178,11 +178,9 @@ def sides(limbs: Limbs, q: Array) -> Array:
     if limbs.carriage == "crank":
         reach = np.linalg.norm(np.cross(limbs.carriage_axis, limbs.carriage_arm), axis=1)
 
-    def cosine(q: Array) -> Array:
-        columns = screws(limbs, q).columns[..., :3, :]
-        return np.sum(columns[..., CHI] * columns[..., L], axis=-1) / np.where(reach > 0, reach, 1.0)
-
-    return cosine(q) * np.sign(cosine(limbs.home[None]))
+    columns = screws(limbs, np.concatenate([q, limbs.home[None]])).columns[..., :3, :]
+    cosine = np.sum(columns[..., CHI] * columns[..., L], axis=-1) / np.where(reach > 0, reach, 1.0)
+    return cosine[:-1] * np.sign(cosine[-1])
 
 
 def _tiled(limbs: Limbs, count: int) -> Array:

@@ -24,18 +24,20 @@ if TYPE_CHECKING:
 
 
 T = TypeVar("T")
+LATEST = 4  # robots that are known without a comparison
 
 
 def cache_per_robot(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
     """Compute it once for each of the last 64 robots; the same robot again is not compared with its equals."""
     of_equals = cast("Callable[[Robot], T]", lru_cache(maxsize=64)(compute))
-    latest: tuple[Robot, T] | None = None
+    latest: dict[int, tuple[Robot, T]] = {}  # a robot and its ideal one are asked for in turns
 
     def look_up(robot: Robot) -> T:
-        nonlocal latest
-        known = latest
+        known = latest.get(id(robot))
         if known is None or known[0] is not robot:
-            known = latest = robot, of_equals(robot)
+            if len(latest) >= LATEST:
+                latest.clear()
+            known = latest[id(robot)] = robot, of_equals(robot)
         return known[1]
 
     return wraps(compute)(look_up)
