@@ -6,7 +6,7 @@ import numpy as np
 
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
-from flexapod.common.piecewise_chebyshev import Pieces
+from flexapod.common.piecewise_chebyshev import NODES, Pieces
 from flexapod.kinematics.closures import ClosureMotion
 from flexapod.kinematics.discontinuities import motion_breaks, path_knots
 from flexapod.kinematics.laws import Law
@@ -65,6 +65,15 @@ class PathSeries:
             self._pieces = None
             return self.exact(t)
         return self._rigid(found)
+
+    def make(self, count: int) -> None:
+        """Make the series if the path will be asked for at so many instants that it pays; nothing is refused here."""
+        if self._pieces is None or NODES * (len(self.knots) - 1) > count:
+            return
+        try:
+            self._pieces(np.linspace(0.0, self.duration, count))
+        except _Unreached:
+            self._pieces = None
 
     def constraints(self, t: Array) -> Array:
         """Constraints of the locked legs, as of `RigidPoses.constraints`, where the path has series."""
