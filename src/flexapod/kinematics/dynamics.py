@@ -210,7 +210,7 @@ def _along_the_legs(
         along = sharing.pushed[:, None] - own
         rest = rest - np.einsum("int,nt->it", lines[:, ~holds], along[~holds])
         shares = sharing_inverse(np.moveaxis(lines[:, holds], -1, 0).swapaxes(1, 2), sharing.stiffness[holds])
-        along[holds] = (shares @ rest.T[..., None])[..., 0].T  # (T7.26)
+        along[holds] = (shares @ rest.T[..., None])[..., 0].T  # (T7.30)
     except np.linalg.LinAlgError:
         raise ComputationError(
             "The legs cannot carry the payload: a pose of the path is singular",

@@ -184,9 +184,9 @@ def scaled_path(base_joints: ArrayLike, platform_joints: ArrayLike, poses: Poses
 
 
 def sharing_inverse(lines: Array, leg_stiffness: Array) -> Array:
-    """Axial forces of the legs for unit wrenches, of those that balance the ones of least strain energy, Eq. (T7.26).
+    """Axial forces of the legs for unit wrenches, of those that balance the ones of least strain energy, Eq. (T7.30).
 
-    Its transpose is the displacement by unit errors of lengths that springs of these stiffnesses share, Eq. (T7.27).
+    Its transpose is the displacement by unit errors of lengths that springs of these stiffnesses share.
 
     Parameters
     ----------

@@ -59,12 +59,21 @@ def follow(limbs: Limbs, unknown: Mask, law: Law, pivot: Array, t: Array | None 
         The mechanism cannot take a pose with these coordinates at an instant `t` (T,); without instants such poses
         are NaN.
     """
+    return poses_of(limbs, follow_with_legs(limbs, unknown, law, pivot, t), pivot)
+
+
+def follow_with_legs(limbs: Limbs, unknown: Mask, law: Law, pivot: Array, t: Array | None = None) -> ClosureMotion:
+    """Coordinates of the legs and of the platform of `follow`, with two derivatives."""
     task = Task(limbs.unknown, unknown, pivot)
     given = Law(*(np.where(unknown, 0.0, part) for part in law))
     found = solve_closures(limbs, task, _tiled(limbs, len(law.position)), given.position)
     if t is not None:
         refuse_lost(limbs, found, t)
-    moved = solve_rates(limbs, task, found, Law(found.x, *given[1:]))
+    return solve_rates(limbs, task, found, Law(found.x, *given[1:]))
+
+
+def poses_of(limbs: Limbs, moved: ClosureMotion, pivot: Array) -> Poses:
+    """Poses of a platform whose coordinates are about a pivot."""
     return poses_from_coordinates(Poses.at_rest(limbs.position, limbs.rotation), moved.platform, pivot)
 
 
@@ -169,11 +178,9 @@ def sides(limbs: Limbs, q: Array) -> Array:
     if limbs.carriage == "crank":
         reach = np.linalg.norm(np.cross(limbs.carriage_axis, limbs.carriage_arm), axis=1)
 
-    def cosine(q: Array) -> Array:
-        columns = screws(limbs, q).columns[..., :3, :]
-        return np.sum(columns[..., CHI] * columns[..., L], axis=-1) / np.where(reach > 0, reach, 1.0)
-
-    return cosine(q) * np.sign(cosine(limbs.home[None]))
+    columns = screws(limbs, np.concatenate([q, limbs.home[None]])).columns[..., :3, :]
+    cosine = np.sum(columns[..., CHI] * columns[..., L], axis=-1) / np.where(reach > 0, reach, 1.0)
+    return cosine[:-1] * np.sign(cosine[-1])
 
 
 def _tiled(limbs: Limbs, count: int) -> Array:

@@ -6,14 +6,13 @@ import numpy as np
 
 from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError
-from flexapod.common.piecewise_chebyshev import Pieces
-from flexapod.kinematics import mechanism
+from flexapod.common.piecewise_chebyshev import NODES, Pieces
 from flexapod.kinematics.closures import ClosureMotion
 from flexapod.kinematics.discontinuities import motion_breaks, path_knots
 from flexapod.kinematics.laws import Law
 from flexapod.kinematics.leg_geometry import COORDINATES
 from flexapod.kinematics.rigid_poses import RigidPoses
-from flexapod.kinematics.robot import poses, rigid_limbs
+from flexapod.kinematics.robot import poses, poses_with_legs, rigid_limbs
 from flexapod.kinematics.trajectory import Poses
 from flexapod.model import Motion, Robot
 
@@ -34,6 +33,7 @@ class PathSeries:
         self._jumps = np.array(motion_breaks(motion).jumps)
         with_series = not self.limbs.plain or self.limbs.guides
         self._pieces = Pieces(self._groups, self.knots) if with_series else None
+        self._constraints: Pieces | None = None
         lengths = {"l", "chi"} if self.limbs.carriage == "slider" else {"l"}
         self.length = float(self.limbs.home[:, COORDINATES.index("l")].mean())
         unit = [1.0 if name in lengths else self.length for name in COORDINATES] * len(self.limbs)
@@ -66,19 +66,33 @@ class PathSeries:
             return self.exact(t)
         return self._rigid(found)
 
+    def make(self, count: int) -> None:
+        """Make the series if the path will be asked for at so many instants that it pays; nothing is refused here."""
+        if self._pieces is None or NODES * (len(self.knots) - 1) > count:
+            return
+        try:
+            self._pieces(np.linspace(0.0, self.duration, count))
+        except _Unreached:
+            self._pieces = None
+
+    def constraints(self, t: Array) -> Array:
+        """Constraints of the locked legs, as of `RigidPoses.constraints`, where the path has series."""
+        if self._constraints is None:
+            self._constraints = Pieces(lambda t: [self.at(t).constraints], self.knots)
+        return self._constraints(t)[0]
+
     def _near_jumps(self, t: Array) -> Array:
         return (np.abs(t[:, None] - self._jumps) <= SAME * self.duration).any(axis=1)
 
     def _groups(self, t: Array) -> list[Array]:
         """Places, rates and accelerations of platform and legs at instants, in one unit each."""
         try:
-            path = poses(self.robot, self.motion, t)
+            path, moved = poses_with_legs(self.robot, self.motion, t)
         except InputError as error:
             raise _Unreached from error
-        found = mechanism.legs_at(self.limbs, path)
-        if np.isnan(found.q).any():
+        T = len(t)
+        if not all(np.isfinite(x).all() for x in moved[:3]):
             raise _Unreached
-        moved, T = mechanism.moved_legs(self.limbs, path, found), len(t)
         parts = (
             (path.position, path.rotation, moved.q),
             (path.velocity, path.omega, moved.q_dot),

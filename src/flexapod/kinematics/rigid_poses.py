@@ -120,7 +120,7 @@ class RigidPoses:
         return RigidPoses(self.robot, Poses.at_rest(self.poses.position[which], self.poses.rotation[which]))
 
     @cached_property
-    def _held(self) -> Array:
+    def constraints(self) -> Array:
         """Constraints of the locked legs on the platform, (T, m, d) with m at least d, Eqs. (T2.23), (T14.19)."""
         robot, path, legs = self.robot, self.poses, rigid_limbs(self.robot)
         held = legs.hub_held
@@ -140,17 +140,17 @@ class RigidPoses:
     @cached_property
     def singularity(self) -> jacobian.SingularityPath:
         """Singular values, condition and determinant along the poses; see `jacobian.singularity_measures`."""
-        return jacobian.singularity_measures(self._held)
+        return jacobian.singularity_measures(self.constraints)
 
     @cached_property
     def nearest(self) -> jacobian.NearestSingularity:
         """The pose that is nearest to a singularity; see `jacobian.most_singular_pose`."""
-        return jacobian.most_singular_pose(self._held)
+        return jacobian.most_singular_pose(self.constraints)
 
     @cached_property
     def determinants(self) -> Array:
         """Determinants of the constraints of six locked legs on the six motions of the platform, (T,)."""
-        return np.asarray(np.linalg.det(self._held), dtype=np.float64)
+        return np.asarray(np.linalg.det(self.constraints), dtype=np.float64)
 
     @property
     def drive_positions(self) -> Array:

@@ -128,7 +128,6 @@ class RigidPath(kinematics.RigidPoses):
     @cached_property
     def forces(self) -> RobotForces:
         """Forces of drives and joints."""
-        _ = self.poses
         if self.is_commanded:
             return self.loads.forces(self, self.time, self.wrench)
         return rigid_forces(self, self.wrench)
@@ -148,14 +147,19 @@ class RigidPath(kinematics.RigidPoses):
         return RobotForces(**balances(kernel, self, self.wrench))
 
     @cached_property
+    def constraints(self) -> Array:
+        """Constraints of the locked legs on the platform, as of `RigidPoses`."""
+        return self.series.constraints(self.time) if self.is_commanded else super().constraints
+
+    @cached_property
     def displacement_by_error(self) -> Array:
         """Displacement of the payload for unit errors of what is held, (T, legs, 8, 6); see `rigid_errors`."""
-        _ = self.poses
         return self.loads.errors(self, self.time) if self.is_commanded else rigid_errors(self)
 
     @property
     def is_commanded(self) -> bool:
         """Test whether the poses are those of the path's series."""
+        _ = self.poses  # with them comes what the legs do
         return self.moved is not None
 
     def at(self, t: Array) -> RigidPath:

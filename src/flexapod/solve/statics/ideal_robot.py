@@ -97,7 +97,7 @@ class RobotForces:
 def rigid_forces(at: kinematics.RigidPoses, wrench: Array) -> RobotForces:
     """Forces of drives and joints of the robot of the rigid path.
 
-    Legs UPS by Newton and Euler (T2.26)-(T2.36), more than six of them as their stiffness shares the load (T7.26);
+    Legs UPS by Newton and Euler (T2.26)-(T2.36), more than six of them as their stiffness shares the load (T7.30);
     others by their equations of motion (T7.24). Drives with a constant force have it where the others hold the robot.
 
     Parameters

@@ -35,7 +35,8 @@ class PathForces:
         self._unit = np.concatenate([drives, np.ones(3 * len(legs)), np.full(3 * len(legs), 1 / path.length)])
         self._made: dict[int | str, Pieces] = {}
         self._open = 0
-        self._size = 10.0 * path.robot.payload.mass + 1.0  # of a wrench that is about as large as the weight
+        payload = path.robot.payload
+        self._size = 1.0 if payload is None else 1.0 + 10.0 * payload.mass  # of a wrench: about as large as the weight
 
     def forces(self, at: kinematics.RigidPoses, t: Array, wrench: Array) -> RobotForces:
         """Forces of `rigid_forces` at instants (T,) of the path; `at`: the robot there; `wrench` (T, 6)."""

@@ -253,6 +253,8 @@ class _Path:
         self.series = series or kinematics.PathSeries(study.robot, study.motion, study.duration)
         self.time, self.last = np.zeros(0), None
         self.output_step, self.outputs = study.simulation.stored_step, study.simulation.outputs(study.duration)
+        if series is None:
+            self.series.make(self.outputs + 1)
         self.stored, self.centres = np.zeros(0), (np.zeros((0, 3)), np.zeros((0, 3, 3)))
 
     def rigid(self, t: Array) -> kinematics.RigidPoses:
