@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import InputError
 from flexapod.kinematics import forward, inverse, mechanism, motions, trajectory, workspace
+from flexapod.kinematics.closures import ClosureMotion
 from flexapod.kinematics.dynamics import LegBodies, PayloadBody
 from flexapod.kinematics.laws import Law
 from flexapod.kinematics.leg_geometry import Limbs, limbs
@@ -23,21 +24,38 @@ if TYPE_CHECKING:
 
 
 T = TypeVar("T")
+LATEST = 4  # robots that are known without a comparison
 
 
-def cache_per_robot(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
+def _latest_kept(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
     """Compute it once for each of the last 64 robots; the same robot again is not compared with its equals."""
     of_equals = cast("Callable[[Robot], T]", lru_cache(maxsize=64)(compute))
-    latest: tuple[Robot, T] | None = None
+    latest: dict[int, tuple[Robot, T]] = {}  # a robot and its ideal one are asked for in turns
 
     def look_up(robot: Robot) -> T:
-        nonlocal latest
-        known = latest
+        known = latest.get(id(robot))
         if known is None or known[0] is not robot:
-            known = latest = robot, of_equals(robot)
+            if len(latest) >= LATEST:
+                latest.clear()
+            known = latest[id(robot)] = robot, of_equals(robot)
         return known[1]
 
     return wraps(compute)(look_up)
+
+
+@_latest_kept
+def _first_equal(robot: Robot) -> Robot:
+    """The first one of robots that are equal."""
+    return robot
+
+
+def cache_per_robot(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
+    """Compute it once for each of the last 64 robots.
+
+    A robot is compared with its equals once for all that is computed of it, not for each.
+    """
+    of_first = _latest_kept(compute)
+    return wraps(compute)(lambda robot: of_first(_first_equal(robot)))
 
 
 @cache_per_robot
@@ -122,6 +140,25 @@ def poses_of_law(robot: Robot, motion: Motion, law: Law, t: Array) -> Poses:
     if legs.guides:
         return _following(robot, commanded_axes(robot, motion), law, motion.pivot, t)
     return trajectory.poses_from_coordinates(home_pose(robot), law, motion.pivot)
+
+
+def poses_with_legs(robot: Robot, motion: Motion, t: Array) -> tuple[Poses, ClosureMotion]:
+    """Poses of a motion at instants `t` (T,) [s] and the legs there by their closures; NaN where legs do not reach.
+
+    Raises
+    ------
+    InputError
+        The robot does not have a motion that is asked for, or the motion leads beyond all robots.
+    """
+    legs = rigid_limbs(robot)
+    unknown = ~(commanded_axes(robot, motion) | legs.hub_held)
+    if not legs.guides or not unknown.any():
+        path = poses(robot, motion, t)
+        return path, mechanism.moved_legs(legs, path, mechanism.legs_at(legs, path))
+    law = trajectory.coordinates(motion, t)
+    mechanism.refuse_far(legs, law, motion.pivot, t)
+    moved = mechanism.follow_with_legs(legs, unknown, law, motion.pivot)
+    return mechanism.poses_of(legs, moved, motion.pivot), moved
 
 
 def commanded_axes(robot: Robot, motion: Motion) -> Mask:
