@@ -103,9 +103,10 @@ class Envelope:
 
     @property
     def worst(self) -> BoxValue:
-        """The first value that is not kept, or the length with the least margin."""
+        """The length that misses its limit most, else the first other value that is not kept, else the next length."""
+        length = min(self.shortest, self.longest, key=lambda value: (value.kept, value.margin))
         missed = [value for value in self.limited if not value.kept]
-        return missed[0] if missed else min(self.shortest, self.longest, key=lambda value: value.margin)
+        return length if not length.kept or not missed else missed[0]
 
     @property
     def lengths_sure(self) -> bool:
