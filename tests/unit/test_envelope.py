@@ -124,6 +124,18 @@ def test_a_joint_on_a_circle():
     assert high[0] == pytest.approx(farthest, abs=2e-4) and high[0] >= farthest
 
 
+def test_no_smaller_second_order_would_do():
+    """A far base joint sees of an arm r along the leg r (1 - cos h), which is all of r h^2 / 2 to fourth order."""
+    d, r, h = 1e4, 1.0, 0.1
+    box = Box.from_ranges({"yaw": (-h, h)})
+    for side in (1.0, -1.0):
+        spans = Spans(foot=np.array([[d, 0.0, 0.0]]), arm=np.array([[side * r, 0.0, 0.0]]))
+        low, high = length_bounds(spans, box, 1)
+        end = math.sqrt(d * d + r * r + 2 * side * d * r * math.cos(h))
+        away = end - low[0] if side > 0 else high[0] - end
+        assert 0 <= away < 2e-3 * r * h * h / 2
+
+
 def test_a_base_joint_inside_the_box_bounds_nothing():
     spans = Spans(foot=np.zeros((1, 3)), arm=np.array([[0.1, 0.0, 0.0]]))
     low, high = length_bounds(spans, Box.from_ranges({"surge": (-0.2, 0.2), "yaw": (-0.3, 0.3)}), 4)
@@ -142,7 +154,7 @@ def test_answers():
     study = fx.preset("machine-hexapod")
     small, large = (envelope(*scaled(study, share)) for share in (0.2, 1.2))
     assert small.answer == "sure" and small.lengths_sure and 0 < small.left < 0.5
-    assert large.answer == "no" and large.left < 0 and not large.worst.kept
+    assert large.answer == "no" and large.left < 0 and not large.worst.is_kept
     assert large.worst.margin == pytest.approx(
         min(large.longest.limit - large.longest.value, large.shortest.value - large.shortest.limit)
     )
@@ -200,8 +212,8 @@ def test_beyond_a_singular_pose_the_value_is_negative():
     """Similar hexagons are singular at a yaw of 90 deg (Fichter 1986)."""
     robot = fx.preset("machine-hexapod").robot
     near, far = (envelope(robot, Box.from_ranges({"yaw": (0.0, math.radians(a))})).singularity for a in (60, 120))
-    assert near.value > 0 and near.kept
-    assert far.value < 0 and not far.kept
+    assert near.value > 0 and near.is_kept
+    assert far.value < 0 and not far.is_kept
 
 
 @pytest.mark.parametrize(

@@ -199,14 +199,14 @@ class Spans:
         """Some of the legs."""
         return Spans(foot=self.foot[legs], arm=self.arm[legs])
 
-    def carried(self, angles: Array) -> Array:
+    def turned_arms(self, angles: Array) -> Array:
         """Arms (P, n, 3) at tilts (P, 3)."""
         return self.arm @ rotation_matrix(angles).swapaxes(1, 2)
 
 
 def extremes(spans: Spans, box: Box, angles: Array) -> tuple[Array, Array, Array, Array]:
     """Shortest and longest lengths (P, n) [m] over all travel at tilts (P, 3), and where (P, n, 3), Eq. (T2.50)."""
-    here, low, high = spans.foot + spans.carried(angles), box.low[:3], box.high[:3]
+    here, low, high = spans.foot + spans.turned_arms(angles), box.low[:3], box.high[:3]
     near = np.clip(-here, low, high)
     far = np.where(np.abs(here + low) > np.abs(here + high), low, high)
     return np.linalg.norm(here + near, axis=-1), np.linalg.norm(here + far, axis=-1), near, far
@@ -230,7 +230,7 @@ def length_bounds(spans: Spans, box: Box, parts: int) -> tuple[Array, Array]:
     least, most = np.full(len(arm), np.inf), np.zeros(len(arm))
     for first in range(0, len(middles), BLOCK):
         angles = middles[first : first + BLOCK]
-        carried, axes = spans.carried(angles), turning_axes(angles) * half
+        carried, axes = spans.turned_arms(angles), turning_axes(angles) * half
         here = spans.foot + carried
         near = here + np.clip(-here, box.low[:3], box.high[:3])
         length, slope = _slopes(near, carried, axes)

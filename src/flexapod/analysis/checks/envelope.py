@@ -53,7 +53,7 @@ class BoxValue:
     looked: int
 
     @property
-    def kept(self) -> bool:
+    def is_kept(self) -> bool:
         """Test whether the limit is kept; never where the value is not a number."""
         return self.margin >= 0 and not np.isnan(self.value)
 
@@ -96,7 +96,7 @@ class Envelope:
     left: float
 
     @property
-    def limited(self) -> tuple[BoxValue, ...]:
+    def pose_limits(self) -> tuple[BoxValue, ...]:
         """Values that say whether the robot takes all poses of the box."""
         found = (self.shortest, self.longest, self.carriage, self.base_joint, self.platform_joint, self.fold)
         return tuple(value for value in (*found, self.singularity) if value is not None)
@@ -104,9 +104,9 @@ class Envelope:
     @property
     def worst(self) -> BoxValue:
         """The length that misses its limit most, else the first other value that is not kept, else the next length."""
-        length = min(self.shortest, self.longest, key=lambda value: (value.kept, value.margin))
-        missed = [value for value in self.limited if not value.kept]
-        return length if not length.kept or not missed else missed[0]
+        length = min(self.shortest, self.longest, key=lambda value: (value.is_kept, value.margin))
+        missed = [value for value in self.pose_limits if not value.is_kept]
+        return length if not length.is_kept or not missed else missed[0]
 
     @property
     def lengths_sure(self) -> bool:
@@ -121,7 +121,7 @@ class Envelope:
         carriages and determinant theirs at all poses that were looked at. "looked": no pose was found that leaves a
         limit, but lengths could do so between.
         """
-        if not all(value.kept for value in self.limited):
+        if not all(value.is_kept for value in self.pose_limits):
             return "no"
         return "sure" if self.lengths_sure else "looked"
 
