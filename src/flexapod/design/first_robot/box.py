@@ -100,7 +100,7 @@ def excursion(joints: Joints, body: Body, demand: Demand) -> float:
     foot = base_circle(joints.base, half)
     tip = platform_circle(joints.platform, half)
     box = demand.box(body.height)
-    spans = Spans(foot=box.pivot + [0.0, 0.0, joints.height] - foot, arm=tip - box.pivot)
+    spans = Spans(foot=box.pivot + np.array([0.0, 0.0, joints.height]) - foot, arm=tip - box.pivot)
     largest = 0.0
     for one in box.separate():
         least, most, _, _ = extremes(spans, one, one.grid(LOOKS, np.arange(6) >= 3)[:, 3:])
@@ -146,7 +146,7 @@ def _too_large(request: Request, last: InputError) -> InputError:
 
 
 def _too_low(request: Request, demand: Demand, make: Make, last: InputError) -> InputError:
-    """The home that is given is too low: the largest share of the box that it takes, and the home that the box needs."""
+    """The home that is given is too low: how much of the box it takes, and the home that all of it needs."""
     needed = _smallest(request, demand, make, _homes(demand, request.home))
     share, step = 0.0, 1.0
     for _ in range(SHARES):

@@ -9,7 +9,15 @@ from flexapod.common.quantities import number
 from flexapod.design.first_robot import sizing
 from flexapod.design.first_robot.catalogue import BORE, FASTEST, Screw, joint_stiffness, motor_inertia, motor_mass
 from flexapod.design.first_robot.sizing import Joints, SizedLeg
-from flexapod.design.first_robot.study_text import LEG, Plan, comment_lines, length_text, material_words, stroke_origin, value_origin
+from flexapod.design.first_robot.study_text import (
+    LEG,
+    Plan,
+    comment_lines,
+    length_text,
+    material_words,
+    stroke_origin,
+    value_origin,
+)
 from flexapod.design.first_robot.warm import accuracy_tables
 from flexapod.model import MATERIALS
 
