@@ -75,6 +75,8 @@ def _smallest(request: Request, demand: Demand, make: Make, homes: Iterator[floa
             written = make(wish)
         except InputError as error:
             last = error
+            if "home" not in f"{error.key} {error.next_step}":
+                break  # a larger robot would not help
             continue
         error = _missed(written, wish)
         if error is None:
@@ -139,8 +141,8 @@ def _no_room(request: Request, home: float) -> InputError:
 def _too_large(request: Request, last: InputError) -> InputError:
     """No robot of any size does it: the reason of the last one that was tried."""
     return InputError(
-        f"{last.what} (tried with home heights up to where this is so, the box of poses among what is asked)",
-        key=last.key, value=last.value, allowed=last.allowed,
+        f"{last.what}; home grew with the box of poses as far as that helps", key=last.key, value=last.value,
+        allowed=last.allowed,
         next_step="Give less travel or rotation, a smaller payload, or drive=hydraulic, or --ideal",
     )  # fmt: skip
 
@@ -155,7 +157,7 @@ def _too_low(request: Request, demand: Demand, make: Make, last: InputError) -> 
         if isinstance(_smallest(request, replace(demand, ranges=ranges), make, [request.home]), str):
             share += step
     best = f"{100 * share:.3g} % of the box on all axes" if share else "no box at all"
-    home = "" if isinstance(needed, InputError) else text(_home_of(needed), "m")
+    home = "" if isinstance(needed, InputError) else text(_home_of(needed), "m", 4)
     return InputError(
         f"does not go with the box of poses: {best} with this home. With all of it: {last.key} {last.what}",
         key=f"{OPTION} home",

@@ -69,38 +69,38 @@ def parse_demand(given: Mapping[str, str], option: str) -> Demand | None:
         A key that is given by two names, a value that is no such quantity, a range without home.
     """
     asked: dict[str, str] = {}
+    typed = {}
     for key, value in given.items():
         name = ALIASES.get(key, key)
         if name in asked:
             raise InputError("is given twice", key=f"{option} {key}", next_step=f"It is another name of {name}")
         if name in DEMANDS:
-            asked[name] = value
+            asked[name], typed[name] = value, f"{option} {key}"
     if not asked:
         return None
-    ranges = {key: _ends(key, asked[key], option) for key in _BOX if key in asked}
+    ranges = {key: _ends(_BOX[key], asked[key], typed[key]) for key in _BOX if key in asked}
     for key in _BOUNDS:
         if key in asked:
-            _positive(key, asked[key], option)
+            _check_positive(key, asked[key], typed[key])
     alone, pivot = (
-        _choice(key, asked.get(key, allowed[0]), allowed, option)
+        _choice(asked.get(key, allowed[0]), allowed, f"{option} {key}")
         for key, allowed in (("alone", ("false", "true")), ("pivot", PIVOTS))
     )
     return Demand(ranges=_by_axis(ranges), pivot=pivot, alone=alone == "true", lines=_table(asked, given))
 
 
-def _ends(key: str, value: str, option: str) -> tuple[float, float]:
+def _ends(dimension: str, value: str, key: str) -> tuple[float, float]:
     """Ends of a range: one number is on either side."""
-    parts = [part.strip() for part in value.split(RANGE)]
-    ends = [quantity(part, _BOX[key], key=f"{option} {key}") for part in parts]
+    ends = [quantity(part.strip(), dimension, key=key) for part in value.split(RANGE)]
     low, high = (-ends[0], ends[0]) if len(ends) == 1 else (ends[0], ends[-1])
     if len(ends) > 2 or not low <= 0 <= high or low == high:
         raise InputError(
-            "is not a range about home", key=f"{option} {key}", value=value,
+            "is not a range about home", key=key, value=value,
             allowed="one value above 0 on either side, or a low end of at most 0 .. a high end of at least 0",
-            next_step=f'For example "{key}=-5 mm..15 mm"' if _BOX[key] == "length" else f'For example "{key}=3 deg"',
+            next_step="For example " + ("-5 mm..15 mm" if dimension == "length" else "-2 deg..3 deg"),
         )  # fmt: skip
-    if _BOX[key] == "angle" and max(-low, high) > MOST_TILT:
-        raise InputError("turns too far", key=f"{option} {key}", value=value, allowed="at most 80 deg on either side")
+    if dimension == "angle" and max(-low, high) > MOST_TILT:
+        raise InputError("turns too far", key=key, value=value, allowed="at most 80 deg on either side")
     return low, high
 
 
@@ -113,14 +113,14 @@ def _by_axis(ranges: Mapping[str, tuple[float, float]]) -> dict[str, tuple[float
     return found
 
 
-def _positive(key: str, value: str, option: str) -> None:
-    if quantity(value, _BOUNDS[key], key=f"{option} {key}") <= 0 and key != "clearance":
-        raise InputError("is out of range", key=f"{option} {key}", value=value, allowed="above 0")
+def _check_positive(name: str, value: str, key: str) -> None:
+    if quantity(value, _BOUNDS[name], key=key) <= 0 and name != "clearance":
+        raise InputError("is out of range", key=key, value=value, allowed="above 0")
 
 
-def _choice(key: str, value: str, allowed: tuple[str, ...], option: str) -> str:
+def _choice(value: str, allowed: tuple[str, ...], key: str) -> str:
     if value not in allowed:
-        raise InputError("is not known", key=f"{option} {key}", value=value, allowed=", ".join(allowed))
+        raise InputError("is not known", key=key, value=value, allowed=", ".join(allowed))
     return value
 
 
