@@ -35,7 +35,9 @@ def error_terms(rows: Sequence[ErrorRow], parts: Sequence[str]) -> Array:
     found = np.zeros((len(TERMS), len(parts), 6))
     for row in rows:
         term, part = TERMS.index(_term(row)), parts.index(row.part)
-        found[term, part] = combine_by_kind(row.kind, np.array([found[term, part], combine_by_kind(row.kind, row.by_leg)]))
+        found[term, part] = combine_by_kind(
+            row.kind, np.array([found[term, part], combine_by_kind(row.kind, row.by_leg)])
+        )
     return found
 
 

@@ -49,7 +49,9 @@ class Box:
         values = np.stack([self.low, np.zeros(6), self.high])
         axes = np.flatnonzero(self.moved)
         if self.alone:
-            return np.array([np.where(np.arange(6) == k, values[i, k], 0.0) for k in axes for i in chosen]).reshape(-1, 6)
+            return np.array([np.where(np.arange(6) == k, values[i, k], 0.0) for k in axes for i in chosen]).reshape(
+                -1, 6
+            )
         if not axes.size:
             return np.zeros((0, 6))
         ways = [np.unique(values[list(chosen), k]) for k in axes]  # an end at home counts once
@@ -154,7 +156,9 @@ def _scale(box: Box, within: bool) -> float:
     values = box.corners if within else box.looked
 
     def reached(scale: float) -> bool:
-        return bool((rigid_codes(kinematics.RigidPoses(box.robot, box.poses(scale * values)), from_home=True) == 0).all())
+        return bool(
+            (rigid_codes(kinematics.RigidPoses(box.robot, box.poses(scale * values)), from_home=True) == 0).all()
+        )
 
     return largest_reached(reached, within=within)
 

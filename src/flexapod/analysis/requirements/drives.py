@@ -104,7 +104,9 @@ def accelerations(study: Study, poses: kinematics.Poses) -> Array:
         if leg.screw is not None and leg.screw.limits.torque is not None:
             screw, ratio = leg.screw, leg.screw.rotor.ratio
             torque = np.abs(force) * screw.per_turn / screw.efficiency + abs(float(drag_torque(screw, STARTING)))
-            change = per_force[:, i] * screw.per_turn / screw.efficiency + screw.inertia * per_accel[:, i] / screw.per_turn
+            change = (
+                per_force[:, i] * screw.per_turn / screw.efficiency + screw.inertia * per_accel[:, i] / screw.per_turn
+            )
             pairs.append(_left(torque / ratio, np.linalg.norm(change, axis=-1) / ratio, screw.limits.torque))
         if pairs:
             found[:, i] = np.min(pairs, axis=0)

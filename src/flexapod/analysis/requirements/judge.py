@@ -32,7 +32,7 @@ from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.arrays import Array
 from flexapod.common.errors import FlexapodError
 from flexapod.common.ranking import first_largest
-from flexapod.model import AXES, Study
+from flexapod.model import AXES, LeastStiffness, Requirement, Study
 from flexapod.solve.modal.elastic_robot import ElasticRobot
 
 ERRORS = (
@@ -52,8 +52,7 @@ class Judge:
 
     def __init__(self, study: Study) -> None:
         self.study = study
-        assert study.requirement is not None
-        self.wanted = study.requirement
+        self.wanted: Requirement = study.requirement  # type: ignore[assignment]
         self.box: Box | None = box_of(study.robot, self.wanted) if self.wanted.has_box else None
 
     @cached_property
@@ -99,12 +98,12 @@ class Judge:
         """Findings of all keys, in the order of the table."""
         found: list[Finding] = []
         if self.box is not None:
-            found += self._reach()
+            found += self._reach(self.box)
         for name in self.wanted.names:
             if name in ("travel", "rotation"):
                 continue
             if name == "stiffness":
-                found += [self._protected(one, self._elastic) for one in self._stiffnesses()]
+                found += [self._protected(one, self._elastic) for one in _stiffnesses(self.wanted.stiffness)]
                 continue
             one = Finding(
                 name=name,
@@ -133,14 +132,13 @@ class Judge:
 
     # where the legs reach
 
-    def _reach(self) -> list[Finding]:
+    def _reach(self, box: Box) -> list[Finding]:
         """The box: one verdict for both keys, as the size that is reached in proportion."""
-        assert self.box is not None
-        reach, found = box_reach(self.box), []
+        reach, found = box_reach(box), []
         for name, part, unit in (("travel", slice(3), "m"), ("rotation", slice(3, 6), "rad")):
             if getattr(self.wanted, name) is None:
                 continue
-            wanted = float(np.abs([self.box.low[part], self.box.high[part]]).max())
+            wanted = float(np.abs([box.low[part], box.high[part]]).max())
             found.append(
                 Finding(
                     name=name, unit=unit, wanted=wanted, at_most=False, found=wanted * reach.scale,
@@ -150,16 +148,6 @@ class Judge:
         return found
 
     # about the equilibrium
-
-    def _stiffnesses(self) -> list[Finding]:
-        assert self.wanted.stiffness is not None
-        return [
-            Finding(
-                name="stiffness" if axis == "each" else f"stiffness.{axis}",
-                unit="N m/rad" if axis in AXES[3:] else "N/m", wanted=least, at_most=False,
-            )
-            for axis, least in self.wanted.stiffness.by_axis.items()
-        ]  # fmt: skip
 
     def _elastic(self, asked: Finding) -> Finding:
         if why := self._nothing_named(asked.name):
@@ -318,7 +306,9 @@ class Judge:
         if not has_force_limits(self.study.robot):
             return asked.unknown("the drives have no limits of their force: give leg.drive.limits")
         shares = [motion_shares(path) for path in self._paths]
-        return self._factor(asked, shares, lambda k: rest_shares(self.study.robot, self.batches[k][1]["actuator_force"]))
+        return self._factor(
+            asked, shares, lambda k: rest_shares(self.study.robot, self.batches[k][1]["actuator_force"])
+        )
 
     def _buckling(self, asked: Finding) -> Finding:
         shares = []
@@ -371,6 +361,17 @@ class Judge:
 
 def _with(base: Finding, /, **changes: object) -> Finding:
     """A finding with more of what was found."""
-
-
     return replace(base, **changes)  # type: ignore[arg-type]
+
+
+def _stiffnesses(asked: LeastStiffness) -> list[Finding]:
+    """Stiffnesses that are asked, in the weakest direction and by axis."""
+    return [
+        Finding(
+            name="stiffness" if axis == "each" else f"stiffness.{axis}",
+            unit="N m/rad" if axis in AXES[3:] else "N/m",
+            wanted=least,
+            at_most=False,
+        )
+        for axis, least in asked.by_axis.items()
+    ]

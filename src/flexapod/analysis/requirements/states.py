@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from flexapod import kinematics
 from flexapod.analysis.pose_errors.tolerances import thermal_drift
 from flexapod.common.errors import ComputationError
 from flexapod.common.quantities import number
-from flexapod.model import Heat, Robot, Study
+from flexapod.model import Heat, Requirement, Robot, Study
 from flexapod.model.heat import HEAT_PARTS, LEG_PARTS
 
 COLD, WARM = "cold", "warm"
@@ -35,8 +36,7 @@ class State:
 
 def states_of(study: Study) -> list[State]:
     """States of a study: of a robot with temperatures cold first, of a payload between two masses the most first."""
-    robot, wanted = study.robot, study.requirement
-    assert wanted is not None
+    robot, wanted = study.robot, cast("Requirement", study.requirement)
     masses = [robot.payload.mass] if wanted.payload is None else sorted({*wanted.payload.tolist()}, reverse=True)
     loaded = [with_payload(robot, mass, wanted.payload_com) for mass in masses]
     heats = {"": robot.heat} if robot.heat is None else {COLD: None, WARM: warm_heat(robot)}

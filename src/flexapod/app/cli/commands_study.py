@@ -9,13 +9,26 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from importlib.resources import files
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from flexapod.app.cli.failures import report_failures
-from flexapod.app.cli.options import Force, Json, Settings, StudyFile, Verbose, as_options, load_study, refuse_existing
+from flexapod.app.cli.options import (
+    Force,
+    Json,
+    Settings,
+    Strict,
+    StudyFile,
+    Verbose,
+    as_options,
+    exit_strictly,
+    load_study,
+    refuse_existing,
+    refuse_unrequired,
+)
 from flexapod.common.errors import InputError, closest_word, suggest_word
 from flexapod.common.files import write_text
 from flexapod.common.lazy_imports import LazyModule
@@ -33,6 +46,7 @@ if TYPE_CHECKING:
     from flexapod.model.file.page import ListedEntry
     from flexapod.output.text import answers, description
     from flexapod.output.text import check as text_check
+    from flexapod.output.text import verdict as text_verdict
 else:
     robot_description = LazyModule("flexapod.analysis.description.robot_description")
     predicted_damping = LazyModule("flexapod.analysis.predicted_damping")
@@ -43,6 +57,7 @@ else:
     answers = LazyModule("flexapod.output.text.answers")
     text_check = LazyModule("flexapod.output.text.check")
     description = LazyModule("flexapod.output.text.description")
+    text_verdict = LazyModule("flexapod.output.text.verdict")
     reference = LazyModule("flexapod.common.tables.reference")
 
 Name = Annotated[Path | None, typer.Argument(metavar="NAME.toml", help="File to write.")]
@@ -199,13 +214,19 @@ def _key_chapter(found: ListedEntry, head: Sequence[str], *, alone: bool) -> par
 
 
 @report_failures
-def check(file: StudyFile, settings: Settings = None, verbose: Verbose = False, json: Json = False) -> None:
+def check(
+    file: StudyFile, settings: Settings = None, strict: Strict = False, verbose: Verbose = False, json: Json = False
+) -> None:
     """Validate a study and say in words what it asks of its legs: lengths, strokes, loads, stiffness, frequencies."""
-    found, control = robot_description.describe(study := load_study(file, settings)), ()
+    refuse_unrequired(study := load_study(file, settings), strict=strict)
+    verdict = text_verdict.study_verdict(study)
+    found, control = robot_description.describe(study), ()
     if isinstance(study, model.Study) and study.control is not None:
         control = description.control_words(predicted_damping.control_effect(study))
     data = lambda: description.description_as_dict(found) | ({"control": control} if control else {})  # noqa: E731
-    print_answer(text_check.check_items(found, control), data, json=json, verbose=verbose)
+    items = chain(text_verdict.verdict_items(verdict), text_check.check_items(found, control))
+    print_answer(items, lambda: data() | text_verdict.verdict_as_dict(verdict), json=json, verbose=verbose)
+    exit_strictly(verdict, strict=strict)
 
 
 _FOLDERS = {"--example": "examples/gallery", "--notebook": "examples/notebooks"}

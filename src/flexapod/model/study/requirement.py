@@ -205,9 +205,9 @@ class Requirement(Table):
         float | None, _length("AP calibrated, sag under the nominal payload taken out by the controller")
     ] = None
     repeatability: Annotated[float | None, _length("of both directions, ISO 230-2")] = None
-    minimum_incremental_motion: Annotated[
-        float | None, _length("smallest step that surely shows after a reversal")
-    ] = None
+    minimum_incremental_motion: Annotated[float | None, _length("smallest step that surely shows after a reversal")] = (
+        None
+    )
     first_frequency: Annotated[
         float | None, Quantity("frequency", above=0, why="least natural frequency, drives held", usual="not asked")
     ] = None

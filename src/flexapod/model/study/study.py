@@ -17,8 +17,8 @@ from flexapod.model.leg.actuator import Actuator, ActuatorInitial, ActuatorLoad,
 from flexapod.model.motion import AXES, Motion, moved_axes
 from flexapod.model.study.control import Control, ToolControl
 from flexapod.model.study.disturbance import Disturbance
-from flexapod.model.study.requirement import Requirement
 from flexapod.model.study.remarks import actuator_remarks, robot_remarks, settings_remarks
+from flexapod.model.study.requirement import Requirement
 from flexapod.model.study.robot import Robot
 from flexapod.model.study.simulation import FIDELITIES, OWN_BASIS, SOLID, STRAIGHT, Initial, Simulation
 
