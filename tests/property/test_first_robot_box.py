@@ -6,9 +6,11 @@ from itertools import product
 import numpy as np
 import pytest
 
+import flexapod as fx
 from flexapod import kinematics, model
 from flexapod.common.errors import InputError
-from flexapod.design.first_robot import box, design, first_robot, parse_request
+from flexapod.design.first_robot import attainable, box, design, first_robot, parse_request
+from flexapod.output.text.attained import attained_sentences
 
 STAGE = "travel=15 mm, tilt=3 deg, payload=25 kg, accuracy=1 um"
 RANDOM = np.random.default_rng(35)
@@ -157,3 +159,52 @@ def test_refusals(text, key, words):
     with pytest.raises(InputError, match=words) as caught:
         first_robot(parse_request(text))
     assert key in caught.value.key and str(caught.value)
+
+
+def cooled(text, kelvin):
+    """Verdict on the robot of a request, its parts at that share of their warmth at which screws are so much warmer."""
+    study = model.loads(first_robot(parse_request(text)))
+    share = kelvin / 5
+    return fx.verdict(
+        study.with_values(
+            {
+                "heat.base": 20 + share,
+                "heat.piston": 20 + 2 * share,
+                "heat.cylinder": 20 + 2 * share,
+                "heat.screw": 20 + kelvin,
+            }
+        )
+    )
+
+
+def test_what_cooler_parts_attain_is_their_verdict():
+    """Sag of the stage taken out by the controller, parts nearly cold: 0.29 um at 185 mm (of another program)."""
+    text = "travel=15 mm, tilt=3 deg, payload=25 kg, pose_accuracy_corrected=1 um, repeatability=1 um"
+    wanted = parse_request(text)
+    data, best = attainable(wanted, first_robot(wanted))
+    (one,) = best
+    assert data.kept.sel(requirement="repeatability") and one.found > one.wanted > one.best and one.kept
+    assert one.best == pytest.approx(0.29e-6, rel=0.03) and one.warmest == pytest.approx(0.2)
+    other = cooled(text, 0.2).found.sel(requirement="pose_accuracy_corrected").item()
+    assert one.best == pytest.approx(other, rel=1e-9)
+    words = attained_sentences(data, best)
+    assert words[0].startswith("No: ") and words[1] == "Kept: travel, rotation, repeatability."
+    assert "yes 294 nm for 1 µm, with home = 184.3 mm and no part more than 0.2 K" in words[2]
+
+
+def test_the_best_of_the_stage():
+    """Calibrated accuracy at best 2.7 um, at about 600 mm (of another program): sag and heat go against each other."""
+    wanted = parse_request(STAGE)
+    _, (one,) = attainable(wanted, first_robot(wanted))
+    assert one.found == pytest.approx(12.0e-6, rel=0.01) and one.best == pytest.approx(2.7e-6, rel=0.03)
+    assert 0.5 < one.home < 0.7 and not one.kept
+    other = cooled(f"home={1e3 * one.home} mm, {STAGE}", one.warmest).found.sel(requirement=one.name).item()
+    assert one.best == pytest.approx(other, rel=1e-9)
+
+
+def test_nothing_is_looked_for_where_all_is_kept_or_nothing_asked():
+    plain = parse_request("travel=15 mm, tilt=3 deg, payload=25 kg")
+    assert attainable(plain, first_robot(plain)) == (None, ())
+    kept = parse_request("travel=15 mm, tilt=3 deg, payload=25 kg, repeatability=1 um")
+    data, best = attainable(kept, first_robot(kept))
+    assert best == () and attained_sentences(data, best) == ["Yes: all 3 requirements are kept."]

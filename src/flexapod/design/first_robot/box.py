@@ -45,6 +45,12 @@ def boxed_robot(request: Request, make: Make) -> str:
     raise _too_low(request, demand, make, found) if given else _too_large(request, found)
 
 
+def robot_of_home(request: Request, make: Make, home: float) -> str | None:
+    """The text of the robot of a home height that takes the box; None where parts do not fit."""
+    found = _smallest(request, request.demand, make, [home])  # type: ignore[arg-type]
+    return found if isinstance(found, str) else None
+
+
 def _homes(demand: Demand, least: float = LOWEST) -> Iterator[float]:
     """Home heights to try, to four digits."""
     ends = [end for axis in model.AXES[:3] if axis in demand.ranges for end in demand.ranges[axis]]
