@@ -23,8 +23,7 @@ if TYPE_CHECKING:
 
 NATIVE = Path(__file__).parent / "native"
 SOURCES = tuple(
-    NATIVE / name
-    for name in ("system.h", "lu.c", "legs.c", "arrow.c", "state.c", "loop.c", "march.c", "complex.c", "radau.c")
+    NATIVE / name for name in "system.h lu.c legs.c arrow.c state.c loop.c march.c complex.c radau.c modal.c".split()
 )
 PORTS = 24  # as in system.h
 LINE = 64  # bytes of the processor's cache, and of its longest vectors
