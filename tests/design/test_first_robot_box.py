@@ -10,7 +10,9 @@ import flexapod as fx
 from flexapod import kinematics, model
 from flexapod.common.errors import InputError
 from flexapod.design.first_robot import attainable, box, design, first_robot, parse_request
-from flexapod.output.text.attained import attained_sentences
+from flexapod.output.text.first_robot_verdict import attained_sentences
+
+pytestmark = pytest.mark.property
 
 STAGE = "travel=15 mm, tilt=3 deg, payload=25 kg, accuracy=1 um"
 RANDOM = np.random.default_rng(35)

@@ -69,15 +69,15 @@ class Box:
         return cls(low=ends[0], high=ends[1], pivot=np.asarray(pivot, dtype=float), alone=alone)
 
     @property
-    def named(self) -> Mask:
+    def moving_axes(self) -> Mask:
         """Axes that do not stay at home, (6,)."""
         return (self.low != 0) | (self.high != 0)
 
     def separate(self) -> tuple[Box, ...]:
         """Boxes of all axes at once: itself, or one for each axis where they move alone."""
-        if not self.alone or self.named.sum() < 2:
+        if not self.alone or self.moving_axes.sum() < 2:
             return (replace(self, alone=False),)
-        rows = np.eye(6)[self.named]
+        rows = np.eye(6)[self.moving_axes]
         return tuple(replace(self, low=self.low * row, high=self.high * row, alone=False) for row in rows)
 
     def grid(self, count: int, axes: Mask | None = None) -> Array:
@@ -163,15 +163,15 @@ def box_poses(robot: Robot, box: Box, count: int = 3) -> tuple[Array, Poses]:
     rows, path = [], []
     for one in box.separate():
         rows.append(one.grid(count))
-        path.append(poses_from_home(robot, rows[-1], _named(robot, one), one.pivot))
+        path.append(poses_from_home(robot, rows[-1], _commanded_axes(robot, one), one.pivot))
     if len(path) == 1:
         return rows[0], path[0]
     position, rotation = (np.concatenate([getattr(x, name) for x in path]) for name in ("position", "rotation"))
     return np.concatenate(rows), Poses.at_rest(position, rotation)
 
 
-def _named(robot: Robot, box: Box) -> Mask | None:
-    return None if not rigid_limbs(robot).guides else box.named
+def _commanded_axes(robot: Robot, box: Box) -> Mask | None:
+    return None if not rigid_limbs(robot).guides else box.moving_axes
 
 
 def length_limits(robot: Robot) -> Array:
@@ -274,11 +274,11 @@ def leg_range(robot: Robot, box: Box, limits: Array | None = None, parts: tuple[
     if not closed_form(robot):
         return _range_of_poses(robot, box, limits)
     spans = Spans.from_robot(robot, box.pivot)
-    found = reduce(_joined, (_looked_range(spans, one, limits) for one in box.separate()))
-    return _bounded(spans, box.separate(), found, parts)
+    found = reduce(_join_ranges, (_looked_range(spans, one, limits) for one in box.separate()))
+    return _add_bounds(spans, box.separate(), found, parts)
 
 
-def _bounded(spans: Spans, boxes: tuple[Box, ...], found: LegRange, parts: tuple[int, ...]) -> LegRange:
+def _add_bounds(spans: Spans, boxes: tuple[Box, ...], found: LegRange, parts: tuple[int, ...]) -> LegRange:
     """The range with its bounds, refined for legs that are neither within their limits nor out of them."""
     legs = np.arange(len(found.least))
     for count in parts:
@@ -329,7 +329,7 @@ def _range_of_poses(robot: Robot, box: Box, limits: Array) -> LegRange:
     )
 
 
-def _joined(one: LegRange, other: LegRange) -> LegRange:
+def _join_ranges(one: LegRange, other: LegRange) -> LegRange:
     """The range over two boxes, without bounds."""
     lower, higher = other.least < one.least, other.most > one.most
     return replace(

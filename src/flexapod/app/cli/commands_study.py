@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from flexapod.common.tables.reference import Entry
     from flexapod.design import first_robot
     from flexapod.model.file import json_schema, page
-    from flexapod.output.text import answers, attained, description
+    from flexapod.output.text import answers, description, first_robot_verdict
     from flexapod.output.text import check as text_check
     from flexapod.output.text import verdict as text_verdict
 else:
@@ -56,7 +56,7 @@ else:
     json_schema = LazyModule("flexapod.model.file.json_schema")
     page = LazyModule("flexapod.model.file.page")
     answers = LazyModule("flexapod.output.text.answers")
-    attained = LazyModule("flexapod.output.text.attained")
+    first_robot_verdict = LazyModule("flexapod.output.text.first_robot_verdict")
     text_check = LazyModule("flexapod.output.text.check")
     description = LazyModule("flexapod.output.text.description")
     text_verdict = LazyModule("flexapod.output.text.verdict")
@@ -170,8 +170,8 @@ def _first_robot(request: str, preset: str | None, *, ideal: bool) -> tuple[str,
     wanted = replace(wanted, drive=first_robot.IDEAL) if ideal else wanted
     text = first_robot.first_robot(wanted)
     data, best = first_robot.attainable(wanted, text)
-    source = {"from": request, **({} if data is None else {"attainable": attained.attained_as_dict(best)})}
-    return text, source, [*answers.first_robot_sentences(text), *attained.attained_sentences(data, best)]
+    source = {"from": request, **({} if data is None else {"attainable": first_robot_verdict.attained_as_dict(best)})}
+    return text, source, [*answers.first_robot_sentences(text), *first_robot_verdict.attained_sentences(data, best)]
 
 
 Table = Annotated[str | None, typer.Argument(metavar="[TABLE]", help="Only this table and those in it: leg.drive")]

@@ -84,7 +84,7 @@ def _smallest(request: Request, demand: Demand, make: Make, homes: Iterator[floa
             if "home" not in f"{error.key} {error.next_step}":
                 break  # a larger robot would not help
             continue
-        error = _missed(written, wish)
+        error = _box_error(written, wish)
         if error is None:
             return written
         last = error
@@ -116,7 +116,7 @@ def excursion(joints: Joints, body: Body, demand: Demand) -> float:
     return largest
 
 
-def _missed(written: str, request: Request) -> InputError | None:
+def _box_error(written: str, request: Request) -> InputError | None:
     """Reason why the robot of a text does not take the box; None where it does."""
     study: model.Study = model.loads(written)  # type: ignore[assignment]
     found = envelope(study.robot, request.demand.box(float(study.robot.payload.tool[2])))  # type: ignore[union-attr]

@@ -23,7 +23,7 @@ def attained_sentences(data: Dataset | None, best: Sequence[Attained]) -> list[s
         kept = [row for k in range(data.sizes["requirement"]) if (row := data.isel(requirement=k)).kept]
         names = (_name(str(row.requirement.item())) for row in kept)
         lines += [f"Kept: {', '.join(names)}."] if kept else []
-    return lines + [f"{_name(one.name).capitalize()}: {_attained(one)}." for one in best]
+    return lines + [f"{_name(one.name).capitalize()}: {_best_words(one)}." for one in best]
 
 
 def attained_as_dict(best: Sequence[Attained]) -> list[dict[str, object]]:
@@ -31,7 +31,7 @@ def attained_as_dict(best: Sequence[Attained]) -> list[dict[str, object]]:
     return [dict(vars(one)) for one in best]
 
 
-def _attained(one: Attained) -> str:
+def _best_words(one: Attained) -> str:
     if one.best == one.found:
         return "neither larger robots nor cooler parts do better"
     found, wanted = (number(x) if one.unit in ("1", "") else text(x, one.unit) for x in (one.best, one.wanted))
