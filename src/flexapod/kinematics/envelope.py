@@ -80,7 +80,7 @@ class Box:
         rows = np.eye(6)[self.moving_axes]
         return tuple(replace(self, low=self.low * row, high=self.high * row, alone=False) for row in rows)
 
-    def grid(self, count: int, axes: Mask | None = None) -> Array:
+    def grid_poses(self, count: int, axes: Mask | None = None) -> Array:
         """Poses (P, 6) of `count` values of each range, ends first; other axes than `axes` (6,) stay at home."""
         moves = np.ones(6, dtype=bool) if axes is None else axes
         values = [
@@ -162,7 +162,7 @@ def box_poses(robot: Robot, box: Box, count: int = 3) -> tuple[Array, Poses]:
     """
     rows, path = [], []
     for one in box.separate():
-        rows.append(one.grid(count))
+        rows.append(one.grid_poses(count))
         path.append(poses_from_home(robot, rows[-1], _commanded_axes(robot, one), one.pivot))
     if len(path) == 1:
         return rows[0], path[0]
@@ -294,7 +294,7 @@ def _add_bounds(spans: Spans, boxes: tuple[Box, ...], found: LegRange, parts: tu
 
 
 def _looked_range(spans: Spans, box: Box, limits: Array) -> LegRange:
-    tilts = box.grid(LOOKS, np.arange(6) >= 3)[:, 3:]
+    tilts = box.grid_poses(LOOKS, np.arange(6) >= 3)[:, 3:]
     least, most, near, far = extremes(spans, box, tilts)
     legs, low, high = np.arange(len(limits)), least.argmin(axis=0), most.argmax(axis=0)
     unknown = np.full(len(limits), np.nan)

@@ -111,7 +111,7 @@ def excursion(joints: Joints, body: Body, demand: Demand) -> float:
     spans = Spans(foot=box.pivot + np.array([0.0, 0.0, joints.height]) - foot, arm=tip - box.pivot)
     largest = 0.0
     for one in box.separate():
-        least, most, _, _ = extremes(spans, one, one.grid(LOOKS, np.arange(6) >= 3)[:, 3:])
+        least, most, _, _ = extremes(spans, one, one.grid_poses(LOOKS, np.arange(6) >= 3)[:, 3:])
         largest = max(largest, float((most - joints.length).max()), float((joints.length - least).max()))
     return largest
 
