@@ -9,6 +9,8 @@ from flexapod.analysis.results.attributes import result_study
 from flexapod.design.first_robot.catalogue import SCREWS
 from flexapod.output.text.optimum import optimum_sentences
 
+pytestmark = pytest.mark.consistency
+
 DIAMETER = {"key": "leg.piston.diameter", "low": "15 mm", "high": "60 mm"}
 
 
