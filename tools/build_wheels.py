@@ -119,10 +119,17 @@ def with_loops(wheel: Path, system: System, folder: Path, work: Path) -> Path:
         content[head] = content[head].replace(b"Root-Is-Purelib: true", b"Root-Is-Purelib: false")
         del content[record]
         for name, text in content.items():
-            new.writestr(name, text)
+            new.writestr(_readable(name), text)
         lines = [f"{name},sha256={_urlsafe(text)},{len(text)}" for name, text in content.items()]
-        new.writestr(record, "\n".join([*lines, f"{record},,", ""]))
+        new.writestr(_readable(record), "\n".join([*lines, f"{record},,", ""]))
     return made
+
+
+def _readable(name: str) -> zipfile.ZipInfo:
+    """Entry of a wheel that everybody may read, with the same date always: equal contents make equal wheels."""
+    entry = zipfile.ZipInfo(name, (2020, 1, 1, 0, 0, 0))
+    entry.external_attr, entry.compress_type = 0o644 << 16, zipfile.ZIP_DEFLATED
+    return entry
 
 
 def _urlsafe(content: bytes) -> str:
