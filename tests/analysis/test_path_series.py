@@ -63,6 +63,12 @@ def test_at_jumps_the_value_is_that_of_the_instant(profile: str) -> None:
     assert np.isin(study.motion.duration, path.time)
     _near(path.legs.rate, exact.legs.rate, 1e-13)
     _near(path.legs.accel, exact.legs.accel, 1e-12)
+    series, jumps = path.series, path.series.knots[1:-1]
+    t = np.sort(np.concatenate([jumps, np.nextafter(jumps, 0), np.nextafter(jumps, 1), jumps * (1 - 3e-16)]))
+    close = series.at(np.sort(np.concatenate([path.time, t])))
+    there = np.isin(np.sort(np.concatenate([path.time, t])), t)
+    at_jumps = series.exact(np.sort(np.concatenate([path.time, t]))).legs.accel[there]
+    _near(close.legs.accel[there], at_jumps, 1e-12)
 
 
 def test_instants_outside_of_the_path_are_solved_there() -> None:
