@@ -20,6 +20,7 @@ from flexapod.analysis import simulate_actuator as simulate_actuator
 from flexapod.analysis import simulate_solid as simulate_solid
 from flexapod.analysis import stiffness as stiffness
 from flexapod.analysis import transmissibility as transmissibility
+from flexapod.analysis import verdict as verdict
 from flexapod.analysis import vibration as vibration
 from flexapod.commissioning.feedforward import compensate as compensate
 from flexapod.commissioning.feedforward import shape as shape

@@ -7,6 +7,8 @@ import pytest
 
 import flexapod as fx
 
+pytestmark = pytest.mark.cli
+
 LUMPED = ('fidelity = "assumed-modes"', 'fidelity = "lumped"')
 DESIGN = """
 [[variables]]

@@ -9,6 +9,8 @@ import flexapod as fx
 from flexapod.design.sensitivity import check_outputs, sensitivity
 from flexapod.solve.modal.structural_damping import hold_loss_frequency
 
+pytestmark = pytest.mark.consistency
+
 CASES = {
     "paper-robot": ["payload.mass", "leg.piston.diameter", "leg.piston.length", "leg.stroke.max", "leg.cylinder.mass"],
     "machine-hexapod": [

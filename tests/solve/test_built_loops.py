@@ -31,7 +31,7 @@ compiler._build = lambda units, flags, *rest: (compiled.append(flags[0]), build(
 import flexapod as fx
 from flexapod.solve.time import native
 taken, written = [], native.written_library
-native.written_library = lambda *given: taken.append(written(*given)) or taken[-1]
+native.written_library = lambda *given, **more: taken.append(written(*given, **more)) or taken[-1]
 study, digest = fx.preset("paper-robot"), hashlib.sha256()
 for settings in ({"duration": 0.3}, {"duration": 0.05, "tolerance": None, "step": 5e-4}):
     data = fx.simulate(study.replace(simulation=study.simulation.replace(**settings))).load()

@@ -62,7 +62,9 @@ class RobotSimulation:
     def values(self) -> LazyArrays:
         """The variables of the Dataset as plain arrays, each computed on request."""
         path = self.recorded_path
-        found = robot_results(self.march.system, path, self.record) | rigid_force_results(path)
+        found = robot_results(self.march.system, path, self.record) | rigid_force_results(
+            path, self.march.system.kernel
+        )
         return LazyArrays(found | control_results(self.sampled, self.record))
 
     @cached_property

@@ -100,7 +100,7 @@ def sensitivity(
     --------
     >>> data = fx.sensitivity(fx.preset("machine-hexapod"), "payload.mass", "static_deviation_size")
     >>> print(data.sensitivity.values.round(2).item())
-    0.9
+    -0.52
     """
     whole = as_study(study)
     if whole.robot.platform_fixed:

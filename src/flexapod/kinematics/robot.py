@@ -27,7 +27,7 @@ T = TypeVar("T")
 LATEST = 4  # robots that are known without a comparison
 
 
-def cache_per_robot(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
+def _latest_kept(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
     """Compute it once for each of the last 64 robots; the same robot again is not compared with its equals."""
     of_equals = cast("Callable[[Robot], T]", lru_cache(maxsize=64)(compute))
     latest: dict[int, tuple[Robot, T]] = {}  # a robot and its ideal one are asked for in turns
@@ -41,6 +41,21 @@ def cache_per_robot(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
         return known[1]
 
     return wraps(compute)(look_up)
+
+
+@_latest_kept
+def _first_equal(robot: Robot) -> Robot:
+    """The first one of robots that are equal."""
+    return robot
+
+
+def cache_per_robot(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
+    """Compute it once for each of the last 64 robots.
+
+    A robot is compared with its equals once for all that is computed of it, not for each.
+    """
+    of_first = _latest_kept(compute)
+    return wraps(compute)(lambda robot: of_first(_first_equal(robot)))
 
 
 @cache_per_robot
@@ -186,13 +201,16 @@ def places(robot: Robot, motion: Motion, t: ArrayLike) -> tuple[Array, Array]:
     )
 
 
-def poses_from_home(robot: Robot, values: Array, named: Mask | None = None) -> Poses:
-    """Poses at rest from surge, sway, heave [m], roll, pitch, yaw [rad] from home, (P, 6).
+def poses_from_home(robot: Robot, values: Array, named: Mask | None = None, about: Array | None = None) -> Poses:
+    """Poses at rest from surge, sway, heave [m] of a point, roll, pitch, yaw [rad] about it, from home, (P, 6).
+
+    The point `about` (3,) is one of the platform frame, by default its origin.
 
     Where legs guide the platform the values of those that are `named` (6,), by default those that are not all zero,
     count, and the others follow; a pose that the legs cannot take is NaN.
     """
-    legs, still, pivot = rigid_limbs(robot), np.zeros_like(values), np.zeros(3)
+    legs, still = rigid_limbs(robot), np.zeros_like(values)
+    pivot = np.zeros(3) if about is None else about
     law = Law(values, still, still)
     if not legs.guides:
         return Poses.at_rest(*trajectory.places(home_pose(robot), law, pivot))

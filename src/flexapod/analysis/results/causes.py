@@ -14,6 +14,7 @@ from flexapod.analysis.results.elongations import (
     elongations,
     frame_names,
     gap_elongations,
+    has_gap,
     part_names,
     tip_displacements,
 )
@@ -31,6 +32,7 @@ from flexapod.mechanics.elements.springs import Place
 from flexapod.model import Robot
 from flexapod.solve.batch import RestStates
 from flexapod.solve.frames import plate_frames
+from flexapod.solve.statics import cause_rows
 from flexapod.solve.statics.ideal_robot import is_hexapod
 from flexapod.solve.statics.lost_motion import before_friction, places_with_friction
 from flexapod.solve.system import System
@@ -195,6 +197,29 @@ def closure_coordinates(found: Limbs) -> NDArray[np.bool_]:
     spins = found.pose_closure & (found.state[:, COORDINATES.index("spin")] == FREE)
     taken[spins, COORDINATES.index("spin")], taken[spins, COORDINATES.index("gamma3")] = True, False
     return taken
+
+
+def shares_and_sums(system: System, path: RigidPath, record: Record) -> tuple[Array, Array]:
+    """Displacement of the payload by cause and leg in a simulation, (T, causes, legs, 3), and their sums (T, 3) [m].
+
+    By compiled loops of legs UPS, where the equations are compiled. World axes, also where the base moves.
+    """
+    robot, turn = path.robot, None if path.base is None else path.base.rotation
+    if not cause_rows.serves(system.kernel, robot):
+        shares = deviation_by_cause(path, errors_of(system, path, record))
+        shares = shares if turn is None else np.einsum("txy,tcly->tclx", turn, shares)
+        return shares, shares.reshape(len(shares), -1, 3).sum(axis=1)
+    moved = cause_rows.Moved(
+        time=record.time,
+        q=record.q,
+        pose=record.pose,
+        turn=record.attitude,
+        command=path.lengths,
+        played=gap_elongations(system, record.q) if has_gap(system) else None,
+        rubs=record.friction[..., -1] if "drive" in places_with_friction(robot) else None,
+    )
+    moves = None if is_hexapod(robot) else _by_error(path)[:, :, L]
+    return cause_rows.deviation_by_cause(system, path, moved, cause_names(robot), turn, moves)
 
 
 def deviation_by_cause(path: RigidPath, errors: Errors) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,10 +12,15 @@ from flexapod import kinematics
 from flexapod.analysis.results.remarks import remark
 from flexapod.common.arrays import Array
 from flexapod.kinematics.closures import Closed
-from flexapod.kinematics.inverse import LegState
+from flexapod.kinematics.inverse import LegState, lengths_of
+from flexapod.kinematics.robot import leg_map
 from flexapod.model import ActuatorStudy, Robot, Study
-from flexapod.solve.statics.ideal_robot import RobotForces, rigid_errors, rigid_forces
+from flexapod.solve.result_rows import balances
+from flexapod.solve.statics.ideal_robot import RobotForces, is_hexapod, rigid_errors, rigid_forces
 from flexapod.solve.statics.path_forces import PathForces
+
+if TYPE_CHECKING:
+    from flexapod.solve.kernel import Kernel
 
 FEWEST, MOST = 2000, 50_000  # intervals at which a path is looked at
 SAME = 1e-9  # instants nearer to each other than this part of the step between them are the same
@@ -125,6 +131,20 @@ class RigidPath(kinematics.RigidPoses):
         if self.is_commanded:
             return self.loads.forces(self, self.time, self.wrench)
         return rigid_forces(self, self.wrench)
+
+    @cached_property
+    def lengths(self) -> Array:
+        """Lengths of the legs, (T, n) [m]: those of `legs`, to the bit."""
+        _ = self.poses
+        if "legs" in self.__dict__ or not kinematics.rigid_limbs(self.robot).plain:
+            return self.legs.length
+        return lengths_of(leg_map(self.robot), self.poses)
+
+    def forces_of_simulation(self, kernel: Kernel) -> RobotForces:
+        """Forces of drives and on the platform; of six legs UPS by compiled loops, where the equations are compiled."""
+        if "forces" in self.__dict__ or kernel.library is None or not is_hexapod(self.robot):
+            return self.forces
+        return RobotForces(**balances(kernel, self, self.wrench))
 
     @cached_property
     def constraints(self) -> Array:

@@ -178,7 +178,9 @@ def compiled_library(
     return found
 
 
-def written_library(sources: Sequence[Path], command: list[str], bodies: int | None = None) -> ctypes.CDLL:
+def written_library(
+    sources: Sequence[Path], command: list[str], *, flags: Sequence[str] = LOOPS, bodies: int | None = None
+) -> ctypes.CDLL:
     """Load hand-written C `sources`, in this order: from the wheel, or compiled on first use.
 
     Parameters
@@ -186,6 +188,8 @@ def written_library(sources: Sequence[Path], command: list[str], bodies: int | N
     sources : sequence of Path
     command : list of str
         C compiler.
+    flags : sequence of str
+        Of the compiler; the wheel has the loops with theirs.
     bodies : int, optional
         How many stand side by side in the vectors of the equations; what the wheel has for others is not taken.
 
@@ -198,11 +202,11 @@ def written_library(sources: Sequence[Path], command: list[str], bodies: int | N
     if (built := built_loops()) and built.key == key and (found := _first([built.path])):
         if bodies in (None, lanes(found[0])):
             return found[0]
-    cache, name = open_cache(), _name([unit], LOOPS, command)
+    cache, name = open_cache(), _name([unit], flags, command)
     if cache and (found := _first(intact_libraries(cache, name))):
         return found[0]
     with _announced(), temporary_folder() as folder:
-        return _library(name, [unit], LOOPS, command, cache, folder)[0]
+        return _library(name, [unit], flags, command, cache, folder)[0]
 
 
 def written_text(sources: Sequence[Path]) -> tuple[str, str]:

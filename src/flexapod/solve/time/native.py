@@ -124,7 +124,7 @@ def loops(kernel: Kernel) -> ctypes.CDLL:
 @cache
 def _loops(command: tuple[str, ...], bodies: int | None) -> ctypes.CDLL:
     retain_freed_memory()
-    library = written_library(SOURCES, list(command), bodies)
+    library = written_library(SOURCES, list(command), bodies=bodies)
     library.march_memory.restype = library.radau_memory.restype = c_long
     library.record_state.restype = None
     return library
