@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexapod.common.arrays import Array
+from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import InputError
 from flexapod.common.piecewise_chebyshev import NODES, Pieces
 from flexapod.kinematics.closures import ClosureMotion
@@ -81,8 +81,8 @@ class PathSeries:
             self._constraints = Pieces(lambda t: [self.at(t).constraints], self.knots)
         return self._constraints(t)[0]
 
-    def _near_jumps(self, t: Array) -> Array:
-        return (np.abs(t[:, None] - self._jumps) <= SAME * self.duration).any(axis=1)
+    def _near_jumps(self, t: Array) -> Mask:
+        return np.asarray((np.abs(t[:, None] - self._jumps) <= SAME * self.duration).any(axis=1))
 
     def _groups(self, t: Array) -> list[Array]:
         """Places, rates and accelerations of platform and legs at instants, in one unit each."""

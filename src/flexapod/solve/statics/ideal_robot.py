@@ -176,7 +176,7 @@ def has_closed_form(robot: Robot) -> bool:
     """Test whether a robot has legs UPS alone, at least six of them driven, with ball joints ideal or released."""
     legs = kinematics.rigid_limbs(robot)
     driven = np.count_nonzero(legs.state[:, LENGTH] == DRIVEN)
-    return legs.plain and driven >= 6 and not legs.hub_held.any()
+    return legs.plain and bool(driven >= 6) and not bool(legs.hub_held.any())
 
 
 @cache_per_robot
