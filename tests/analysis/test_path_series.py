@@ -18,6 +18,8 @@ from flexapod.model import Load, StepWrench, Study
 from flexapod.solve.statics.ideal_robot import rigid_errors, rigid_forces
 from flexapod.solve.time.robot_march import prepare
 
+pytestmark = pytest.mark.consistency
+
 EXAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 NAMES = ("tripod", "delta", "tricept", "hexaglide", "planar")
 

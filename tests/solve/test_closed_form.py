@@ -18,6 +18,8 @@ from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.statics import ideal_robot
 from flexapod.solve.statics.rigid_forces import displacement_by_error
 
+pytestmark = pytest.mark.consistency
+
 EXAMPLES = Path(__file__).parents[2] / "examples" / "mechanisms"
 WRENCH = np.array([100.0, -50.0, 30.0, 4.0, -3.0, 5.0])
 

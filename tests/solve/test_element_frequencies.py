@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-from tests.helpers.one_leg import LEGS, PISTON, hertz, squared_frequencies
+from tests.helpers.one_leg import PISTON, hertz, squared_frequencies
 from tests.oracles import beams
 
 from flexapod.common.errors import InputError
 from flexapod.model import Actuator, Simulation
 from flexapod.solve.modal.actuator_modes import actuator_modes
+from flexapod.verification.cases.turning import LEGS
 
 pytestmark = pytest.mark.analytic
 

@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy.linalg import expm
-from scipy.optimize import brentq
 from tests.oracles import beams
 
 from flexapod.model import Rectangle, Tube
@@ -11,6 +9,7 @@ from flexapod.solve.fem.frequencies import frequencies
 from flexapod.solve.fem.hexahedra import beam_mesh
 from flexapod.solve.fem.reduction import reduced_beam
 from flexapod.solve.fem.sliding import HubMotion, SlidingBeam, mouth_of
+from flexapod.verification.cases.solids import POISSON, timoshenko
 
 pytestmark = pytest.mark.analytic
 
@@ -20,31 +19,16 @@ MATERIAL = {"E": EI / FLAT.second_moment, "density": RHOA / FLAT.area}
 STILL = {"length_rate": 0.0, "length_acceleration": 0.0, "angle": 0.0, "angle_rate": 0.0, "angle_acceleration": 0.0}
 
 
-def timoshenko(r, shear, guesses):
-    """Clamped-free W = omega sqrt(rhoA L^4 / EI) for a radius of gyration r L and shear = E / (kappa G)."""
-
-    def free_end(W):
-        # (w, psi, M, Q)' with EI = rhoA = L = 1: w' = psi + shear r^2 Q, psi' = M, M' = -Q - r^2 W^2 psi, Q' = -W^2 w
-        A = np.array([[0, 1, 0, shear * r**2], [0, 0, 1, 0], [0, -((r * W) ** 2), 0, -1], [-(W**2), 0, 0, 0]])
-        return np.linalg.det(expm(A)[2:, 2:])
-
-    return np.array([brentq(free_end, 0.97 * W, 1.001 * W, xtol=1e-10) for W in guesses])
-
-
-def test_the_timoshenko_reference_is_the_published_one():
-    exact = [3.502641, 21.469824, 58.149832]  # nu = 0.3, kappa = 5/6
-    np.testing.assert_allclose(timoshenko(0.02, 2.6 * 1.2, exact), exact, rtol=2e-7)  # printed digits
-
-
 def test_thick_beam_is_timoshenkos():
-    # nu = 0, kappa = 5/6. The clamp also holds the warping of the section, over a length of about the depth / 4, where
-    # shear takes 3 E/(kappa G) r^2 = 0.3 % of the compliance: an effect of 1e-4 at most on the first mode.
+    # nu = 0, kappa = 5/6, E / kappa G = 2.4. The clamp also holds the warping of the section, over a length of about
+    # the depth / 4, where shear takes 3 E/(kappa G) r^2 = 0.3 % of the compliance: an effect of 1e-4 at most on the
+    # first mode.
     r, length = 0.02, 1.0
     section = Rectangle(width=0.02, height=r * np.sqrt(12))
     mesh = beam_mesh(section, length, 0.02, whole=False)
     ours = frequencies(mesh, E=1.0, density=1.0, count=3) * 2 * np.pi
     unit = np.sqrt(section.second_moment / section.area)
-    exact = timoshenko(r, 2.4, [3.506, 21.6, 58.9])
+    exact = timoshenko(r, 2 * (1 + POISSON) / 2.4, "clamped-free", (3.506, 21.6, 58.9))
     assert (np.abs(ours / unit / exact - 1) < [1e-4, 4e-4, 8e-4]).all()
 
 
@@ -66,7 +50,8 @@ def test_round_piston(poisson, low, high):
         frequencies(beam_mesh(piston, 0.6, 0.009, whole=whole), E=200e9, density=7800.0, poisson=poisson, count=count)
         for whole, count in ((True, 4), (False, 2))
     )
-    exact = timoshenko(r, 2 * (1 + poisson) * (7 + 6 * poisson) / (6 * (1 + poisson)), [3.515, 21.9])
+    shear = 2 * (1 + poisson) * (7 + 6 * poisson) / (6 * (1 + poisson))  # E / kappa G
+    exact = timoshenko(r, 2 * (1 + POISSON) / shear, "clamped-free", (3.515, 21.9))
     exact *= np.sqrt(200e9 * piston.second_moment / (7800.0 * piston.area * 0.6**4)) / (2 * np.pi)
     gap = ours / np.repeat(exact, 2) - 1  # two planes
     assert (low < gap).all() and (gap < high).all()

@@ -7,6 +7,8 @@ from tests.oracles import virtual_power
 from tests.oracles.mechanism_cases import orsino_motion
 from tests.oracles.mechanisms import SURGE, SWAY, YAW, Mechanism, chain, platform
 
+from flexapod.verification.cases.mechanisms import PRINTED
+
 pytestmark = pytest.mark.literature
 
 WRENCH = np.array([50.0, -30, 80, 5, -4, 6])
@@ -38,12 +40,9 @@ def orsino(mixed):
     return Mechanism(tuple(legs), hub, home, np.array([0, -9.8, 0]), (SURGE, SWAY, YAW))
 
 
-@pytest.mark.parametrize(
-    ("mixed", "printed"),
-    [(False, [-221.31533, 443.30184, -357.50533]), (True, [-184.96848, 423.29547, -351.61880])],
-)
-def test_printed_forces_of_planar_robots(mixed, printed):
-    robot = orsino(mixed)
+@pytest.mark.parametrize(("kind", "printed"), PRINTED.items())
+def test_printed_forces_of_planar_robots(kind, printed):
+    robot = orsino(kind != "3-PRR")
     motion = virtual_power.follow(robot, *orsino_motion(0.05))
     np.testing.assert_allclose(virtual_power.forces(robot, motion).drive, printed, rtol=0, atol=5.1e-6)  # five decimals
 

@@ -201,13 +201,16 @@ def places(robot: Robot, motion: Motion, t: ArrayLike) -> tuple[Array, Array]:
     )
 
 
-def poses_from_home(robot: Robot, values: Array, named: Mask | None = None) -> Poses:
-    """Poses at rest from surge, sway, heave [m], roll, pitch, yaw [rad] from home, (P, 6).
+def poses_from_home(robot: Robot, values: Array, named: Mask | None = None, about: Array | None = None) -> Poses:
+    """Poses at rest from surge, sway, heave [m] of a point, roll, pitch, yaw [rad] about it, from home, (P, 6).
+
+    The point `about` (3,) is one of the platform frame, by default its origin.
 
     Where legs guide the platform the values of those that are `named` (6,), by default those that are not all zero,
     count, and the others follow; a pose that the legs cannot take is NaN.
     """
-    legs, still, pivot = rigid_limbs(robot), np.zeros_like(values), np.zeros(3)
+    legs, still = rigid_limbs(robot), np.zeros_like(values)
+    pivot = np.zeros(3) if about is None else about
     law = Law(values, still, still)
     if not legs.guides:
         return Poses.at_rest(*trajectory.places(home_pose(robot), law, pivot))

@@ -77,7 +77,7 @@ class _Balances(Given):
 @cache
 def result_loops(command: tuple[str, ...]) -> ctypes.CDLL:
     """Compiled loops over rows, the same for all robots."""
-    library = written_library(SOURCES, list(command), FLAGS)
+    library = written_library(SOURCES, list(command), flags=FLAGS)
     for name in ("joint_turns", "leg_lengths", "leg_clearance"):
         getattr(library, name).restype = None
     return library

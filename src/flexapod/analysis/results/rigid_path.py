@@ -103,7 +103,7 @@ class RigidPath(kinematics.RigidPoses):
     def coarse_paths(self) -> Iterator[RigidPath]:
         """The path at few instants, ever farther from home, where it leads far; none where its poses are known."""
         looks = () if "poses" in self.__dict__ else kinematics.first_looks(self.robot, self.study.motion, self.time)
-        return (RigidPath(self.study, self.time[at], loads=self.loads) for at in looks)
+        return (RigidPath(self.study, t, self.series.exact(t).poses) for t in (self.time[at] for at in looks))
 
     @cached_property
     def base(self) -> kinematics.Placed | None:
