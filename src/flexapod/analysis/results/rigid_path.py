@@ -144,7 +144,8 @@ class RigidPath(kinematics.RigidPoses):
         """Forces of drives and on the platform; of six legs UPS by compiled loops, where the equations are compiled."""
         if "forces" in self.__dict__ or kernel.library is None or not is_hexapod(self.robot):
             return self.forces
-        return RobotForces(**balances(kernel, self, self.wrench))
+        found = balances(kernel, self, self.wrench)
+        return RobotForces(drive_force=found["drive_force"], joint_force=found["joint_force"])
 
     @cached_property
     def constraints(self) -> Array:

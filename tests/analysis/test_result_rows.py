@@ -2,14 +2,9 @@
 
 import numpy as np
 import pytest
-from tests import machines, mechanisms
-from tests.consistency.test_hydraulic_drive import OIL
-from tests.consistency.test_mounts import BASE, TOP
-from tests.consistency.test_screw_drive import EVERYTHING
-from tests.consistency.test_screw_loops import at
-from tests.consistency.test_unkeyed import robot as unkeyed
-from tests.machines import SCREW
-from tests.runs import paper_robot, with_legs
+from tests.helpers import machines, mechanisms
+from tests.helpers.machines import BASE, EVERYTHING, OIL, SCREW, TOP
+from tests.helpers.runs import paper_robot, with_legs
 
 import flexapod as fx
 from flexapod import model
@@ -21,10 +16,12 @@ from flexapod.common.errors import ComputationError
 from flexapod.kinematics import Poses, RigidPoses, poses_from_home
 from flexapod.kinematics.dynamics import inverse_dynamics
 from flexapod.kinematics.robot import home_frames, leg_bodies, payload_body
-from flexapod.model import Expansion, Geometry, Heat, Load, ServoDrive, SineWrench
+from flexapod.model import Encoder, Expansion, Geometry, Heat, Load, Loop, ServoDrive, SineWrench
 from flexapod.model.study.mount import BaseMotion
 from flexapod.solve.result_rows import balances
 from flexapod.solve.statics.ideal_robot import is_hexapod
+
+pytestmark = pytest.mark.consistency
 
 RNG = np.random.default_rng(11)
 GEOMETRY = Geometry(
@@ -41,7 +38,13 @@ SHAKEN = {
 
 def machine(**more):
     """Machine whose legs have springs of every kind, in a short run."""
-    return machines.study(machines.machine(drive=SCREW, **{**EVERYTHING, **more}), fidelity="lumped", step=1e-3)
+    return machines.study(machines.machine(**{"drive": SCREW, **EVERYTHING, **more}), fidelity="lumped", step=1e-3)
+
+
+def measured(place):
+    """Screw in a loop that gives way."""
+    loop = Loop(stiffness=5e3, damping=60.0, integral=2e4)
+    return SCREW.replace(encoder=Encoder(at=place), command="servo", loop=loop)
 
 
 def with_robot(study, **more):
@@ -69,16 +72,15 @@ STUDIES = {
     "servo drives": lambda: with_legs(rolling(), lambda leg: leg.replace(drive=ServoDrive(stiffness=2e7, damping=2e4))),
     "friction, heat and plates": lambda: model.override(model.preset("machine-hexapod"), duration=0.3, tolerance=1e-3),
     "errors of geometry, temperatures over time": lambda: warm(machine()),
-    "a loop about the stroke": lambda: machines.study(at("stroke"), fidelity="lumped", step=1e-3),
-    "a loop about the joints": lambda: machines.study(at("joint-to-joint"), fidelity="lumped", step=1e-3),
+    "a loop about the stroke": lambda: machine(drive=measured("stroke")),
+    "a loop about the joints": lambda: machine(drive=measured("joint-to-joint")),
     "gaps": lambda: machines.study(
         machines.machine(drive=SCREW.replace(nut=SCREW.nut.replace(backlash=1e-5, damping=1e6)), damping=0.02),
         fidelity="lumped",
         play="gap",
         step=5e-4,
     ),
-    "pistons that turn": lambda: machines.study(unkeyed(), fidelity="lumped", step=1e-3),
-    "oil": lambda: machines.study(machines.machine(drive=OIL), fidelity="lumped", step=1e-3),
+    "oil": lambda: machines.study(machines.machine(**EVERYTHING, drive=OIL), fidelity="lumped", step=1e-3),
     "frames on mounts": lambda: with_robot(machine(), base_mount=BASE, platform_mount=TOP),
     "a base that moves": lambda: with_robot(machine(), base_motion=BaseMotion(at=[0.1, 0.0, -0.2], **SHAKEN)),
     "eight legs": lambda: machines.study(mechanisms.ROBOTS["8-UPS"](), fidelity="lumped", step=1e-3),
