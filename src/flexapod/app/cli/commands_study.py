@@ -76,7 +76,8 @@ From = Annotated[
         "--from",
         metavar='"home=300 mm, payload=20 kg, stroke=60 mm"',
         help="A first robot of catalogue parts that fit: electric cylinders, or drive=hydraulic; also base, platform "
-        "(radii), diameter (of pistons), material, motion (surge to yaw), duration.",
+        "(radii), diameter (of pistons), material, motion (surge to yaw), duration. Or what it must do, as of "
+        '[requirement]: "travel=15 mm, tilt=3 deg, payload=25 kg, accuracy=1 um"; then home and stroke follow.',
     ),
 ]
 Ideal = Annotated[
