@@ -12,6 +12,7 @@ COMMA := ,
 PARTS = page,verify,control$(if $(COMPILER),,$(COMMA)compiler)
 
 WORKERS ?= 2
+CHECKED = $(shell grep -rlwE --include='test_*.py' 'pytest\.mark\.(unit|contract)' tests)
 PYTEST = $(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup
 
 .DEFAULT_GOAL := help
@@ -45,7 +46,7 @@ docs: $(DOCS)  ## the documentation as a site: build/site/index.html
 	$(BIN)/python -m docs.site
 
 check: style  ## style, types, import layers, tests of functions and contracts: within 90 s
-	$(PYTEST) -m "not whole" tests/unit tests/contract tests/meta/test_types.py
+	$(PYTEST) -m "not whole" $(CHECKED) tests/meta/test_types.py
 
 test: style  ## the same and all kinds of tests, one case of each family: within 6 minutes
 	$(PYTEST) -m "not whole"

@@ -1,14 +1,13 @@
-"""Folder = marker: a test carries the name of its folder as its marker; `whole.toml` says which are whole, too."""
+"""Folder = wing of the package; the kind of proof is a marker of each file; `whole.toml` says which are whole, too."""
 
 import os
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from tests.whole import mark_whole
 
+pytest_plugins = ["tests.helpers.browser"]
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # small matrices: threads of BLAS only cost
-HERE = Path(__file__).parent
 KINDS = (
     "analytic", "cli", "consistency", "contract", "conservation", "convergence",
     "golden", "last_stage", "literature", "meta", "property", "unit", "web",
@@ -29,8 +28,8 @@ def forgotten(request: pytest.FixtureRequest) -> Iterator[None]:
 @pytest.fixture(scope="module", autouse=True)
 def quickly_compiled(request: pytest.FixtureRequest) -> Iterator[None]:
     """Kernels of kinds of tests that have one each: not optimised they have the same bits in a third of the time."""
-    kind = request.path.relative_to(HERE).parts[0]
-    if kind not in QUICK or any(map(request.node.get_closest_marker, ("optimised", "xdist_group"))):
+    marked = request.node.get_closest_marker
+    if not any(map(marked, QUICK)) or any(map(marked, ("optimised", "xdist_group"))):
         yield
         return
     from flexapod.solve.kernel import kernel
@@ -44,7 +43,7 @@ def quickly_compiled(request: pytest.FixtureRequest) -> Iterator[None]:
 @pytest.fixture
 def uncompiled(monkeypatch: pytest.MonkeyPatch) -> None:
     """Kernels are interpreted: a few matrices of a robot that no other test has are no work for a compiler."""
-    from tests.runs import uncompiled_kernel
+    from tests.helpers.runs import uncompiled_kernel
 
     for place in ("robot_system", "time.actuator_march"):
         monkeypatch.setattr(f"flexapod.solve.{place}.kernel", uncompiled_kernel)
@@ -53,10 +52,8 @@ def uncompiled(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.hookimpl(tryfirst=True)  # cases are counted in the order in which they are collected
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
-        kind = item.path.relative_to(HERE).parts[0]
-        if kind not in KINDS:
-            raise pytest.UsageError(f"{item.path}: tests live in tests/<kind>/, kind one of {', '.join(KINDS)}")
-        item.add_marker(kind)
+        if sum(item.get_closest_marker(kind) is not None for kind in KINDS) != 1:
+            raise pytest.UsageError(f"{item.nodeid}: `pytestmark` says its kind of proof, one of {', '.join(KINDS)}")
     mark_whole(items)
 
 

@@ -36,6 +36,8 @@ from flexapod.control.measurements import read_frf as read_frf
 from flexapod.design.convergence import converge as converge
 from flexapod.design.convergence.ladder import ladder as ladder
 from flexapod.design.maps import workspace_map as workspace_map
+from flexapod.design.optimisation.optimise import optimise as optimise
+from flexapod.design.sensitivity import sensitivity as sensitivity
 from flexapod.design.stored_study import load as load
 from flexapod.design.sweeps import sweep as sweep
 from flexapod.mechanics.elements.element import Along as Along

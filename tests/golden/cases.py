@@ -13,7 +13,8 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from tests import legs_of_all_kinds as legs
+from tests.helpers import legs_of_all_kinds as legs
+from tests.helpers.texts import replaced
 
 import flexapod as fx
 from flexapod.model import preset_text
@@ -43,11 +44,10 @@ VARIANTS = {
 
 def variant(name):
     """`paper-robot` with one piece of its file replaced."""
-    text, (old, new) = preset_text("paper-robot"), VARIANTS[name]
+    text = preset_text("paper-robot")
     if name == "combined":
         text = text.replace('amplitude = "26.6 deg"', "# amplitude")
-    assert text.count(old) == 1
-    return fx.loads(text.replace(old, new))
+    return fx.loads(replaced(text, VARIANTS[name]))
 
 
 def series(data):

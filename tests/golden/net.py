@@ -20,7 +20,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from tests.texts import replaced
+from tests.helpers.texts import replaced
 
 import flexapod as fx
 from flexapod.model import preset_text

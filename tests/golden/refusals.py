@@ -21,7 +21,7 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-from tests.damaged import WHOLE, added, doubled, removed, removed_neatly, retabled, scaled, value, wrong_name
+from tools.damaged import WHOLE, added, doubled, removed, removed_neatly, retabled, scaled, value, wrong_name
 
 from flexapod import model
 from flexapod.common.errors import InputError
@@ -32,6 +32,7 @@ ROOT = Path(__file__).parents[2]
 RECORDED = ROOT / "build" / "refusals"
 TABLE = Path(__file__).with_suffix(".jsonl")
 READERS = {"loads": files.loads, "loads_robot": files.loads_robot}
+_drawn: list[object] = []  # markers of the test that runs, if its input is drawn at random
 LONGEST = 20_000  # characters of a text that are worth keeping
 
 
@@ -117,13 +118,17 @@ def pytest_configure() -> None:
         _listen(name, reader)
 
 
+def pytest_runtest_setup(item) -> None:
+    """Whether what comes is drawn at random: that is not written down."""
+    _drawn[:] = item.iter_markers("property")
+
+
 def _listen(name: str, reader) -> None:
     def heard(text: str, *, path: str | Path | None = None):
         try:
             return reader(text, path=path)
         except InputError:
-            test = os.environ.get("PYTEST_CURRENT_TEST", "")
-            if isinstance(text, str) and len(text) <= LONGEST and "tests/property" not in test:
+            if isinstance(text, str) and len(text) <= LONGEST and not _drawn:
                 with (RECORDED / f"{os.getpid()}.jsonl").open("a", encoding="utf-8") as file:
                     file.write(json.dumps([name, text]) + "\n")
             raise

@@ -5,6 +5,8 @@ import pytest
 from tests.golden.cases import CASES, computed
 from tests.golden.kept import FOLDER, bound, read, sampled
 
+pytestmark = pytest.mark.golden
+
 
 @pytest.mark.parametrize("case", CASES)
 def test_numbers_are_as_they_were(case):

@@ -7,6 +7,8 @@ import pytest
 import xarray as xr
 from tests.golden.net import STORED, STUDIES, differences, of_dataset, printed, prints
 
+pytestmark = pytest.mark.golden
+
 STORE = "nothing stored to compare with: `python -m tests.golden.net --store`, before a change that only moves things"
 
 

@@ -1,8 +1,11 @@
 """Every refusal of a study file that the suite provokes reads as it did; see `tests.golden.refusals`."""
 
+import pytest
 from tests.golden.refusals import message, packed, rows, samples, unpacked
 
 from flexapod.mechanics.elements.element import registered
+
+pytestmark = pytest.mark.golden
 
 
 def test_refusals_read_as_they_did(monkeypatch):

@@ -9,6 +9,8 @@ import tomllib
 import pytest
 from tests.last_stage.runner import HERE, differences, expected, items, run
 
+pytestmark = pytest.mark.last_stage
+
 TABLE = tomllib.loads((HERE / "differences.toml").read_text(encoding="utf-8"))
 MEANT = TABLE["difference"]
 NEAR = 1e-9  # of a peak: what other processors round in another way, a thousand operations and a condition of 1e4

@@ -9,6 +9,8 @@ import pytest
 
 import flexapod
 
+pytestmark = pytest.mark.meta
+
 
 def test_imports_make_no_circle():
     graph = grimp.build_graph("flexapod", exclude_type_checking_imports=True, cache_dir=None)

@@ -8,6 +8,8 @@ from markdown_it import MarkdownIt
 
 from flexapod.common.version import __version__
 
+pytestmark = pytest.mark.meta
+
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([*(ROOT / "docs").rglob("*.md"), *ROOT.glob("*.md")])
 LINK = re.compile(r"\]\((?!https?://|mailto:|#)([^)#\s]+)")
@@ -106,3 +108,16 @@ def test_the_pattern_finds_files():
         "model/",
         "names.py",
     ]
+
+
+PROGRAMS = sorted((ROOT / "src" / "flexapod" / "examples").rglob("*.py"))
+SURGERY = re.compile(
+    r"source_text(\.replace|\[|\s*\+)|(?<!\w)(\w+) = [^\n]*source_text\n(?:.*\n)*?.*\b\2(\.replace|\[|\.index)"
+)
+
+
+@pytest.mark.parametrize("path", [*PAGES, *PROGRAMS], ids=name)
+def test_nobody_changes_a_study_by_cutting_its_text(path):
+    """A text that is replaced by another one in a file that does not hold it does nothing, and says nothing."""
+    if path.name != "messages.md":  # which shows what a wrong text is told
+        assert not SURGERY.search(path.read_text(encoding="utf-8")), "use study.with_values"

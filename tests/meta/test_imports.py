@@ -14,6 +14,8 @@ import flexapod
 from flexapod.app.cli.commands_view import PACKAGES
 from flexapod.verification.engines.engine import EXUDYN, MUJOCO
 
+pytestmark = pytest.mark.meta
+
 HEAVY = ("casadi", "matplotlib", "netCDF4", "pint", "pydantic", "rich", "scipy", "typer", "xarray")
 
 

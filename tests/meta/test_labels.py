@@ -4,6 +4,10 @@ import re
 from collections import Counter
 from pathlib import Path
 
+import pytest
+
+pytestmark = pytest.mark.meta
+
 ROOT = Path(__file__).parents[2]
 LABEL = re.compile(r"\((T\d+\.\d+[a-z]?)\)")
 TAG = re.compile(r"\\tag\{(T\d+\.\d+[a-z]?)\}")

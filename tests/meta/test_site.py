@@ -13,6 +13,8 @@ from flexapod.app.cli.commands_study import titles
 from flexapod.common.errors import InputError
 from flexapod.common.tables.reference import plain_path, reference
 
+pytestmark = pytest.mark.meta
+
 NO_KEY = ("unknown key", "lies too deep", "has too many digits")
 
 

@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[2]
 PYRIGHT = shutil.which("pyright", path=Path(sys.executable).parent)
 
 
-pytestmark = pytest.mark.skipif(PYRIGHT is None, reason="pyright is not installed")
+pytestmark = [pytest.mark.meta, pytest.mark.skipif(PYRIGHT is None, reason="pyright is not installed")]
 
 
 def test_types_agree():

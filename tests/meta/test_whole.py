@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 from tests.whole import entries
 
+pytestmark = pytest.mark.meta
+
 TESTS = Path(__file__).parents[1]
 WHOLE = list(entries())
 FILES = sorted({name.partition("::")[0] for name, _ in WHOLE})

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.meta
+
 ROOT = Path(__file__).parents[2]
 SOURCES = sorted((ROOT / "src" / "flexapod").rglob("*.py"))
 VAGUE = frozenset(

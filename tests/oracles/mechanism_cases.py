@@ -202,3 +202,11 @@ CASES = {
     "3-PUU": lambda: Case(delta(), (0.05, 0.04, 0.05)),
     "3-PRR": lambda: Case(planar_prr(), (0.01, 0.008, 0.1)),
 }
+
+
+def orsino_motion(t):
+    w, turn = 4 * np.pi, np.pi / 9
+    c, s, c2, s2 = np.cos(w * t), np.sin(w * t), np.cos(2 * w * t), np.sin(2 * w * t)
+    value = np.array([0.1 * c, 0.1 * s, turn * s2])  # from x = 2, y = 0.3
+    rate = w * np.array([-0.1 * s, 0.1 * c, 2 * turn * c2])
+    return value, rate, -(w**2) * np.array([0.1 * c, 0.1 * s, 4 * turn * s2])

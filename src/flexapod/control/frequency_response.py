@@ -22,9 +22,10 @@ from flexapod.common.errors import ComputationError
 class IntegratorSplit:
     """A system as A (n, n), B (n, m), C (p, n) beside powers (k, p, m) of 1/s, 1/s^2, ..., Eq. (T21.34).
 
-    ``most`` (k, p, m): what the powers could add up to without cancelling.
+    ``kept`` (n,): which states A is of; ``most`` (k, p, m): what the powers could add up to without cancelling.
     """
 
+    kept: NDArray[np.int_]
     A: Array
     B: Array
     C: Array
@@ -74,20 +75,36 @@ def without_integrators(A: Array, B: Array, C: Array) -> IntegratorSplit:
     if not len(N) or not len(main):
         return _as_powers(A, B, C, N, main, (np.abs(B), np.abs(C)))
     # (T21.33)  x_main + X x_up and x_down + Y x_main are apart
-    X = scipy.linalg.solve_sylvester(part(main, main), -part(up, up), -part(main, up)) if len(up) else None
-    Y = scipy.linalg.solve_sylvester(part(down, down), -part(main, main), -part(down, main)) if len(down) else None
+    form: Any = scipy.linalg.schur(part(main, main))
     change, back = np.eye(len(A)), np.eye(len(A))
-    if X is not None:
+    if len(up):
+        X = _decoupled(form, scipy.linalg.schur(part(up, up)), part(main, up))
         change[main[:, None], up], back[main[:, None], up] = X, -X
-    if Y is not None:
+    if len(down):
+        Y = _decoupled(scipy.linalg.schur(part(down, down)), form, part(down, main))
         second, undone = np.eye(len(A)), np.eye(len(A))
         second[down[:, None], main], undone[down[:, None], main] = Y, -Y
         change, back = change @ second, undone @ back
     if not (np.isfinite(change).all() and np.isfinite(back).all()):
         none = np.zeros((0, len(C), B.shape[1]))
-        return IntegratorSplit(A=A, B=B, C=C, powers=none, most=none)
+        return IntegratorSplit(kept=np.arange(len(A)), A=A, B=B, C=C, powers=none, most=none)
     most = np.abs(back) @ np.abs(B), np.abs(C) @ np.abs(change)
     return _as_powers(back @ A @ change, back @ B, C @ change, N, main, most)
+
+
+def _decoupled(first: Any, second: Any, coupling: Array) -> Array:
+    """X of A X - X B = -coupling by the real Schur forms (T, Z) of A and B."""
+    (S, U), (T, V) = first, second
+    return U @ sylvester(S, T, -U.T @ coupling @ V, isgn=-1) @ V.T
+
+
+def sylvester(S: Array, T: Array, Q: Array, **form: Any) -> Array:
+    """Solution X of S X + X T = Q of matrices in real Schur form; as `form` asks of S X - X T or S X + X T'."""
+    if not Q.size:
+        return Q
+    lapack: Any = scipy.linalg.lapack
+    found, scale, _ = lapack.dtrsyl(S, T, Q, **form)
+    return np.asarray(found / scale, dtype=float)
 
 
 def _as_powers(
@@ -102,12 +119,13 @@ def _as_powers(
         most.append(sizes[1][:, N] @ size)
         power, size = inner @ power, np.abs(inner) @ size
     return IntegratorSplit(
-        A=A[main][:, main], B=B[main], C=C[:, main], powers=np.array(powers).reshape(len(powers), *shape),
+        kept=main, A=A[main][:, main], B=B[main], C=C[:, main], powers=np.array(powers).reshape(len(powers), *shape),
         most=np.array(most).reshape(len(powers), *shape),
     )  # fmt: skip
 
 
 UPON = 1e-15  # distance from a pole over its size at which a point lies upon it
+FAR = 1e-14  # relative difference of their distances from 0 above which it does not, rounding included
 CHECKED = 12  # frequencies at which poles and residues are compared with solving
 ALIKE = 1e5  # condition of the shapes of poles above which residues cancel
 NEAR = 1e-4  # distance of two poles over their size below which they may be one of which rounding makes two
@@ -117,6 +135,7 @@ CANCELS = 0.1  # what its poles could add up to
 SHIFTED = 2**0.5  # from the middle of the points, which may lie upon a pole
 ADVICE = "Choose other frequencies, or give damping to what vibrates there"
 BLOCK = 64  # frequencies solved for side by side
+SPAN = 512  # frequencies at which all poles are summed side by side: in the cache of the processor
 BAND, MANY = 4.0, 100  # span, and number of frequencies, with less of which they are solved for and not taken in halves
 
 
@@ -134,7 +153,11 @@ def response(A: Array, B: Array, C: Array, D: Array, s: Complex) -> Complex:
     apart = without_integrators(*reachable_observable(A, B, C))
     if len(apart.powers):
         _refuse_poles(np.zeros(1), s)
-    return _regular(apart.A, apart.B, apart.C, s) + apart.integrator_response(s) + D[:, :, None]
+    found = _regular(apart.A, apart.B, apart.C, s)
+    if len(apart.powers):
+        found += apart.integrator_response(s)
+    found += D[:, :, None]
+    return found
 
 
 def _regular(A: Array, B: Array, C: Array, s: Complex) -> Complex:
@@ -194,11 +217,16 @@ def _most(values: Complex, left: Complex, right: Complex, s: Complex) -> Array:
 
 
 def _refuse_poles(values: Complex | Array, s: Complex) -> None:
-    away = np.abs(s[:, None] - values)
-    if (away <= UPON * np.abs(values)).any():
-        at = s[(away <= UPON * np.abs(values)).any(axis=1)][0]
+    """Refuse points upon a pole; a pole is compared with the points as far from 0 as itself."""
+    order = np.argsort(np.abs(s), kind="stable")
+    sizes, size = np.abs(s)[order], np.abs(values)
+    first, end = np.searchsorted(sizes, size * (1 - FAR), "left"), np.searchsorted(sizes, size * (1 + FAR), "right")
+    alike = [order[i:k] for i, k in zip(first, end, strict=True)]
+    upon = [at[np.abs(s[at] - value) <= UPON * abs(value)] for value, at in zip(values, alike, strict=True)]
+    if any(at.size for at in upon):
         raise ComputationError(
-            f"the response has no finite size at {abs(at.imag) / (2 * np.pi):.6g} Hz: a pole lies there",
+            f"the response has no finite size at {abs(s[np.concatenate(upon).min()].imag) / (2 * np.pi):.6g} Hz: "
+            "a pole lies there",
             next_step=ADVICE,
         )
 
@@ -207,7 +235,7 @@ def _where_it_matters(values: Complex, s: Complex) -> NDArray[np.int_]:
     """Points spread over all of them, and those nearest to poles."""
     spread = np.linspace(0, s.size - 1, min(CHECKED, s.size)).round().astype(int)
     lasting = values[np.argsort(np.abs(values.real) / np.maximum(np.abs(values), 1e-300), kind="stable")[:CHECKED]]
-    near = np.abs(s[:, None] - lasting).argmin(axis=0)
+    near = np.abs(s - lasting[:, None]).argmin(axis=1)
     return np.unique(np.concatenate([spread, near]))
 
 
@@ -216,13 +244,14 @@ def _by_residues(values: Complex, left: Complex, right: Complex, s: Complex) -> 
     upper = values.imag >= 0
     pole, twice = values[upper], np.where(values[upper].imag > 0, 2.0, 1.0)
     residues = np.einsum("pn,nm->pmn", right[:, upper], left[upper]) * twice
-    minus, plus = 1.0 / (s[None] - pole[:, None]), 1.0 / (s[None] - np.conj(pole)[:, None])
-    even, odd = 0.5 * (minus + plus), 0.5j * (minus - plus)
     flat = residues.reshape(-1, len(pole))
     real = np.concatenate([flat.real, flat.imag], axis=1)
-    basis = np.concatenate([even, odd])
     found = np.empty((len(flat), s.size), dtype=complex)
-    found.real, found.imag = real @ basis.real, real @ basis.imag
+    for i in range(0, s.size, SPAN):
+        part = s[i : i + SPAN]
+        minus, plus = 1.0 / (part - pole[:, None]), 1.0 / (part - np.conj(pole)[:, None])
+        basis = np.concatenate([0.5 * (minus + plus), 0.5j * (minus - plus)])
+        found[:, i : i + SPAN] = (real @ basis.view(float)).view(complex)
     return found.reshape(*residues.shape[:2], s.size)
 
 

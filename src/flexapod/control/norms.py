@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.linalg
+from numpy.typing import NDArray
 
 from flexapod.common.arguments import flag, number
 from flexapod.common.arrays import Array, Complex, Mask
@@ -23,6 +24,7 @@ from flexapod.control.frequency_response import (
     pole_properties,
     reachable,
     reachable_observable,
+    sylvester,
     without_integrators,
 )
 
@@ -42,19 +44,39 @@ class Subsystem:
     C: Array
 
 
-def split_spectrum(A: Array, B: Array, C: Array, first: Callable[[complex], bool]) -> tuple[Subsystem, Subsystem]:
-    """Two systems side by side that add up to one: poles for which `first` holds, and the others, Eq. (T21.23)."""
+@dataclass(frozen=True, kw_only=True)
+class PoleSplit:
+    """Coordinates in which some poles of a matrix stand apart from its others, Eq. (T21.23).
+
+    ``near`` (k, k), ``far`` (n - k, n - k): both blocks, in real Schur form. ``change``, ``Z`` (n, n): to the states
+    balanced, and to those of the Schur form. ``X`` (k, n - k): the coupling of the blocks.
+    """
+
+    near: Array
+    far: Array
+    change: Array
+    Z: Array
+    X: Array
+
+    def subsystems(self, B: Array, C: Array) -> tuple[Subsystem, Subsystem]:
+        """Two systems side by side that add up to the one of the matrix, B (n, m) and C (p, n)."""
+        k = len(self.near)
+        B, C = self.Z.T @ np.linalg.solve(self.change, B), C @ self.change @ self.Z
+        near = Subsystem(A=self.near, B=B[:k] - self.X @ B[k:], C=C[:, :k])
+        return near, Subsystem(A=self.far, B=B[k:], C=C[:, k:] + C[:, :k] @ self.X)
+
+
+def split_spectrum(A: Array, first: Callable[[complex], bool]) -> PoleSplit:
+    """Poles for which `first` holds apart from the others, Eq. (T21.23)."""
     if not len(A):
-        return Subsystem(A=A, B=B, C=C), Subsystem(A=A, B=B, C=C)
-    A, change = scipy.linalg.matrix_balance(A)
-    B, C = np.asarray(np.linalg.solve(change, B), dtype=float), C @ change
+        return PoleSplit(near=A, far=A, change=A, Z=A, X=A)
+    balanced: Any = scipy.linalg.matrix_balance(A)
+    A, change = balanced
     ordered: Any = scipy.linalg.schur(A, output="real", sort=lambda re, im: first(complex(re, im)))
     T, Z, k = ordered
-    B, C = Z.T @ B, C @ Z
     # (T21.23)  [1 X; 0 1] takes the coupling away: T11 X - X T22 = -T12
-    X = scipy.linalg.solve_sylvester(T[:k, :k], -T[k:, k:], -T[:k, k:])
-    near = Subsystem(A=T[:k, :k], B=B[:k] - X @ B[k:], C=C[:, :k])
-    return near, Subsystem(A=T[k:, k:], B=B[k:], C=C[:, k:] + C[:, :k] @ X)
+    X = sylvester(T[:k, :k], T[k:, k:], -T[:k, k:], isgn=-1)
+    return PoleSplit(near=T[:k, :k], far=T[k:, k:], change=change, Z=Z, X=X)
 
 
 def truncate_modes(system: StateSpace, modes: int | None, below: float | str | None, residual: bool) -> StateSpace:
@@ -66,7 +88,7 @@ def truncate_modes(system: StateSpace, modes: int | None, below: float | str | N
         raise InputError("is of samples: its fast modes have no static response", key="sample", value=system.sample)
     poles, frequency, _ = oscillating_poles(system.poles(), None)
     edge = _edge(frequency, modes) if modes is not None else number(below, "below", "frequency", least=0.0)
-    slow, fast = split_spectrum(system.A, system.B, system.C, lambda pole: abs(pole) < 2 * np.pi * edge)
+    slow, fast = split_spectrum(system.A, lambda pole: abs(pole) < 2 * np.pi * edge).subsystems(system.B, system.C)
     D = np.array(system.D)
     if residual and len(fast.A):
         if np.abs(np.linalg.eigvals(fast.A)).min() <= STATIC * np.abs(poles).max():
@@ -128,13 +150,27 @@ def h2_norms(system: StateSpace) -> tuple[Array, dict[tuple[int, int], str]]:
     found, why = np.zeros(D.shape), {}
     rates = np.zeros(D.shape) if system.D_rate is None else system.D_rate
     links = A != 0
-    shown = np.stack([reachable(links.T, row != 0) for row in C]) if len(C) else np.zeros((0, len(A)), bool)
+    shown = np.array([reachable(links.T, row != 0) for row in C], dtype=bool).reshape(C.shape)
+    moved = np.array([reachable(links, column != 0) for column in B.T], dtype=bool).reshape(B.T.shape)
     drifting = integrators(A) if system.sample is None else np.zeros(len(A), dtype=bool)
+    splits: dict[bytes, PoleSplit] = {}
+    apart: dict[bytes, IntegratorSplit] = {}
+
+    def of_states(kept: NDArray[np.int_], b: Array, C: Array, d: Array) -> tuple[Array, list[str]]:
+        if (key := kept.tobytes()) not in splits:
+            splits[key] = _split_lasting(A[kept][:, kept], system.sample)
+        return _h2_of(splits[key], b, C, d, system.sample)
+
+    def beside_drift(j: int) -> IntegratorSplit:
+        if (key := (moved[j] & ~drifting).tobytes()) not in apart:
+            apart[key] = _without_drift(system, moved, drifting, j)
+        return apart[key]
+
     for j in range(B.shape[1]):
-        moved = reachable(links, B[:, j] != 0)
-        may = np.flatnonzero((shown & drifting & moved).any(axis=1))
-        still, of = _without_drift(A, B[:, j], C[may], moved) if may.size else (np.zeros(0, dtype=bool), None)
-        for i in may[~still]:
+        may = (shown & drifting & moved[j]).any(axis=1)
+        of = beside_drift(j) if may.any() else None
+        still = may & _cancels(of)[:, j] if of is not None else may
+        for i in np.flatnonzero(may & ~still):
             why[int(i), j] = "an integrator: a pole at 0 Hz"
         if system.sample is None:
             for i in np.flatnonzero(rates[:, j]):
@@ -142,25 +178,27 @@ def h2_norms(system: StateSpace) -> tuple[Array, dict[tuple[int, int], str]]:
             for i in np.flatnonzero(D[:, j]):
                 why.setdefault((int(i), j), "feed-through: it follows what has no end of frequencies")
         ends = np.array([(i, j) not in why for i in range(len(C))], dtype=bool)
-        if of is not None and (rows := np.array([k for k in np.flatnonzero(still) if ends[may[k]]], dtype=int)).size:
-            found[may[rows], j], lasting = _h2_of(of.A, of.B[:, 0], of.C[rows], D[may[rows], j], None)
-            why |= {(int(i), j): words for i, words in zip(may[rows], lasting, strict=True) if words}
-            ends[may[rows]] = False
-        kept = np.flatnonzero(moved & shown[ends].any(axis=0))
-        rows = np.flatnonzero(ends)
-        values, lasting = _h2_of(A[kept][:, kept], B[kept, j], C[rows][:, kept], D[rows, j], system.sample)
-        found[rows, j] = values
+        if of is not None and (rows := np.flatnonzero(still & ends)).size:
+            found[rows, j], lasting = of_states(of.kept, of.B[:, j], of.C[rows], D[rows, j])
+            why |= {(int(i), j): words for i, words in zip(rows, lasting, strict=True) if words}
+            ends[rows] = False
+        kept, rows = np.flatnonzero(moved[j] & shown[ends].any(axis=0)), np.flatnonzero(ends)
+        found[rows, j], lasting = of_states(kept, B[kept, j], C[rows][:, kept], D[rows, j])
         why |= {(int(i), j): words for i, words in zip(rows, lasting, strict=True) if words}
     for at in why:
         found[at] = np.inf
     return found, why
 
 
-def _without_drift(A: Array, b: Array, C: Array, moved: Mask) -> tuple[Mask, IntegratorSplit]:
-    """Outputs (p,) in which what integrators add cancels, Eq. (T21.34), and the system beside these integrators."""
-    at = np.flatnonzero(moved)
-    of = without_integrators(A[at][:, at], b[at, None], C[:, at])
-    return _cancels(of)[:, 0], of
+def _without_drift(system: StateSpace, moved: Mask, drifting: Mask, j: int) -> IntegratorSplit:
+    """The states that an input moves beside its integrators, Eq. (T21.34), by their places among all.
+
+    With those of all inputs that move the same other states: all have their integrators apart from these at once.
+    """
+    alike = ((moved == moved[j]) | drifting).all(axis=1)
+    at = np.flatnonzero(moved[alike].any(axis=0))
+    of = without_integrators(system.A[at][:, at], system.B[at], system.C[:, at])
+    return replace(of, kept=at[of.kept])
 
 
 def _cancels(of: IntegratorSplit) -> Mask:
@@ -168,23 +206,25 @@ def _cancels(of: IntegratorSplit) -> Mask:
     return np.asarray((np.abs(of.powers) <= SHOWN * of.most).all(axis=0))
 
 
-def _h2_of(A: Array, b: Array, C: Array, d: Array, sample: float | None) -> tuple[Array, list[str]]:
-    """H2 norms of one input by outputs (p,), and of each what lasts in it, "" of those that end."""
-    if not len(A):
-        return np.abs(d), [""] * len(C)
+def _split_lasting(A: Array, sample: float | None) -> PoleSplit:
+    """Poles whose motion decays apart from those whose motion lasts."""
+    if sample is not None:
+        return split_spectrum(A, lambda pole: abs(pole) < 1 - LASTS)
     rate, rest = rate_scale(np.linalg.eigvals(A).astype(complex))
-    passes = (
-        (lambda pole: abs(pole) < 1 - LASTS) if sample is not None else (lambda pole: not is_marginal(pole, rate, rest))
-    )
-    ends, lasts = split_spectrum(A, b[:, None], C, passes)
+    return split_spectrum(A, lambda pole: not is_marginal(pole, rate, rest))
+
+
+def _h2_of(split: PoleSplit, b: Array, C: Array, d: Array, sample: float | None) -> tuple[Array, list[str]]:
+    """H2 norms of one input by outputs (p,), and of each what lasts in it, "" of those that end."""
+    ends, lasts = split.subsystems(b[:, None], C)
     words = _lasting(lasts, ends, sample)
     if not len(ends.A):
         return np.abs(d), words
     if sample is None:
-        P = scipy.linalg.solve_continuous_lyapunov(ends.A, -ends.B @ ends.B.T)  # (T21.26)
+        P = sylvester(ends.A, ends.A, -ends.B @ ends.B.T, tranb="T")  # (T21.26)
     else:
         P = scipy.linalg.solve_discrete_lyapunov(ends.A, ends.B @ ends.B.T)
-    power = np.einsum("in,nm,im->i", ends.C, P, ends.C) + (d**2 if sample is not None else 0.0)
+    power = ((ends.C @ P) * ends.C).sum(axis=1) + (d**2 if sample is not None else 0.0)
     return np.sqrt(np.maximum(power, 0.0)), words
 
 

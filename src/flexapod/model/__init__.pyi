@@ -7,6 +7,7 @@ from flexapod.model.file.files import loads_robot as loads_robot
 from flexapod.model.file.files import open_values as open_values
 from flexapod.model.file.files import preset as preset
 from flexapod.model.file.files import preset_text as preset_text
+from flexapod.model.file.variants import override as override
 from flexapod.model.heat import Expansion as Expansion
 from flexapod.model.heat import Gradient as Gradient
 from flexapod.model.heat import Heat as Heat
@@ -106,7 +107,6 @@ from flexapod.model.study.simulation import Simulation as Simulation
 from flexapod.model.study.study import DRIVEN_BY as DRIVEN_BY
 from flexapod.model.study.study import ActuatorStudy as ActuatorStudy
 from flexapod.model.study.study import Study as Study
-from flexapod.model.study.study import override as override
 from flexapod.model.study.study import to_toml as to_toml
 from flexapod.model.study.tolerances import LengthSpread as LengthSpread
 from flexapod.model.study.tolerances import RatioSpread as RatioSpread

@@ -42,7 +42,7 @@ class Box:
 
     @property
     def corners(self) -> Array:
-        """Its corners, (P, 6); of axes alone their ends; nothing of a box without axes."""
+        """Corners, (P, 6); of axes alone their ends; nothing of a box without axes."""
         return self._points((0, 2))
 
     @property

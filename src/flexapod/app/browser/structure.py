@@ -177,7 +177,9 @@ def _later(points: list[dict[str, object]]) -> object:
 
 def _each_leg(document: Document) -> Document:
     """``[[leg]]`` for each leg in place of ``[leg]``; the comments stay with the first."""
-    return document.with_text(with_each_leg(document.text))
+    expected = tomllib.loads(document.text)
+    expected["leg"] = [expected["leg"]] * _count(expected)
+    return document.with_text(check_toml(with_each_leg(document.text), expected, "leg"))
 
 
 def _one_leg(document: Document) -> Document:

@@ -39,15 +39,16 @@ if TYPE_CHECKING:
     from flexapod import model
     from flexapod.analysis import predicted_damping
     from flexapod.analysis.description import robot_description
-    from flexapod.common.tables import reference
+    from flexapod.common.tables import key_rows, reference
+    from flexapod.common.tables.key_rows import ListedEntry
     from flexapod.common.tables.reference import Entry
     from flexapod.design import first_robot
     from flexapod.model.file import json_schema, page
-    from flexapod.model.file.page import ListedEntry
     from flexapod.output.text import answers, description
     from flexapod.output.text import check as text_check
     from flexapod.output.text import verdict as text_verdict
 else:
+    key_rows = LazyModule("flexapod.common.tables.key_rows")
     robot_description = LazyModule("flexapod.analysis.description.robot_description")
     predicted_damping = LazyModule("flexapod.analysis.predicted_damping")
     first_robot = LazyModule("flexapod.design.first_robot")
@@ -190,14 +191,13 @@ def keys(table: Table = None, markdown: Markdown = None, schema: Schema = None, 
         raise InputError(words, key="TABLE", value=table, allowed="one of the two")
     if len(set(files)) < len(files):
         raise InputError("is that of --markdown, too", key="--schema", value=files[0], allowed="another file")
-
     if markdown is not None:
         write_text(markdown, page.study_file_page())
     if schema is not None:
         write_text(schema, json_schema.json_schema())
-    found = page.list_entries(table)
+    found = key_rows.list_entries(table)
     written = [f"{' and '.join(files)} written."] if files else None
-    told = (_key_chapter(item, page.HEAD, alone=table is not None) for item in found)
+    told = (_key_chapter(item, key_rows.HEAD, alone=table is not None) for item in found)
     print_answer(written or told, lambda: [asdict(item) for item in found], json=json)
 
 

@@ -126,8 +126,8 @@ def _chain(system: StateSpace, end: Array, robust: bool) -> tuple[Array, Array, 
 def _rigid(A: Array, B: Array, target: Array) -> tuple[Array, Array, Array]:
     """The part of a system that does not oscillate."""
     scale = OSCILLATES * max(1.0, float(np.abs(A).max()))
-    both = np.column_stack([B, target])
-    still, _ = split_spectrum(A, both, np.zeros((0, len(A))), lambda pole: abs(pole.imag) <= 1e3 * scale)
+    both, none = np.column_stack([B, target]), np.zeros((0, len(A)))
+    still, _ = split_spectrum(A, lambda pole: abs(pole.imag) <= 1e3 * scale).subsystems(both, none)
     return still.A, still.B[:, 0], still.B[:, 1]
 
 

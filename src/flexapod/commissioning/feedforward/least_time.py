@@ -17,6 +17,7 @@ from flexapod.commissioning.feedforward.bang_bang import Switched, bang_bang_inp
 from flexapod.commissioning.feedforward.command_table import check_out, save_study
 from flexapod.commissioning.feedforward.loaded_path import Given, drive_limits
 from flexapod.commissioning.feedforward.modal_path import PERIODS, path_vibration
+from flexapod.commissioning.feedforward.second_pass import error_sentence, linear_error
 from flexapod.commissioning.feedforward.straight_line import StraightLine
 from flexapod.common.arguments import flag, number
 from flexapod.common.arrays import Array
@@ -35,9 +36,9 @@ class LeastTime:
     """A study that goes from pose to pose in the least time, and what that costs.
 
     ``duration``, ``unbounded`` [s]: with and without the bound for vibration; ``residual`` [m]: what is left by the
-    linear model, with it and without; ``used``: largest share of the limits of drives, by the rigid robot;
-    ``marched``: of those of forces, in the march of the flexible one; ``stiff`` [s]: the time in which the rigid robot
-    keeps bound and limits.
+    linear model, with it and without; ``error`` of that model on the way, over the largest distance; ``used``: largest
+    share of the limits of drives, by the rigid robot; ``marched``: of those of forces, in the march of the flexible
+    one; ``stiff`` [s]: the time in which the rigid robot keeps bound and limits.
     """
 
     study: Study
@@ -48,6 +49,7 @@ class LeastTime:
     used: float
     marched: float
     stiff: float
+    error: float
 
     @property
     def sentence(self) -> str:
@@ -61,7 +63,8 @@ class LeastTime:
             f"their limits at most, by the rigid robot{flexible}, and the tool vibrates by at most "
             f"{text(self.bound, 'm')} afterwards: by {text(self.residual[0], 'm')}, by the linear model with all "
             f"modes{longer}. Without that bound it "
-            f"would take {text(self.unbounded, 's', 4)} and leave {text(self.residual[1], 'm')}"
+            f"would take {text(self.unbounded, 's', 4)} and leave {text(self.residual[1], 'm')}; "
+            f"{error_sentence(self.study, self.error)}"
         )
 
     def __repr__(self) -> str:
@@ -171,9 +174,10 @@ def least_time(
     duration, place, marched = way.least_time_of_flexible_drives(stiff, place, bound)
     own = way.motion_study(duration, place)
     check_path(own)
-    left = [path_vibration(x, t, t + period).largest_after(t) for x, t in ((own, duration), (rough, low))]
+    found, before = (path_vibration(x, t, t + period) for x, t in ((own, duration), (rough, low)))
     told = LeastTime(
-        study=own, duration=duration, unbounded=low, residual=(left[0], left[1]), bound=bound,
+        study=own, duration=duration, unbounded=low, bound=bound,
+        residual=(found.largest_after(duration), before.largest_after(low)), error=linear_error(own, found),
         used=way.largest_share(duration, place), marched=marched, stiff=stiff,
     )  # fmt: skip
     told = replace(told, study=own.replace(notes=(*study.notes, told.sentence)))

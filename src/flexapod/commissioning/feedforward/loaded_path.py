@@ -20,7 +20,7 @@ from flexapod.common.units import quantity
 from flexapod.kinematics import COORDINATES, DRIVEN, Law, Poses, RigidPoses
 from flexapod.kinematics.rotations import blocks, difference, quaternion
 from flexapod.model import AXES, ConstantWrench, Robot, Study
-from flexapod.solve.batch import RestStates, residual
+from flexapod.solve.batch import Rates, RestStates, residual
 from flexapod.solve.modal.at_poses import locked_poses
 from flexapod.solve.rigid_motion import rigid_motion
 from flexapod.solve.statics.assembly_mode import platform_poses
@@ -106,7 +106,8 @@ class LoadedPath:
         if not self.inertia:
             return locked.equilibria.states.pose
         states = locked.equilibria.states
-        r, payload = inertia_forces(locked.system, locked.robot, states, path, locked.acts.wrench)
+        rates = rigid_motion(locked.system, RigidPoses(locked.robot, path))[1]
+        r, payload = inertia_forces(locked.system, states, rates, locked.acts.wrench)
         nothing = np.zeros((len(t), *states.q.shape[1:]))
         step = arrow_solve(locked.system, locked.m, r, payload, np.zeros_like(states.lam), nothing)
         return states.displace(step.dq, step.dy).pose
@@ -130,10 +131,9 @@ def refuse_missing(locked: LockedPoses, t: Array) -> None:
         )
 
 
-def inertia_forces(system: System, robot: Robot, states: RestStates, path: Poses, wrench: Array) -> tuple[Array, Array]:
+def inertia_forces(system: System, states: RestStates, rates: Rates, wrench: Array) -> tuple[Array, Array]:
     """Inertial loads of a rigid path (T,) in the balances of legs (T, legs, n) and payload (T, 6), Eq. (T22.2)."""
-    rates = rigid_motion(system, RigidPoses(robot, path))[1]
-    still = np.zeros((len(path), system.legs, system.ports.size))
+    still = np.zeros((len(states), system.legs, system.ports.size))
     moving = residual(system, states, still, rates.v[..., system.ports], wrench, rates)
     resting = residual(system, states, still, still, wrench)
     return moving[0] - resting[0], moving[1] - resting[1]

@@ -13,7 +13,8 @@ from flexapod import kinematics
 from flexapod.analysis.checks.checks import check_path
 from flexapod.analysis.results.arguments import FileLike, PoseLike, RigidPose
 from flexapod.commissioning.feedforward.command_table import check_out, save_study, tabulate_law
-from flexapod.commissioning.feedforward.modal_path import PERIODS, POSES, path_vibration
+from flexapod.commissioning.feedforward.modal_path import PERIODS, POSES, linear_path, path_vibration
+from flexapod.commissioning.feedforward.second_pass import error_sentence, linear_error
 from flexapod.commissioning.feedforward.shapers import KINDS, Shaper, shaper
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import InputError, check_known
@@ -23,7 +24,7 @@ from flexapod.common.units import quantity
 from flexapod.kinematics import Law
 from flexapod.model import ActuatorStudy, AxisMotion, CombinedMotion, CsvMotion, Motion, Study, WaypointMotion, load
 from flexapod.solve.modal.elastic_robot import ElasticRobot
-from flexapod.solve.modal.modes import modes_of
+from flexapod.solve.modal.modes import ManyModes, modes_of
 
 ON_PATH = 1e-4  # of the way: a shaped path that is no farther beside the own one is on it
 LOOKS = 2001
@@ -39,7 +40,8 @@ class ShapedStudy:
     ``impulses``: of its shaper; ``frequency``, ``ratio`` (modes,) for which they are made, ``ranges`` (modes, 2) [Hz]
     of these along the path, ``left`` (modes,): of the vibration of each at worst along it, over that of one impulse.
     By the linear model, before and after: ``residual`` [m] of the tool once the motion is over, ``largest`` [m] beside
-    its places at rest at any time. ``longer`` [s]; ``beside`` [m]: of the path of the rigid tool, corners that are cut.
+    its places at rest at any time; ``error`` of the model, shaped, over that. ``longer`` [s]; ``beside`` [m]: of the
+    path of the rigid tool, corners that are cut.
     """
 
     study: Study
@@ -52,6 +54,7 @@ class ShapedStudy:
     residual: tuple[float, float]
     largest: tuple[float, float]
     beside: float
+    error: float
 
     @property
     def longer(self) -> float:
@@ -70,7 +73,8 @@ class ShapedStudy:
             f"the motion is shaped ({self.kind}) for {modes}: once it is over the tool vibrates by "
             f"{text(self.residual[1], 'm')} in place of {text(self.residual[0], 'm')}, and on the way it is up to "
             f"{text(self.largest[1], 'm')} in place of {text(self.largest[0], 'm')} from where it would rest, by the "
-            f"linear model with all modes; it takes {text(self.longer, 's')} more{cut}"
+            f"linear model with all modes; it takes {text(self.longer, 's')} more{cut}; "
+            f"{error_sentence(self.study, self.error)}"
         )
 
     def __repr__(self) -> str:
@@ -164,7 +168,8 @@ def shape_study(
     if robot.platform_fixed:
         raise InputError("has a platform that is fixed: nothing moves", key="robot.platform.fixed", value=True)
     moving = motion.end_time - motion.hold
-    frequency, ratio, ranges, lowest = _modes(study, modes, pose, moving)
+    at = linear_path(study, np.linspace(0.0, moving, POSES), shapes=True)
+    frequency, ratio, ranges, lowest = _modes(study, modes, pose, at.modes)
     made = shaper(kind, frequency, ratio)
     axes, length = kinematics.commanded_axes(robot, motion), kinematics.rigid_limbs(robot).L_c
     table, duration = _delayed(motion, made, axes, length), study.simulation.duration
@@ -172,7 +177,7 @@ def shape_study(
     shaped = study.replace(motion=table, simulation=simulation)
     check_path(shaped)
     rest = max(PERIODS / ranges.min(), 1 / lowest)
-    own = path_vibration(study, moving, moving + rest)
+    own = path_vibration(study, moving, moving + rest, at)
     new = path_vibration(shaped, moving + made.duration, moving + made.duration + rest)
     around = np.linspace(ranges[:, 0], ranges[:, 1], 101)
     found = ShapedStudy(
@@ -180,6 +185,7 @@ def shape_study(
         left=made.residual_share(around, ratio).max(axis=0),
         residual=(own.largest_after(moving), new.largest_after(moving + made.duration)),
         largest=(own.largest, new.largest), beside=_path_offset(study, shaped, moving),
+        error=linear_error(shaped, new),
     )  # fmt: skip
     told = replace(found, study=shaped.replace(notes=(*study.notes, found.sentence)))
     return told if out is None else replace(told, study=save_study(told.study, out))
@@ -221,15 +227,12 @@ def _mode_list(modes: Modes) -> list[object]:
     return list(modes)
 
 
-def _modes(study: Study, modes: Modes, pose: PoseLike | str, moving: float) -> tuple[Array, Array, Array, float]:
+def _modes(study: Study, modes: Modes, pose: PoseLike | str, along: ManyModes) -> tuple[Array, Array, Array, float]:
     """Frequencies, damping ratios (m,) and ranges along the path (m, 2) of modes that are named; the lowest there."""
-    robot = study.robot
-    t = np.linspace(0.0, moving, POSES)
-    elastic = ElasticRobot(robot, study.simulation, study.load)
-    along = modes_of(elastic.lock(kinematics.rigid_poses(robot, study.motion, t)), shapes=True)
     at, lowest = along, float(np.nanmin(along.frequency[:, 0]))
     if not (isinstance(pose, str) and pose == "path"):
-        at = modes_of(elastic.lock(RigidPose(robot, pose)), shapes=True)  # type: ignore[arg-type]
+        elastic = ElasticRobot(study.robot, study.simulation, study.load)
+        at = modes_of(elastic.lock(RigidPose(study.robot, pose)), shapes=True)  # type: ignore[arg-type]
     given = _mode_list(modes)
     found = []
     for mode in given:
@@ -253,7 +256,7 @@ def _modes(study: Study, modes: Modes, pose: PoseLike | str, moving: float) -> t
                 allowed=f'1 to {int(np.isfinite(at.frequency).all(axis=0).sum())}, or frequencies as 12.5 or "12.5 Hz"',
             )
         f, way = at.frequency[:, k], along.frequency[:, k]
-        found.append((0.5 * (f.min() + f.max()), at.damping_ratio[:, k].mean(), way.min(), way.max()))
+        found.append((0.5 * (f.min() + f.max()), at.ratio_of(k).mean(), way.min(), way.max()))
     if not found:
         raise InputError("names no mode", key="modes", value=modes, allowed="one at least")
     values = np.array(found)
@@ -280,6 +283,12 @@ def _path_offset(study: Study, shaped: Study, moving: float) -> float:
     def tool(of: Study, until: float, count: int) -> Array:
         return kinematics.poses(of.robot, of.motion, np.linspace(0.0, until, count)).place(of.robot.tool)
 
-    own = tool(study, moving, 20 * LOOKS)
-    found = float(KDTree(own).query(tool(shaped, shaped.motion.end_time, LOOKS))[0].max())
-    return found if found > ON_PATH * np.linalg.norm(np.ptp(own, axis=0)) else 0.0
+    own, new = tool(study, moving, LOOKS), tool(shaped, shaped.motion.end_time, LOOKS)
+    near, found = KDTree(own).query(new)[1], np.full(len(new), np.inf)
+    for begin in np.clip([near - 1, near], 0, LOOKS - 2):  # the two chords at the nearest place
+        way, beside = own[begin + 1] - own[begin], new - own[begin]
+        square = np.einsum("tx,tx->t", way, way)
+        share = np.clip(np.einsum("tx,tx->t", way, beside) / np.where(square > 0, square, 1.0), 0.0, 1.0)
+        found = np.minimum(found, np.linalg.norm(beside - share[:, None] * way, axis=1))
+    most = float(found.max())
+    return most if most > ON_PATH * np.linalg.norm(np.ptp(own, axis=0)) else 0.0

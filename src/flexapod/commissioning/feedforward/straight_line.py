@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,21 +14,26 @@ from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.analysis.simulation import run_simulation
 from flexapod.commissioning.feedforward.command_table import axis_names
 from flexapod.commissioning.feedforward.loaded_path import DriveLimits
-from flexapod.commissioning.feedforward.modal_path import LinearPath, inertial_loads, integrate_modes, linear_path
+from flexapod.commissioning.feedforward.minimax import MORE, WITHIN, least_time_by_secants, minimax
+from flexapod.commissioning.feedforward.modal_path import LinearPath, inertial_loads, linear_path, step_instants
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import ComputationError
 from flexapod.kinematics import Law
 from flexapod.model import CsvMotion, Study
+from flexapod.solve.time.modal_march import STAGES, modal_march
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 ROWS = 48  # of the table of the way: cubic acceleration between them
 LOOKS = 4  # instants between two rows at which limits hold
 POSES = 13  # along the way, at which matrices are made
-SIDES = 16  # of the polygon in which the amplitude of a mode stays
 ROUNDS = 4  # in which limits follow the way
-WITHIN, HOPELESS = 1.002, 1.1  # of a limit
+HOPELESS = 1.1  # of a limit
 FINE = 5e-3  # of the time
-LESS, MORE, FAR = 1.05, 1.5, 20.0  # how much longer a way is taken where flexible drives do not hold; given up beyond
-HELD = 2e-2  # of the time in which they do
+LONGEST, SHORTEST = 1e4, 1e-6  # s
+FAR = 20.0  # how much longer than that of rigid drives a way is given up
+HELD = 2e-2  # of the time in which flexible drives hold
 SHARE = 0.9  # of the bound for vibration that the way is made for: linear in its places
 
 
@@ -86,7 +92,7 @@ class StraightLine:
         return np.linalg.lstsq(self.bases[2](tau), wanted, rcond=None)[0]
 
     def limit_rows(self, T: float, c: Array) -> tuple[Array, Array]:
-        """Matrix G and vector g of the drives' shares |G c + g| of their limits, linear about a way, Eq. (T22.17)."""
+        """G (k, T, n), g (k, T) of the drives' shares |G c + g| of their limits, linear about a way, Eq. (T22.17)."""
         now, t = self.law(c, T, self.looks), T * self.looks
         _, strong = self.shares(now, t)
         more, none = now._replace(acceleration=now.acceleration + 1 / T**2), np.zeros_like(now.rate)
@@ -95,104 +101,111 @@ class StraightLine:
         fast = np.abs(self.shares(Law(now.position, none + 1 / T, none), t)[0]).max(axis=1)
         bend = self.bases[2](self.looks)
         G = [fast[:, None] * self.bases[1](self.looks), *(part[:, None] * bend for part in slope.T)]
-        return np.concatenate(G), np.concatenate([none, *rest.T])
+        return np.stack(G), np.stack([none, *rest.T])
 
-    def minimax_coefficients(
-        self, T: float, c: Array, effect: tuple[Array, Array] | None = None, bound: float = 0.0
-    ) -> Array:
-        """Coefficients that use least of the limits, with no more vibration than the bound, Eqs. (T22.17), (T22.19)."""
-        from scipy.optimize import linprog
-
-        G, g = self.limit_rows(T, c)
-        n, m = G.shape[1], 0 if effect is None else len(effect[0])
-        ends = np.pad([self.bases[1](1.0), self.bases[0](1.0)], ((0, 0), (0, m + 1)))
-        width = ((0, 0), (0, m))
-        sides = np.concatenate([np.pad(G, width), np.pad(-G, width)])
-        above = [np.column_stack([sides, -np.ones(len(sides))])]
-        most = [np.append(-g, g)]
-        if effect is not None:
-            turn = np.exp(2j * np.pi * np.arange(SIDES) / SIDES) / np.cos(np.pi / SIDES)
-            of = np.real(turn[:, None, None] * effect[0]).reshape(-1, n) / bound
-            above += [np.column_stack([of, np.tile(-np.eye(m), (SIDES, 1)), np.zeros(SIDES * m)])]
-            above += [np.concatenate([np.zeros(n), np.ones(m), [0.0]])[None]]
-            most += [-np.real(turn[:, None] * effect[1]).ravel() / bound, np.ones(1)]
-        found = linprog(
-            np.append(np.zeros(n + m), 1.0), A_ub=np.concatenate(above), b_ub=np.concatenate(most), A_eq=ends,
-            b_eq=[0.0, 1.0], bounds=[(None, None)] * n + [(0, None)] * (m + 1), method="highs",
-        )  # fmt: skip
-        if found.status != 0:
-            raise ComputationError(f"the way was not found: {found.message}")
-        return found.x[:n]
-
-    def within_limits(self, T: float, c: Array) -> Array | None:
-        """A way within the limits in a time, from another one; None where there is none."""
+    def way_within_limits(self, T: float, c: Array) -> tuple[Array, float]:
+        """Coefficients that use least of the limits in a time, from others, and the largest share that they use."""
+        used = np.inf
         for _ in range(ROUNDS):
-            c = self.minimax_coefficients(T, c)
-            if self.largest_share(T, c) <= WITHIN:
-                return c
-        return None
+            c, expected = self._coefficients(T, c)
+            used = self.largest_share(T, c)
+            if used <= WITHIN * expected:
+                break
+        return c, used
+
+    def _coefficients(
+        self, T: float, c: Array, effect: tuple[Array, Array] | None = None, bound: float = 1.0
+    ) -> tuple[Array, float]:
+        ends = np.stack([self.bases[1](1.0), self.bases[0](1.0)]), np.array([0.0, 1.0])
+        quiet = None if effect is None else (effect[0] / bound, effect[1] / bound)
+        return minimax(*self.limit_rows(T, c), ends, c, quiet)
 
     def least_time_within_limits(self) -> tuple[float, Array]:
         """The least time and its way, whatever vibrates."""
         c = self.quintic_coefficients()
-        high = 0.1
-        while self.largest_share(high, c) > 1.0:
-            high *= 2
-            if high > 1e4:
-                raise ComputationError(
-                    "no time is enough: at rest on the way drives are beyond their limits already",
-                    next_step="Raise the limits, or take weight off.",
-                )
-        low, best = 0.0, (high, c)
-        while high - low > FINE * high:
-            T = 0.5 * (low + high)
-            found = self.within_limits(T, best[1])
-            low, high = (T, high) if found is None else (low, T)
-            best = best if found is None else (T, found)
-        return best
+        if self.largest_share(LONGEST, c) > 1.0:
+            raise ComputationError(
+                "no time is enough: at rest on the way drives are beyond their limits already",
+                next_step="Raise the limits, or take weight off.",
+            )
+        T = 0.1
+        while (used := self.largest_share(T, c)) > MORE or used < 1 / MORE:
+            T *= min(10.0, max(0.1, used**0.5))
+            if T > LONGEST or T < SHORTEST:
+                break
+        best = least_time_by_secants(self.way_within_limits, T, c, low=0.0, fine=FINE, most=LONGEST)
+        return best[:2] if best is not None else (LONGEST, c)
 
     @cached_property
-    def lowest_frequency(self) -> float:
-        """Lowest frequency at both ends [Hz]."""
-        return float(np.nanmin(self.linear_model(1.0, self.quintic_coefficients()).modes.frequency[:, 0]))
+    def model(self) -> LinearPath:
+        """The linear model along the way, with shares of it in place of instants."""
+        s = np.linspace(0.0, 1.0, POSES)
+        return linear_path(self.origin, s, self.poses(Law(s, np.zeros(POSES), np.zeros(POSES)), s))
 
-    def linear_model(self, T: float, c: Array) -> LinearPath:
-        """The linear model along a way."""
-        t = np.linspace(0.0, T, POSES)
-        return linear_path(self.origin, t, self.poses(self.law(c, T, t / T), t))
+    @property
+    def lowest_frequency(self) -> float:
+        """Lowest frequency along the way [Hz]."""
+        return float(np.nanmin(self.model.modes.frequency[:, 0]))
+
+    @cached_property
+    def _series(self) -> tuple[CubicSpline, CubicSpline]:
+        """Matrices and inertial loads (3, d) by share: by its second derivative, its rate and the square of that."""
+        from scipy.interpolate import CubicSpline
+
+        at, none = self.model, np.zeros(POSES)
+
+        def load(rate: float, bend: float) -> Array:
+            f = inertial_loads(at, self.poses(Law(at.time, none + rate, none + bend), at.time))
+            return -np.einsum("tnd,tn->td", at.flat, f)
+
+        ahead, back = load(1.0, 0.0), load(-1.0, 0.0)
+        loads = np.stack([load(0.0, 1.0), 0.5 * (ahead - back), 0.5 * (ahead + back)], axis=1)
+        return CubicSpline(at.time, np.stack([at.M, at.D, at.K], axis=1)), CubicSpline(at.time, loads)
+
+    @cached_property
+    def _last_modes(self) -> tuple[Array, Array, Array]:
+        """Angular frequencies, sizes at the tool and rows of motions of all modes at the last pose."""
+        from scipy.linalg import eigh
+
+        at = self.model
+        squares, shapes = eigh(at.K[-1], at.M[-1])
+        return np.sqrt(np.abs(squares)), np.linalg.norm(at.tool[-1] @ shapes, axis=0), shapes.T @ at.M[-1]
 
     def residual_amplitudes(self, T: float, c: Array) -> tuple[Array, Array]:
         """Amplitudes at the tool (modes, any) [m] left by each coefficient, and by rates, at the end, Eq. (T22.19)."""
-        at = self.linear_model(T, c)
+        at, (matrices, loads) = self.model, self._series
+        edges = step_instants(at, T)
+        now = self.law(c, T, np.add.outer(edges[:-1], edges[1] * STAGES) / T)
+        bend, rate, square = np.moveaxis(loads(now.position), 2, 0)
+        by = self.bases[2](np.add.outer(edges[:-1], edges[1] * STAGES) / T) / T**2
+        rest = rate * now.rate[..., None] + square * now.rate[..., None] ** 2
+        force = np.concatenate([bend[..., None] * by[:, :, None], rest[..., None]], axis=3)
+        t = np.linspace(0.0, T, POSES)
+        M, D, K = np.moveaxis(matrices(self.law(c, T, t / T).position), 1, 0)
+        z, v = modal_march(at.locked.system.kernel, t, (M, D, K), force)[-1]
+        w, size, to = self._last_modes
+        found = size[:, None] * (to @ z + 1j * (to @ v) / w[:, None])
+        return found[:, :-1], found[:, -1]
 
-        def acting(t: Array) -> Array:
-            now = self.law(c, T, t / T)
-            none = np.zeros_like(now.rate)
-            bend = inertial_loads(at, self.poses(Law(now.position, none, none + 1.0), t))
-            rate = inertial_loads(at, self.poses(Law(now.position, now.rate, none), t))
-            return np.concatenate([bend[..., None] * (self.bases[2](t / T) / T**2)[:, None], rate[..., None]], axis=2)
-
-        z, v = integrate_modes(at, acting)[1][-1]
-        return _amplitudes(at, z, v)
+    def way_within_vibration(self, T: float, c: Array, bound: float) -> tuple[Array, float]:
+        """A way as of `way_within_limits` with so much vibration left; its share is beyond all where it leaves more."""
+        effect, used, quiet = self.residual_amplitudes(T, c), np.inf, False
+        for _ in range(ROUNDS):
+            c, expected = self._coefficients(T, c, effect, SHARE * bound)
+            effect, used = self.residual_amplitudes(T, c), self.largest_share(T, c)
+            quiet = np.abs(effect[0] @ c + effect[1]).sum() <= bound
+            if used > HOPELESS or (quiet and used <= WITHIN * expected):
+                return c, used
+        return c, used if quiet else max(used, HOPELESS)
 
     def least_time_within_vibration(self, low: float, c: Array, bound: float) -> tuple[float, Array]:
         """The least time and its way with at most so much vibration left."""
-        best = self.within_vibration(low, c, bound)
-        if best is not None:
-            return low, best
-        high, step = low + 0.5 / self.lowest_frequency, 0.5 / self.lowest_frequency
-        while (found := self.within_vibration(high, c, bound)) is None:
-            low, step = high, 1.5 * step
-            high = low + step
-            if high > 1e4:
-                raise ComputationError("no time is enough for so little vibration", next_step="Allow more (residual).")
-        best = (high, found)
-        while high - low > FINE * high:
-            T = 0.5 * (low + high)
-            found = self.within_vibration(T, best[1], bound)
-            low, high = (T, high) if found is None else (low, T)
-            best = best if found is None else (T, found)
-        return best
+        best = least_time_by_secants(
+            lambda T, c: self.way_within_vibration(T, c, bound), low, c, low=(1 - FINE) * low, fine=FINE, most=LONGEST
+        )
+        if best is None:
+            raise ComputationError("no time is enough for so little vibration", next_step="Allow more (residual).")
+        return best[:2]
 
     def simulated_load_share(self, T: float, c: Array) -> float:
         """Largest share of the limits of forces and torques in the march of the flexible robot; 0 without such."""
@@ -213,45 +226,20 @@ class StraightLine:
 
     def least_time_of_flexible_drives(self, T: float, c: Array, bound: float) -> tuple[float, Array, float]:
         """The least time, not below another one, in which flexible drives keep limits, its way and their share."""
-        best = (T, c, self.simulated_load_share(T, c))
-        low, high = T, T
-        while best[2] > WITHIN:
-            low, high = high, high * min(MORE, max(LESS, best[2] ** 0.5))
-            if high > FAR * T:
-                raise ComputationError(
-                    f"drives of the flexible robot use {100 * best[2]:.0f} % of their limits in {high:.3g} s as well",
-                    next_step="Raise the limits, or take weight off.",
-                )
-            found = self.within_vibration(high, best[1], bound)
-            best = best if found is None else (high, found, self.simulated_load_share(high, found))
-        while high - low > HELD * high:
-            between = 0.5 * (low + high)
-            found = self.within_vibration(between, best[1], bound)
-            used = np.inf if found is None else self.simulated_load_share(between, found)
-            low, high = (low, between) if used <= WITHIN else (between, high)
-            best = (between, found, used) if found is not None and used <= WITHIN else best
-        return best
+        shares = {T: self.simulated_load_share(T, c)}
 
-    def within_vibration(self, T: float, c: Array, bound: float) -> Array | None:
-        """A way within limits and bound in a time; None where there is none."""
-        effect = self.residual_amplitudes(T, c)
-        for _ in range(ROUNDS):
-            c = self.minimax_coefficients(T, c, effect, SHARE * bound)
-            effect, used = self.residual_amplitudes(T, c), self.largest_share(T, c)
-            if used <= WITHIN and np.abs(effect[0] @ c + effect[1]).sum() <= bound:
-                return c
-            if used > HOPELESS:
-                break
-        return None
+        def evaluate(later: float, c: Array) -> tuple[Array, float]:
+            if later == T:
+                return c, shares[T]
+            found, used = self.way_within_vibration(later, c, bound)
+            shares[later] = self.simulated_load_share(later, found) if used <= WITHIN else used
+            return found, max(used, shares[later])
 
-
-def _amplitudes(at: LinearPath, z: Array, v: Array) -> tuple[Array, Array]:
-    """Complex amplitudes at the tool of all modes at the last pose, of motions and rates (d, c); the last apart."""
-    from scipy.linalg import eigh
-
-    squares, shapes = eigh(at.K[-1], at.M[-1])
-    w = np.sqrt(np.abs(squares))
-    size = np.linalg.norm(at.tool[-1] @ shapes, axis=0)
-    to = shapes.T @ at.M[-1]
-    found = size[:, None] * (to @ z + 1j * (to @ v) / w[:, None])
-    return found[:, :-1], found[:, -1]
+        best = least_time_by_secants(evaluate, T, c, low=(1 - HELD) * T, fine=HELD, most=FAR * T)
+        if best is None:
+            raise ComputationError(
+                f"drives of the flexible robot use {100 * min(shares.values()):.0f} % of their limits in "
+                f"{max(shares):.3g} s as well",
+                next_step="Raise the limits, or take weight off.",
+            )
+        return best[0], best[1], shares[best[0]]

@@ -11,9 +11,10 @@ import numpy as np
 
 import flexapod as fx
 
-text = fx.preset("machine-hexapod").source_text
-before = fx.loads(text)
-after = fx.loads(text.replace('axial = "200 N/um", radial = "150 N/um"', 'axial = "400 N/um", radial = "300 N/um"'))
+before = fx.preset("machine-hexapod")
+stiffer = {"axial": "400 N/um", "radial": "300 N/um"}
+ends = ("leg.base_joint.stiffness", "leg.platform_joint.stiffness")
+after = before.with_values({f"{end}.{name}": value for end in ends for name, value in stiffer.items()})
 
 budgets = [fx.budget(study) for study in (before, after)]
 give = [b.budget.sel(kind="systematic", component="z", part=["base_joint", "platform_joint"]) for b in budgets]

@@ -12,13 +12,10 @@ import numpy as np
 
 import flexapod as fx
 
-text = fx.preset("machine-hexapod").source_text
+study = fx.preset("machine-hexapod")
 torques = np.array([0.125, 0.25, 0.5, 1.0])  # N m
-lost = [
-    float(fx.parts(fx.loads(text.replace('torque = "0.5 N m"', f'torque = "{torque} N m"'))).lost_motion[0])
-    for torque in torques
-]
-k_twist = float(fx.parts(fx.loads(text)).part_stiffness.sel(leg=1, part="twist"))
+lost = [float(fx.parts(study.with_values({"leg.drive.friction.torque": torque})).lost_motion[0]) for torque in torques]
+k_twist = float(fx.parts(study).part_stiffness.sel(leg=1, part="twist"))
 by_hand = 2 * np.pi * torques / 0.01 / k_twist  # a lead of 10 mm; the screw winds up between motor and nut
 print(f"0.5 N m: the leg lags by {1e9 * lost[2]:.1f} nm, by hand {1e9 * by_hand[2]:.1f} nm")
 

@@ -40,8 +40,7 @@ class Maxwell(fx.Element):
     )
 
 
-text = fx.preset("paper-robot").source_text
-study = fx.loads(text.replace("[motion]", '[leg.pair]\nstiffness = "100 N/mm"\nrelaxation = "50 ms"\n\n[motion]', 1))
+study = fx.preset("paper-robot").with_values({"leg.pair": {"stiffness": "100 N/mm", "relaxation": "50 ms"}})
 data = fx.simulate(study, fidelity="rigid", step=5e-4)
 force, time = data.pair_force.sel(leg=1).values, data.time.values
 

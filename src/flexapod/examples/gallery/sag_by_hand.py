@@ -42,7 +42,7 @@ length = np.hypot(across, H)
 diameters = np.array([15, 20, 27, 35, 45])  # mm
 found = []
 for diameter in diameters:
-    study = fx.loads(STUDY.replace("27 mm", f"{diameter} mm"))
+    study = fx.loads(STUDY).with_values({"leg.piston.diameter": f"{diameter} mm"})
     found.append(float(fx.stiffness(study, fidelity="lumped").stiffness.sel(wrench="Fz", component="z")))
 by_hand = 6 * E * np.pi / 4 * (1e-3 * diameters) ** 2 / L_PISTON * (H / length) ** 2
 print(f"27 mm: {60 * 9.81 / found[2] * 1e6:.3f} um of sag, by hand {60 * 9.81 / by_hand[2] * 1e6:.3f} um")

@@ -14,8 +14,8 @@ import flexapod as fx
 
 S = 1e-6  # (m/s^2)^2/Hz, one-sided
 Path("floor.csv").write_text(f"frequency [Hz],z [(m/s^2)^2/Hz]\n0.01,{S}\n20000,{S}\n")
-text = fx.preset("paper-robot").source_text.replace('com = [0, "373 mm", 0]', "com = [0, 0, 0]")
-study = fx.loads(text + '\n[disturbance]\nfloor = { spectrum = "floor.csv" }\n', path="study.toml")
+floor = {"disturbance.floor.spectrum": "floor.csv"}
+study = fx.preset("paper-robot").with_values({"payload.com": [0, 0, 0], **floor})
 
 data = fx.vibration(study)
 found = float(data.vibration_rms.sel(component="z"))

@@ -10,7 +10,7 @@ import numpy as np
 
 import flexapod as fx
 
-study = fx.loads(fx.preset("paper-robot").source_text.replace('com = [0, "373 mm", 0]', "com = [0, 0, 0]"))
+study = fx.preset("paper-robot").with_values({"payload.com": [0, 0, 0]})
 map_ = fx.workspace_map(
     study, {"surge": np.linspace(-0.1, 0.1, 9), "heave": np.linspace(-0.05, 0.05, 11)}, load=np.zeros(6)
 )

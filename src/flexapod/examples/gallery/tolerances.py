@@ -12,9 +12,8 @@ import numpy as np
 
 import flexapod as fx
 
-text = fx.preset("machine-hexapod").source_text
-text = text[: text.index("[heat]")] + '[tolerances]\nleg_offset = "10 um"\n'
-study = fx.loads(text)
+as_cold = {"heat": {"reference": 20}, "tolerances": {"leg_offset": "10 um"}}
+study = fx.preset("machine-hexapod").with_values(as_cold)
 data = fx.accuracy(study, draws=1000, seed=1)
 drawn = np.sqrt(np.diag(data.sample_covariance.values))
 

@@ -23,14 +23,14 @@ damping = Decentralised(integrator(-100.0, high_pass="5 Hz"), sensor="force-sens
 frame = by_jacobian(robot_jacobian(study.robot, "com"))  # strokes into motions, a wrench into forces of drives
 
 
-def held(system):
+def hold_payload(system):
     """The system with a lead and an integral in each direction of the payload, of size 1 at the crossing."""
     response = frame.into @ system.select("drive", "stroke").at(CROSSING)[:, :, 0] @ frame.out
     shape = lead(CROSSING, 3.0) * (gain(1.0) + integrator(2 * np.pi * CROSSING / 10))
     return system.close(frame.controller([(1 / abs(size)) * shape for size in np.diag(response)]))
 
 
-loops = {"position alone": held(plant), "with force feedback": held(plant.close(damping))}
+loops = {"position alone": hold_payload(plant), "with force feedback": hold_payload(plant.close(damping))}
 parts = fx.parts(study).part_stiffness.sel(leg=1)
 behind = (1 / parts.sel(part=["base_plate", "base_joint", "piston", "platform_joint", "top_plate"])).sum().item()
 robot = study.robot

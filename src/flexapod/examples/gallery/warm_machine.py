@@ -11,14 +11,14 @@ import numpy as np
 
 import flexapod as fx
 
-text = fx.preset("paper-robot").source_text
+study = fx.preset("paper-robot")
 warmer = np.array([1, 2, 5, 10])  # K
 uniform, pistons = [], []
 for dT in warmer:
-    heat = f"[heat]\nreference = 20\npiston = {20 + dT}\n"
-    pistons.append(float(fx.accuracy(fx.loads(text + heat)).pose_error.sel(component="z")))
-    heat += f"base = {20 + dT}\nplatform = {20 + dT}\ncylinder = {20 + dT}\n"
-    uniform.append(float(fx.accuracy(fx.loads(text + heat)).pose_error.sel(component="z")))
+    heat = {"reference": 20, "piston": 20 + dT}
+    pistons.append(float(fx.accuracy(study.with_values({"heat": heat})).pose_error.sel(component="z")))
+    heat |= dict.fromkeys(("base", "platform", "cylinder"), 20 + dT)
+    uniform.append(float(fx.accuracy(study.with_values({"heat": heat})).pose_error.sel(component="z")))
 alpha, height = 11.8e-6, 0.9  # of steel, 1/K; joints of the platform above those of the base
 by_hand = alpha * height * warmer
 print(f"10 K all over: {1e6 * uniform[-1]:.1f} um, by hand {1e6 * by_hand[-1]:.1f} um; pistons {1e6 * pistons[-1]:.1f}")

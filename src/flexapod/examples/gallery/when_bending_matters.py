@@ -12,11 +12,11 @@ import numpy as np
 
 import flexapod as fx
 
-text = fx.preset("paper-robot").source_text
+robot = fx.preset("paper-robot")
 weights = np.array([0.05, 0.1, 0.2, 0.4])
 found = {"axial-strain": [], "bending": []}
 for weight in weights:
-    study = fx.loads(text.replace("gravity = [0, 0, -9.81]", f"gravity = [0, 0, {-9.81 * weight}]"))
+    study = robot.with_values({"robot.gravity": [0, 0, -9.81 * weight]})
     data = fx.simulate(study, duration=1e-3, step=1e-3).isel(time=0)  # at rest
     for cause, values in found.items():
         values.append(float(abs(data.deviation_by_cause.sel(cause=cause, axis="z").sum("leg"))))

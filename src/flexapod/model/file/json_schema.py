@@ -18,7 +18,7 @@ from flexapod.common.tables.columns import Column
 from flexapod.common.tables.reference import plain_path, reference
 from flexapod.common.units import DIMENSIONS
 from flexapod.model.file.fields import NotedField, Notes, read_notes
-from flexapod.model.file.page import study_data, words_of
+from flexapod.model.file.key_trials import study_data, words_of
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
 _NUMBER = {"type": ["number", "string"]}

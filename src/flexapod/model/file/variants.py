@@ -23,9 +23,10 @@ from flexapod.model.file.key_paths import numbers_a_leg, overlap, put
 from flexapod.model.file.plausible import size_remarks
 from flexapod.model.file.study_text import tomlkit, with_each_leg
 from flexapod.model.stored_tables import files_of
+from flexapod.model.study.simulation import OWN_BASIS, STRAIGHT
 from flexapod.model.study.study import ActuatorStudy, Study
 
-S = TypeVar("S", Study, ActuatorStudy)
+S = TypeVar("S", bound=Study | ActuatorStudy)
 Keys = Mapping[tuple[Step, ...], object]
 
 
@@ -134,3 +135,69 @@ def text_with_values(text: str, keys: Keys, data: Mapping[str, Any]) -> str:
         return found if tomllib.loads(found) == data else toml_text(data)
     except tomllib.TOMLDecodeError:
         return toml_text(data)
+
+
+def override(
+    study: S,
+    *,
+    fidelity: str | None = None,
+    modes: int | None = None,
+    axial_modes: int | None = None,
+    basis: str | None = None,
+    tolerance: float | None = None,
+    step: float | None = None,
+    duration: float | None = None,
+    output_step: float | None = None,
+    rho_inf: float | None = None,
+    friction: str | None = None,
+) -> S:
+    """The study with settings of a Python call in place of those of the file; None keeps the file's.
+
+    Raises
+    ------
+    InputError
+        If a setting is not allowed, or has no effect together with the chosen fidelity.
+    """
+    given = {
+        "fidelity": fidelity,
+        "basis": basis,
+        "modes": modes,
+        "duration": duration,
+        "tolerance": tolerance,
+        "step": step,
+        "output_step": output_step,
+        "rho_inf": rho_inf,
+        "friction": friction,
+    }
+    changes = {name: value for name, value in given.items() if value is not None}
+    if not changes and axial_modes is None:
+        return study  # the same, of which much is known already
+    _refuse_unused(fidelity if isinstance(fidelity, str) else study.simulation.fidelity, changes, axial_modes)
+    if "step" in changes and "tolerance" not in changes:
+        changes["tolerance"] = None
+    if "tolerance" in changes and "step" not in changes:
+        changes["step"] = None
+    simulation = study.simulation.replace(**changes)
+    if axial_modes is None:
+        return study.replace(simulation=simulation)
+    if isinstance(study, ActuatorStudy):
+        raise InputError(
+            "is a setting of legs: a beam in its plane does not stretch",
+            key="axial_modes",
+            next_step="For a beam in space change actuator.axial_modes",
+        )
+    legs = tuple(leg.replace(axial_modes=axial_modes) for leg in study.robot.legs)
+    return study.replace(simulation=simulation, robot=study.robot.replace(legs=legs))
+
+
+def _refuse_unused(fidelity: str, changes: dict[str, object], axial_modes: int | None) -> None:
+    given = [name for name in ("modes", "basis") if name in changes] + ["axial_modes"] * (axial_modes is not None)
+    if fidelity in tuple(OWN_BASIS):
+        given = [name for name in given if name == "basis"]
+    if given and fidelity in (*STRAIGHT, *OWN_BASIS):
+        raise InputError(
+            f"has no effect with fidelity {fidelity!r}",
+            key=given[0],
+            value=changes.get(given[0], axial_modes),
+            next_step=f"Leave {given[0]} out, or choose fidelity='assumed-modes'",
+        )

@@ -148,7 +148,7 @@ class LeastStiffness(Table):
 
     @property
     def by_axis(self) -> dict[str, float]:
-        """What is given, by name."""
+        """Bounds that are given, by name."""
         found = {name: getattr(self, name) for name in type(self).model_fields}
         return {name: value for name, value in found.items() if value is not None}
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar, Self, TypeVar
+from typing import Any, ClassVar, Self
 
 from pydantic import field_validator, model_validator
 
@@ -20,7 +20,7 @@ from flexapod.model.study.disturbance import Disturbance
 from flexapod.model.study.remarks import actuator_remarks, robot_remarks, settings_remarks
 from flexapod.model.study.requirement import Requirement
 from flexapod.model.study.robot import Robot
-from flexapod.model.study.simulation import FIDELITIES, OWN_BASIS, SOLID, STRAIGHT, Initial, Simulation
+from flexapod.model.study.simulation import FIDELITIES, OWN_BASIS, SOLID, Initial, Simulation
 
 #: The load that drives a motion of the single actuator where no law does.
 DRIVEN_BY = {"rotation": "torque", "extension": "force", "elevation": "elevation_torque"}
@@ -30,7 +30,7 @@ _OUT_OF_PLANE = {
     "initial": ("elevation_displacement", "elevation_rate"),
 }
 
-variants = LazyModule("flexapod.model.file.variants")  # reads what is written here
+_variants = LazyModule("flexapod.model.file.variants")  # reads what is written here
 _ANEW = "-"  # for the text of a study that is to be written
 
 
@@ -106,7 +106,7 @@ class _Documented(Table):
         >>> fx.preset("paper-robot").with_values({"payload.mass": "50 kg"}).robot.payload.mass
         50.0
         """
-        return variants.with_values(self, values)
+        return _variants.with_values(self, values)
 
 
 class Study(_Documented):
@@ -335,75 +335,6 @@ class ActuatorStudy(_Documented):
         bent = {} if self.simulation.lateral_shapes else given
         return tuple(
             f"initial.{key} = {value:g} m has no effect on a rigid beam" for key, value in bent.items() if value
-        )
-
-
-S = TypeVar("S", bound=Study | ActuatorStudy)
-
-
-def override(
-    study: S,
-    *,
-    fidelity: str | None = None,
-    modes: int | None = None,
-    axial_modes: int | None = None,
-    basis: str | None = None,
-    tolerance: float | None = None,
-    step: float | None = None,
-    duration: float | None = None,
-    output_step: float | None = None,
-    rho_inf: float | None = None,
-    friction: str | None = None,
-) -> S:
-    """The study with settings of a Python call in place of those of the file; None keeps the file's.
-
-    Raises
-    ------
-    InputError
-        If a setting is not allowed, or has no effect together with the chosen fidelity.
-    """
-    given = {
-        "fidelity": fidelity,
-        "basis": basis,
-        "modes": modes,
-        "duration": duration,
-        "tolerance": tolerance,
-        "step": step,
-        "output_step": output_step,
-        "rho_inf": rho_inf,
-        "friction": friction,
-    }
-    changes = {name: value for name, value in given.items() if value is not None}
-    if not changes and axial_modes is None:
-        return study  # the same, of which much is known already
-    _refuse_unused(fidelity if isinstance(fidelity, str) else study.simulation.fidelity, changes, axial_modes)
-    if "step" in changes and "tolerance" not in changes:
-        changes["tolerance"] = None
-    if "tolerance" in changes and "step" not in changes:
-        changes["step"] = None
-    simulation = study.simulation.replace(**changes)
-    if axial_modes is None:
-        return study.replace(simulation=simulation)
-    if isinstance(study, ActuatorStudy):
-        raise InputError(
-            "is a setting of legs: a beam in its plane does not stretch",
-            key="axial_modes",
-            next_step="For a beam in space change actuator.axial_modes",
-        )
-    legs = tuple(leg.replace(axial_modes=axial_modes) for leg in study.robot.legs)
-    return study.replace(simulation=simulation, robot=study.robot.replace(legs=legs))
-
-
-def _refuse_unused(fidelity: str, changes: dict[str, object], axial_modes: int | None) -> None:
-    given = [name for name in ("modes", "basis") if name in changes] + ["axial_modes"] * (axial_modes is not None)
-    if fidelity in tuple(OWN_BASIS):
-        given = [name for name in given if name == "basis"]
-    if given and fidelity in (*STRAIGHT, *OWN_BASIS):
-        raise InputError(
-            f"has no effect with fidelity {fidelity!r}",
-            key=given[0],
-            value=changes.get(given[0], axial_modes),
-            next_step=f"Leave {given[0]} out, or choose fidelity='assumed-modes'",
         )
 
 

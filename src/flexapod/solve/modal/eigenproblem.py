@@ -114,6 +114,8 @@ def count_real(frequency: Array) -> int:
     return int(real.sum()) or width
 
 
+SWEEPS, SETTLED = 100, 4 * np.finfo(float).eps  # of a mode and its neighbours; change of an eigenvalue that is rounding
+CLEAR = 0.9  # share of an undamped shape in a damped one, above which no other can have half of either
 OSCILLATES = 1e-9  # imaginary part over size of an eigenvalue: less is a pair of real ones, split by rounding
 
 
@@ -194,6 +196,37 @@ def damping_ratios(omega: Array, D: Array) -> Array:
             ratio[at[mode]] = -np.real(values[column]) / np.abs(values[column])
             named.add(mode)
             taken.add(column)
+    return ratio
+
+
+def damping_ratios_of(mode: int, omega: Array, D: Array) -> Array:
+    """Damping ratios (p,) of one mode, as of `damping_ratios`, by its own eigenvalue alone, Eq. (T7.29).
+
+    ``omega``, ``D``: (p, m) and (p, m, m), as there.
+
+    Raises
+    ------
+    ComputationError
+        A number in D is not finite.
+    """
+    check_finite(D)
+    x, slow = np.zeros(omega.shape, dtype=complex), 1 / omega
+    x[:, mode], own, settled = 1.0, np.diagonal(D, axis1=1, axis2=2), np.zeros(len(omega), dtype=bool)
+    value: NDArray[np.complex128] = np.zeros(len(omega), dtype=complex)
+    with np.errstate(all="ignore"):  # what does not settle is left to all modes at once
+        for _ in range(SWEEPS):
+            before, push = value, (D @ x[..., None])[..., 0]
+            s = 0.5 * omega[:, mode] * push[:, mode]
+            value = np.asarray(omega[:, mode] * (1j * np.sqrt(1 - s**2) - s), dtype=complex)
+            x = (own * x - push) * value[:, None] / (1 + value[:, None] * (own + value[:, None] * slow**2))
+            x[:, mode] = 1.0
+            settled = np.abs(value - before) <= SETTLED * np.abs(value)
+            if settled.all():
+                break
+        share = 1 / (omega[:, mode] * np.linalg.norm(np.abs(x) * slow, axis=1))
+        ratio = -value.real / np.abs(value)
+    for k in np.flatnonzero(~(settled & (share > CLEAR) & (value.imag > OSCILLATES * np.abs(value)))):
+        ratio[k] = damping_ratios(omega[k], D[k])[mode]
     return ratio
 
 

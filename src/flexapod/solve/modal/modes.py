@@ -11,7 +11,14 @@ from flexapod.common.errors import ComputationError, InputError
 from flexapod.mechanics.leg.layout import LEG_PARAMETERS, columns, leg_parameters
 from flexapod.mechanics.shapes.beam_functions import check_finite
 from flexapod.solve.batch import RestMatrices
-from flexapod.solve.modal.eigenproblem import OSCILLATES, count_real, damping_ratios, mass_factor, natural_modes
+from flexapod.solve.modal.eigenproblem import (
+    OSCILLATES,
+    count_real,
+    damping_ratios,
+    damping_ratios_of,
+    mass_factor,
+    natural_modes,
+)
 from flexapod.solve.modal.modal_loops import ModalLoops, growth_rate, loops_in_modes
 from flexapod.solve.statics.equilibrium import Equilibrium
 from flexapod.solve.statics.locked_robot import LockedPoses, single_equilibrium
@@ -47,7 +54,8 @@ class ManyModes:
     """Modes about the equilibria found in `LockedPoses`, p of them, ascending; NaN where masses are not `positive`.
 
     ``frequency`` (p, m) [Hz], NaN last for what has no mass; ``positive`` (p,); ``shapes`` (p, m, N) as in
-    `RobotModes`, empty unless asked for; ``ratio``: finds damping ratios (m,) of the k-th, NaN without shapes;
+    `RobotModes`, empty unless asked for; ``ratio``, ``ratio_of``: find damping ratios, (m,) of the k-th equilibrium and
+    (p,) of a mode, NaN without shapes;
     ``growth`` (p,): rate at which the fastest of them grows [1/s], None of robots without loops that can.
     """
 
@@ -55,6 +63,7 @@ class ManyModes:
     positive: Mask
     shapes: Array
     ratio: Callable[[int], Array]
+    ratio_of: Callable[[int], Array]
     growth: Array | None = None
 
     @cached_property
@@ -142,8 +151,11 @@ def modes_of(locked: LockedPoses, *, shapes: bool = False, loops: bool = True) -
     omega, flat = found.omega, found.flat
     frequency = np.where(np.isfinite(omega), omega / (2 * np.pi), np.nan)
     if not shapes:
-        nothing, unknown = np.zeros((0, omega.shape[1])), np.full(omega.shape[1], np.nan)
-        return ManyModes(frequency=frequency, positive=found.positive, shapes=nothing, ratio=lambda _: unknown)
+        nothing, unknown = np.zeros((0, omega.shape[1])), np.full(omega.shape, np.nan)
+        return ManyModes(
+            frequency=frequency, positive=found.positive, shapes=nothing, ratio=unknown.__getitem__,
+            ratio_of=unknown.T.__getitem__,
+        )  # fmt: skip
     damping = modal_damping(locked, flat)
     check_finite(damping[found.positive])
 
@@ -151,8 +163,16 @@ def modes_of(locked: LockedPoses, *, shapes: bool = False, loops: bool = True) -
         found = omega[k] if np.isnan(omega[k]).any() else damping_ratios(omega[k], damping[k])
         return np.where(np.isfinite(frequency[k]), found, np.nan)
 
+    def ratio_of(mode: int) -> Array:
+        whole = np.isfinite(frequency[:, mode])
+        ratios = np.full(len(omega), np.nan)
+        ratios[whole] = damping_ratios_of(mode, omega[whole], damping[whole])
+        return ratios
+
     shapes_of_mass = (flat * (2 * np.pi * frequency)[:, None]).swapaxes(1, 2)
-    return ManyModes(frequency=frequency, positive=found.positive, shapes=shapes_of_mass, ratio=ratio)
+    return ManyModes(
+        frequency=frequency, positive=found.positive, shapes=shapes_of_mass, ratio=ratio, ratio_of=ratio_of
+    )
 
 
 def _looping(locked: LockedPoses) -> ManyModes:
@@ -174,8 +194,10 @@ def _looping(locked: LockedPoses) -> ManyModes:
         z = (z * np.exp(-0.5j * np.angle((slow**2).sum(axis=0)))).real
         mass = np.sqrt(((z / found.omega[k][:, None]) ** 2).sum(axis=0))
         flat[k, :n] = (found.flat[k] @ (z / mass)).T
-    ratios = ratio.__getitem__
-    return ManyModes(frequency=frequency, positive=found.positive, shapes=flat, ratio=ratios, growth=rates)
+    return ManyModes(
+        frequency=frequency, positive=found.positive, shapes=flat, ratio=ratio.__getitem__,
+        ratio_of=ratio.T.__getitem__, growth=rates,
+    )  # fmt: skip
 
 
 def loops_of(locked: LockedPoses) -> list[ModalLoops]:

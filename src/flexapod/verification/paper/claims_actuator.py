@@ -73,7 +73,7 @@ def _misprints(lines: Dataset) -> Claim:
         f"integral over it. {COPY.capitalize()}, maybe by the copy's fault: Eq. 4 has no bounds, Eq. 5 no dots, Eq. 6 "
         "differentiates y instead of u, Eq. 8 makes the tip force a constant load instead of a stiffness. Line by line "
         f"in chapter T9 of the theory (T9.2), with a tip mass of {TIP_MASS:g} kg of ours; checked in "
-        "tests/consistency/test_printed_lines.py and test_sliding_equation.py.",
+        "tests/verification/test_printed_equations.py and tests/mechanics/test_sliding_equation.py.",
     )
 
 

@@ -179,7 +179,7 @@ def _drives(data: Dataset) -> Claim:
 
 
 #: Roll [deg], arm [m] and deviation along x, y, z [m] of the robots that come nearest with geometrically exact rods for
-#: legs, by reading. Computed outside of this program: tests/consistency/test_welded_robot.py holds them.
+#: legs, by reading. Computed outside of this program: tests/verification/test_clamped_legs.py holds them.
 EXACT = {
     "diameters": (11.0, 0.6, (2.802e-3, 6.298e-3, 9.114e-3)),
     "radii": (17.0, 0.373, (1.263e-3, 6.143e-3, 11.520e-3)),
