@@ -14,6 +14,7 @@ from flexapod.analysis.requirements.states import states_of
 from flexapod.design import first_robot
 from flexapod.output.text.verdict import answer, verdict_as_dict
 
+pytestmark = pytest.mark.consistency
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 BOX = {"travel": "15 mm", "rotation": "3 deg"}
 

@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+pytestmark = pytest.mark.cli
 ASKED = '\n[requirement]\ntravel = "5 mm"\npose_accuracy_calibrated = "1 um"\nsettling_time = "1 s"\n'
 
 

@@ -5,6 +5,7 @@ import pytest
 
 import flexapod as fx
 
+pytestmark = pytest.mark.unit
 TEXT = fx.model.preset_text("machine-hexapod")
 
 
