@@ -22,6 +22,8 @@ from flexapod.kinematics.envelope import (
     movable_axes,
 )
 
+pytestmark = pytest.mark.property
+
 PRESETS = ("paper-robot", "machine-hexapod", "small-hexapod", "nano-hexapod", "motion-base")
 BOXES = 120
 
