@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.analysis.checks.reachability import REACHED, REASONS, leg_limits, rigid_codes, slider_limits
+from flexapod.analysis.checks.reachability import REACHED, REASONS, Codes, leg_limits, rigid_codes, slider_limits
 from flexapod.analysis.results.bodies import joint_angle_limits, joint_angles
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import InputError
 from flexapod.common.ranking import first_largest
+from flexapod.kinematics.envelope import Box as EnvelopeBox
+from flexapod.kinematics.envelope import LegRange, leg_range
 from flexapod.model import AXES, Requirement, Robot
 
 LARGEST = 8.0  # times the box, up to which it is looked for its limits
 HALVINGS = 24
+LEG_TOO_SHORT, LEG_TOO_LONG = (
+    [reason.flag for reason in REASONS].index(flag) for flag in ("leg_too_short", "leg_too_long")
+)
 FORBIDDEN = {"joint_folds", "joint_stops"}  # reasons of joints, whose leg is told by its angles
 
 
@@ -37,7 +42,7 @@ class Box:
 
     @property
     def corners(self) -> Array:
-        """Its corners, (P, 6); of axes alone their ends; nothing of a box without axes."""
+        """Corners, (P, 6); of axes alone their ends; nothing of a box without axes."""
         return self._points((0, 2))
 
     @property
@@ -58,6 +63,15 @@ class Box:
         found = np.zeros((int(np.prod([len(x) for x in ways])), 6))
         found[:, axes] = list(product(*ways))
         return found
+
+    @property
+    def envelope(self) -> EnvelopeBox:
+        """The same for the lengths of its legs."""
+        return EnvelopeBox(low=self.low, high=self.high, pivot=self.pivot, alone=self.alone)
+
+    def scaled(self, scale: float) -> Box:
+        """The box in proportion."""
+        return replace(self, low=scale * self.low, high=scale * self.high)
 
     def poses(self, values: Array) -> kinematics.Poses:
         """Poses at rest of coordinates (P, 6) of the pivot from home."""
@@ -127,38 +141,63 @@ class BoxReach:
 
 
 def box_reach(box: Box) -> BoxReach:
-    """Legs, joints and singularities over a box: its corners, and three values of each axis.
+    """Legs, joints and singularities over a box.
 
-    A pose out of reach is a proof that the box is not kept; that it is, these poses alone do not prove.
+    Lengths for sure by `kinematics.envelope`, Eqs. (T2.49)-(T2.52), of legs that are vectors between joints; joints,
+    singularities and other legs at its corners, and three values of each axis. A pose out of reach is a proof that the
+    box is not kept; that it is, poses alone do not prove.
     """
     values = box.looked
     at = kinematics.RigidPoses(box.robot, box.poses(values))
     code = rigid_codes(at, from_home=True)
-    excess = leg_excess(at)
+    lengths = leg_range(box.robot, box.envelope)
     within = bool((code == REACHED).all())
-    most = np.nanmax(np.where(np.isfinite(excess), excess, np.nan), axis=1, initial=-np.inf)
-    chosen = np.arange(len(values)) if within else np.flatnonzero(code != REACHED)
-    worst = int(chosen[first_largest(np.nan_to_num(most[chosen], neginf=-1e9))])
-    reason = REASONS[code[worst]]
-    return BoxReach(
-        scale=_scale(box, within),
-        within=within,
-        sure=not within,
-        worst=values[worst],
-        leg=_leg(at, excess, worst, reason.flag),
-        reason="" if within else reason.words,
+    reach = BoxReach(
+        scale=_scale(box, within=within and not lengths.out.any()),
+        within=within and not lengths.out.any(),
+        sure=not within or bool(lengths.out.any()) or _is_sure(box.robot, lengths),
+        worst=np.zeros(6),
+        leg=0,
+        reason="",
         looked=len(values),
     )
+    return _with_leg(reach, lengths) if within else _with_pose(reach, at, code, values)
 
 
-def _scale(box: Box, within: bool) -> float:
-    """Largest part of the box, in proportion, whose poses are all reached; `LARGEST` where none is out of reach."""
+def _is_sure(robot: Robot, lengths: LegRange) -> bool:
+    """Test whether bounds keep all limits: those of the lengths, where joints have none."""
+    return bool(lengths.sure.all()) and not np.isfinite(joint_angle_limits(robot)).any()
+
+
+def _with_leg(reach: BoxReach, lengths: LegRange) -> BoxReach:
+    """The leg that comes nearest to its limits or leaves them, and where."""
+    left = np.stack([lengths.least - lengths.limits[:, 0], lengths.limits[:, 1] - lengths.most], axis=1)
+    leg, side = np.unravel_index(first_largest(-np.nan_to_num(left, nan=-np.inf)), left.shape)
+    if np.isposinf(left[leg, side]):
+        return reach
+    worst = (lengths.least_pose, lengths.most_pose)[side][leg]
+    words = REASONS[LEG_TOO_LONG if side else LEG_TOO_SHORT].words
+    return replace(reach, worst=worst, leg=int(leg) + 1, reason="" if reach.within else words)
+
+
+def _with_pose(reach: BoxReach, at: kinematics.RigidPoses, code: Codes, values: Array) -> BoxReach:
+    """The pose that is farthest out of reach, the leg and the reason there."""
+    excess, out = leg_excess(at), np.flatnonzero(code != REACHED)
+    most = np.nan_to_num(excess[out], nan=np.inf).max(axis=1)
+    worst = int(out[first_largest(most)])
+    reason = REASONS[code[worst]]
+    return replace(reach, worst=values[worst], leg=_leg(at, excess, worst, reason.flag), reason=reason.words)
+
+
+def _scale(box: Box, *, within: bool) -> float:
+    """Largest part of the box, in proportion, of which no pose was found out of reach; at most `LARGEST`."""
     values = box.corners if within else box.looked
 
     def reached(scale: float) -> bool:
-        return bool(
-            (rigid_codes(kinematics.RigidPoses(box.robot, box.poses(scale * values)), from_home=True) == 0).all()
-        )
+        at = kinematics.RigidPoses(box.robot, box.poses(scale * values))
+        if not (rigid_codes(at, from_home=True) == REACHED).all():
+            return False
+        return not leg_range(box.robot, box.scaled(scale).envelope, parts=()).out.any()
 
     return largest_reached(reached, within=within)
 

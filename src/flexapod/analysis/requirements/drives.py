@@ -12,7 +12,7 @@ from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.arrays import Array, Mask
 from flexapod.model import Leg, Robot, Study
 
-STARTING = 1e-9  # [rad/s]: of a screw that has just begun to turn
+STARTING = np.array(1e-9)  # [rad/s]: of a screw that has just begun to turn
 
 
 def has_force_limits(robot: Robot) -> bool:
@@ -44,12 +44,12 @@ def motion_shares(path: RigidPath) -> Array:
     """Largest need of the drives along a path over their limits, (legs,); 0 of drives without limits."""
     found = np.zeros(path.robot.count)
     for one in describe_screws(path):
-        limits = path.robot.legs[one.leg - 1].screw.limits
+        limits = path.robot.legs[one.leg - 1].screw.limits  # type: ignore[union-attr]
         needs = ((one.thrust.value, limits.force), (one.torque.value, limits.torque))
         needs += ((one.rms_torque, limits.rms_torque),)
         found[one.leg - 1] = max([0.0, *(need / limit for need, limit in needs if limit is not None)])
     for one in describe_hydraulics(path):
-        limit = path.robot.legs[one.leg - 1].cylinder_of_oil.limits.pressure
+        limit = path.robot.legs[one.leg - 1].cylinder_of_oil.limits.pressure  # type: ignore[union-attr]
         found[one.leg - 1] = 0.0 if limit is None else one.pressure.value / limit
     return found
 
@@ -101,13 +101,14 @@ def accelerations(study: Study, poses: kinematics.Poses) -> Array:
     for i, leg in enumerate(robot.legs):
         force, gain = still[0][:, i], np.linalg.norm(per_force[:, i], axis=-1)
         pairs = [_left(np.abs(force), gain, limit) for limit in _thrust_limits(leg)]
-        if leg.screw is not None and leg.screw.limits.torque is not None:
+        most = None if leg.screw is None else leg.screw.limits.torque
+        if leg.screw is not None and most is not None:
             screw, ratio = leg.screw, leg.screw.rotor.ratio
-            torque = np.abs(force) * screw.per_turn / screw.efficiency + abs(float(drag_torque(screw, STARTING)))
+            torque = np.abs(force) * screw.per_turn / screw.efficiency + np.abs(drag_torque(screw, STARTING))
             change = (
                 per_force[:, i] * screw.per_turn / screw.efficiency + screw.inertia * per_accel[:, i] / screw.per_turn
             )
-            pairs.append(_left(torque / ratio, np.linalg.norm(change, axis=-1) / ratio, screw.limits.torque))
+            pairs.append(_left(torque / ratio, np.linalg.norm(change, axis=-1) / ratio, most))
         if pairs:
             found[:, i] = np.min(pairs, axis=0)
     return found

@@ -90,7 +90,7 @@ def _root(parts: Array) -> Array:
 
 
 def _by_square(parts: Array) -> Array:
-    """What each part adds to the root of the sum of squares, (parts, 3)."""
+    """Share of each part in the root of the sum of squares, (parts, 3)."""
     square = parts[:, PLACE] ** 2
     whole = np.sqrt(square.sum(axis=0))
     return np.divide(square, whole, out=np.zeros_like(square), where=whole > 0)

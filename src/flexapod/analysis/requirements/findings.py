@@ -14,7 +14,7 @@ HOME = np.zeros(6)
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """What was found for one key: the worst value over poses and states, SI units.
+    """Finding for one key: the worst value over poses and states, SI units.
 
     ``at_most``: whether it is bounded from above; ``found`` NaN where there is no number, ``why`` then says the reason;
     ``complete``: it has a number in all poses and states that count; ``sure``: no other pose can be worse; ``pose``
@@ -40,7 +40,7 @@ class Finding:
 
     @property
     def margin(self) -> float:
-        """What is left, below 0 where the requirement is missed."""
+        """Rest of the bound, below 0 where the requirement is missed."""
         return self.wanted - self.found if self.at_most else self.found - self.wanted
 
     @property

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
+from typing import cast
 
 import numpy as np
 
@@ -103,7 +104,10 @@ class Judge:
             if name in ("travel", "rotation"):
                 continue
             if name == "stiffness":
-                found += [self._protected(one, self._elastic) for one in _stiffnesses(self.wanted.stiffness)]
+                found += [
+                    self._protected(one, self._elastic)
+                    for one in _stiffnesses(cast("LeastStiffness", self.wanted.stiffness))
+                ]
                 continue
             one = Finding(
                 name=name,

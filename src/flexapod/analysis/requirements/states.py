@@ -71,7 +71,7 @@ def with_payload(robot: Robot, mass: float, com: np.ndarray | None) -> Robot:
 
 def warm_heat(robot: Robot) -> Heat:
     """Temperatures of the warm robot: of a table over time those at which the tool has drifted farthest at home."""
-    heat = robot.heat
+    heat = cast("Heat", robot.heat)
     if heat.time is None:
         return heat
     try:

@@ -148,7 +148,7 @@ class LeastStiffness(Table):
 
     @property
     def by_axis(self) -> dict[str, float]:
-        """What is given, by name."""
+        """Bounds that are given, by name."""
         found = {name: getattr(self, name) for name in type(self).model_fields}
         return {name: value for name, value in found.items() if value is not None}
 
@@ -186,7 +186,7 @@ class Requirement(Table):
     alone: Annotated[bool, Key("each axis of the box with the others at home, not all at once")] = False
     pivot: Annotated[
         PivotPlace,
-        Quantity("length", why="point that turns of the box are about: tool, platform, or a point of the platform frame",
+        Quantity("length", why="what turns of the box are about: tool, platform, or a point in its frame",
                  usual="the tool", short="text"),
     ] = Field(default=TOOL, validate_default=True)  # fmt: skip
     payload: Annotated[
@@ -343,7 +343,7 @@ def _ranges(section: Section, name: str, model: type[Ranges]) -> object:
     if _is_number(found) and found < 0:  # type: ignore[operator]
         raise section.error("is below 0", name, allowed="a size on either side of home, or [low, high]")
     try:
-        return None if found is None else model(each=found)
+        return None if found is None else model(**{"each": found})
     except InputError as error:
         raise section.error(error.what, name, allowed=error.allowed, next_step=error.next_step) from None
 

@@ -77,7 +77,7 @@ def _reasons(data: Dataset, which: np.ndarray) -> str:
 
 
 def _miss(data: Dataset, k: int) -> str:
-    """What is missed by how much, where, by which part; and what it is at home."""
+    """Words on a miss: by how much, where, by which part; and the value at home."""
     name, unit = str(data.requirement.values[k]), str(data.unit.values[k])
     found, wanted, home = _quantities(unit, *(float(data[x].values[k]) for x in ("found", "wanted", "home")))
     state, leg, part = str(data.state.values[k]), int(data.leg.values[k]), str(data.part.values[k])
