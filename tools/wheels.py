@@ -1,13 +1,14 @@
 """``python -m tools.wheels``: the source distribution builds a wheel; installed in clean environments, it runs.
 
 Each of Python 3.11 to 3.14 that is found on this machine (``python3.12``, or of pyenv) gets an environment of its own
-with the wheel and nothing else of ours; `flexapod new`, `check` and `run` and a call from Python are made there. With
+with the wheel and nothing else of ours; `flexapod new`, `check` and `run` and a call from Python are made there. So it
+is with the wheel of Linux that brings its time loops compiled (`python -m tools.build_wheels` makes all). With
 ``--check`` the source distribution, by itself in a folder, also passes `make check`.
 """
 
 from __future__ import annotations
 
-import os
+import platform
 import shutil
 import subprocess
 import sys
@@ -17,6 +18,8 @@ import tomllib
 import zipfile
 from pathlib import Path
 
+from tools.build_wheels import SYSTEMS, distributions, told, with_loops
+
 ROOT = Path(__file__).parents[1]
 VERSIONS = ("3.11", "3.12", "3.13", "3.14")
 CALL = """
@@ -25,19 +28,11 @@ data = fx.simulate(fx.preset("paper-robot"))
 peak = 1e6 * float(abs(data.com_deviation.sel(axis="z")).max())
 assert 19.2 < peak < 19.4, peak  # um; an independent program gives 19.33
 """
-
-
-def told(command: list[str | Path], folder: Path) -> str:
-    """What a command says; it has to succeed."""
-    done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True, env=alone())
-    if done.returncode:
-        raise SystemExit(f"{' '.join(map(str, command))}\n{done.stdout[-3000:]}{done.stderr[-3000:]}")
-    return done.stdout
-
-
-def alone() -> dict[str, str]:
-    """The environment without what would let a checkout in."""
-    return {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "FLEXAPOD"))}
+#: The same, by loops that the wheel brings.
+LOOPS = f"""{CALL}
+from flexapod.mechanics.symbolic.processor import built_loops
+assert built_loops() and built_loops().path.name in open("/proc/self/maps").read(), "loops were compiled"
+"""
 
 
 def found(version: str) -> Path | None:
@@ -52,23 +47,12 @@ def found(version: str) -> Path | None:
 
 def built(folder: Path) -> tuple[Path, Path]:
     """The source distribution and the wheel that it gives; what has to be in both is, licence and all."""
-    pip = [sys.executable, "-m", "pip"]
-    make = "import setuptools.build_meta as b, sys; print(b.build_sdist(sys.argv[1]))"
-    packer = folder / "packer"
-    told([sys.executable, "-m", "venv", packer], folder)
-    told([packer / "bin" / "pip", "install", "--quiet", "setuptools>=77"], folder)
-    notes = ROOT / "src" / "flexapod.egg-info"
-    kept = notes.exists()
-    sdist = folder / told([packer / "bin" / "python", "-c", make, folder], ROOT).splitlines()[-1]
-    if not kept:
-        shutil.rmtree(notes, ignore_errors=True)
+    sdist, wheel = distributions(folder, folder)
     with tarfile.open(sdist) as archive:
         names = {name.split("/", 1)[1] for name in archive.getnames() if "/" in name}
     for name in ("Makefile", "constraints.txt", "tests/conftest.py", "docs/index.md", "LICENSE", "README.md"):
         if name not in names:
             raise SystemExit(f"{name} is not in the source distribution")
-    told([*pip, "wheel", "--quiet", "--no-deps", "--wheel-dir", folder, sdist], folder)
-    wheel = next(folder.glob("flexapod-*.whl"))
     with zipfile.ZipFile(wheel) as archive:
         inside = set(archive.namelist())
     package = {path.relative_to(ROOT / "src").as_posix() for path in (ROOT / "src" / "flexapod").rglob("*.*")}
@@ -86,13 +70,13 @@ def checked(sdist: Path, folder: Path) -> None:
     told(["make", "check"], next(folder.iterdir()))
 
 
-def tried(python: Path, wheel: Path, folder: Path) -> None:
+def tried(python: Path, wheel: Path, folder: Path, call: str = CALL) -> None:
     """Install the wheel by itself, and use it as on the first day."""
     folder.mkdir()
     told([python, "-m", "venv", folder / "venv"], folder)
     programs = folder / "venv" / "bin"
     told([programs / "pip", "install", "--quiet", "--disable-pip-version-check", wheel], folder)
-    told([programs / "python", "-W", "error::SyntaxWarning", "-c", CALL], folder)
+    told([programs / "python", "-W", "error::SyntaxWarning", "-c", call], folder)
     told([programs / "flexapod", "new", "robot.toml"], folder)
     told([programs / "flexapod", "check", "robot.toml"], folder)
     told([programs / "flexapod", "run", "robot.toml", "--no-figures", "--quiet"], folder)
@@ -107,6 +91,10 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         sdist, wheel = built(Path(name))
         print(f"{wheel.name}: {wheel.stat().st_size / 1e6:.1f} MB, built of the source distribution")
+        loops = None
+        if sys.platform == "linux" and platform.machine() == "x86_64" and shutil.which("gcc"):
+            loops = with_loops(wheel, SYSTEMS["linux"], Path(name), Path(name))
+            print(f"{loops.name}: {loops.stat().st_size / 1e6:.1f} MB, with compiled loops")
         for version in VERSIONS:
             python = found(version)
             if python is None:
@@ -114,6 +102,9 @@ def main() -> None:
                 continue
             tried(python, wheel, Path(name) / version)
             print(f"{version}: installed by itself, runs")
+            if loops is not None:
+                tried(python, loops, Path(name) / f"{version}-loops", LOOPS)
+                print(f"{version}: with the loops of the wheel, runs")
         if "--check" in sys.argv[1:]:
             checked(sdist, Path(name) / "source")
             print("the source distribution passes `make check`")

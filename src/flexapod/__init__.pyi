@@ -20,6 +20,7 @@ from flexapod.analysis import simulate_actuator as simulate_actuator
 from flexapod.analysis import simulate_solid as simulate_solid
 from flexapod.analysis import stiffness as stiffness
 from flexapod.analysis import transmissibility as transmissibility
+from flexapod.analysis import verdict as verdict
 from flexapod.analysis import vibration as vibration
 from flexapod.commissioning.feedforward import compensate as compensate
 from flexapod.commissioning.feedforward import shape as shape
@@ -35,6 +36,8 @@ from flexapod.control.measurements import read_frf as read_frf
 from flexapod.design.convergence import converge as converge
 from flexapod.design.convergence.ladder import ladder as ladder
 from flexapod.design.maps import workspace_map as workspace_map
+from flexapod.design.optimisation.optimise import optimise as optimise
+from flexapod.design.sensitivity import sensitivity as sensitivity
 from flexapod.design.stored_study import load as load
 from flexapod.design.sweeps import sweep as sweep
 from flexapod.mechanics.elements.element import Along as Along

@@ -34,6 +34,18 @@ def test_a_machine_of_catalogue_parts_passes_check_and_runs(flexapod, folder):
     assert 'type = "hydraulic"' in written and "[tolerances]" in written and "[heat]" in written
 
 
+def test_a_box_of_poses_and_what_is_kept(flexapod, folder):
+    wish = "travel=15 mm, tilt=3 deg, payload=25 kg, repeatability=1 um"
+    done = flexapod("new", "stage.toml", "--from", wish, "--json")
+    assert done.exit_code == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert found["attainable"] == [] and "Yes: all 3 requirements are kept." in found["remarks"]
+    study = fx.load("stage.toml")
+    assert study.requirement.repeatability == 1e-6 and abs(study.robot.home_height - 0.1843) < 1e-3
+    low = flexapod("new", "low.toml", "--from", f"home=150 mm, {wish}")
+    assert low.exit_code == 2 and "home = 184.3 mm" in " ".join(low.stderr.split())
+
+
 def test_ideal_goes_with_from_alone(flexapod, folder):
     alone = flexapod("new", "a.toml", "--ideal")
     assert alone.exit_code == 2 and "without --from" in alone.stderr

@@ -78,11 +78,11 @@ def test_commands_are_those_of_the_rigid_path(name):
     robot, motion = three_rps(), MOTIONS[name]
     system = robot_system(robot, Simulation(fidelity="rigid"), 0.0)
     poses = Counted(partial(kinematics.rigid_poses, robot, motion))
-    knots = kinematics.path_knots(motion, 0.5)
-    exact, tabulated = (robot_law(system, robot, Load(), poses, x) for x in (None, knots))
+    series = kinematics.PathSeries(robot, motion, 0.5)
+    exact, tabulated = (robot_law(system, robot, Load(), x) for x in (poses, series.at))
     t = np.linspace(0, 0.5, 4001)
     (expected, _), (found, _) = exact(t), tabulated(t)
     for column, allowed in enumerate((1e-13, 1e-12, 1e-11)):  # m, m/s, m/s^2: of lengths 0.6, rates 1, 10 at most
         scale = max(1.0, np.abs(expected[..., column]).max())
         assert np.abs(found[..., column] - expected[..., column]).max() < allowed * scale
-    assert poses.instants < 2 * len(t)
+    assert series.has_series

@@ -10,6 +10,7 @@ from flexapod.analysis.linear import linearize as linearize
 from flexapod.analysis.pose_errors import accuracy as accuracy
 from flexapod.analysis.pose_errors import play as play
 from flexapod.analysis.pose_errors.disturbances import vibration as vibration
+from flexapod.analysis.requirements import verdict as verdict
 from flexapod.analysis.results.summary import summary as summary
 from flexapod.analysis.results.time_history import Interrupted as Interrupted
 from flexapod.analysis.simulation import run as run

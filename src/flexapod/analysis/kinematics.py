@@ -160,7 +160,7 @@ def inverse_dynamics(
     """
     path, remarks = _path(_study(robot, motion, load, duration, output_step))
     refuse_tables(path.robot.legs, "the rigid robot")
-    forces = {**LazyArrays(rigid_force_results(path)), **rigid_reactions(path.robot, path.forces)}
+    forces = {**LazyArrays(rigid_force_results(path)), **rigid_reactions(path)}
     values = _legs_and_payload(path) | forces
     return _path_dataset(path, values, [*remarks, *open_force_words(path.forces)])
 

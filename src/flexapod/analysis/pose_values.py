@@ -10,7 +10,7 @@ from flexapod import kinematics, model
 from flexapod.analysis.checks.estimates import buckling_loads
 from flexapod.analysis.checks.reachability import REACHED, Codes, leg_limits, rigid_codes, slider_limits
 from flexapod.analysis.error_budget.rows import budget_rows_by_pose, names_of_rows
-from flexapod.analysis.error_budget.rules import Budget
+from flexapod.analysis.error_budget.rules import Budget, error_terms
 from flexapod.analysis.modes_at_poses import rest_codes
 from flexapod.analysis.results.bodies import clearance, joint_angle_limits, joint_angles
 from flexapod.common.arrays import Array, Mask
@@ -33,13 +33,16 @@ class PoseRequest:
 
     ``direction`` (3,) unit vector of the stiffness; ``acceleration`` (3,) [m/s^2], None:
     1 m/s^2 in whichever direction is worst; ``frequencies``: how many of the lowest;
-    ``budget``: whether error budgets are.
+    ``budget``: whether error budgets are; ``terms``: their terms by part as of `rules.error_terms`, and what the
+    systematic ones add up to; ``compliance``: that of the tool along and about world axes.
     """
 
     direction: Array
     acceleration: Array | None
     frequencies: int
     budget: bool = False
+    terms: bool = False
+    compliance: bool = False
 
 
 def batch_values(
@@ -65,8 +68,8 @@ def batch_values(
     }
     if modes.growth is not None:
         values["loop_growth"] = modes.growth
-    if wanted.budget:
-        values |= _budgets(study, locked)
+    if wanted.budget or wanted.terms:
+        values |= _budgets(study, locked, wanted)
     if within.size:
         code[within] = rest_codes(locked, modes)
     at, result = within[locked.at] if within.size else within, {}
@@ -111,7 +114,8 @@ def _elastic(locked: LockedPoses, wanted: PoseRequest) -> Values:
     """Stiffness, deviations and forces about the equilibria that were found, (p, ...)."""
     at, states = locked.rigid.resting(locked.at), locked.equilibria.states[locked.at]
     robot = at.robot
-    give = compliance(stiffness_of(robot, locked).total)[:, :3, :3]
+    whole = compliance(stiffness_of(robot, locked).total)
+    give = whole[:, :3, :3]
     principal, axes = np.linalg.eigh(give)
     softest = axes[:, :, -1]
     sign = np.sign(
@@ -123,7 +127,8 @@ def _elastic(locked: LockedPoses, wanted: PoseRequest) -> Values:
     u = wanted.direction
     with np.errstate(divide="ignore"):  # out of its plane a planar robot does not give way
         stiffness = 1 / np.einsum("i,pij,j->p", u, give, u)  # (T7.18)
-    return {
+    more = {"compliance": np.einsum("pii->pi", whole)} if wanted.compliance else {}
+    return more | {
         "stiffness": stiffness,
         "stiffness_least": 1 / principal[:, -1],
         "softest_direction": softest * sign,
@@ -136,11 +141,18 @@ def _elastic(locked: LockedPoses, wanted: PoseRequest) -> Values:
     }
 
 
-def _budgets(study: model.Study, locked: LockedPoses) -> Values:
+def _budgets(study: model.Study, locked: LockedPoses, wanted: PoseRequest) -> Values:
     """Worst case of the tool's place, and what each part does to it, (p, ...) [m], Eqs. (T17.6) and (T17.8)."""
-    found = [Budget(rows=table, whole={"systematic": whole}) for table, whole, _ in budget_rows_by_pose(study, locked)]
+    tables = [(table, whole) for table, whole, _ in budget_rows_by_pose(study, locked)]
     parts = names_of_rows(study)
-    return {
+    terms: Values = {}
+    if wanted.terms:
+        terms["error_terms"] = np.array([error_terms(table, parts) for table, _ in tables])
+        terms["systematic"] = np.array([whole for _, whole in tables])
+    if not wanted.budget:
+        return terms
+    found = [Budget(rows=table, whole={"systematic": whole}) for table, whole in tables]
+    return terms | {
         "error_worst": np.array([float(np.linalg.norm(one.worst[:3])) for one in found]),
         "error_by_part": np.array([[one.sizes.get(part, np.nan) for part in parts] for one in found]).reshape(
             -1, len(parts)

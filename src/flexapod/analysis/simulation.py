@@ -62,7 +62,9 @@ class RobotSimulation:
     def values(self) -> LazyArrays:
         """The variables of the Dataset as plain arrays, each computed on request."""
         path = self.recorded_path
-        found = robot_results(self.march.system, path, self.record) | rigid_force_results(path)
+        found = robot_results(self.march.system, path, self.record) | rigid_force_results(
+            path, self.march.system.kernel
+        )
         return LazyArrays(found | control_results(self.sampled, self.record))
 
     @cached_property
@@ -122,7 +124,7 @@ def simulate_path(
     check_progress(progress)
     study, sampled = path.study, sampled or sampled_controller(path.study)
     remarks = [*check_path(study, path), *loop_remarks(path, elastic), *control_remarks(sampled)]
-    march = prepare(study, sampled=sampled, elastic=elastic)
+    march = prepare(study, sampled=sampled, elastic=elastic, path=path.series)
     record = collect(march.chunks, damped_angles(march.system), study.duration, progress)
     return RobotSimulation(
         study=study, path=path, elastic=elastic, march=march, record=record, remarks=remarks, sampled=sampled

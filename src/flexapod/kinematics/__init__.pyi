@@ -52,6 +52,7 @@ from flexapod.kinematics.motions import independent_axes as independent_axes
 from flexapod.kinematics.motions import mobility_words as mobility_words
 from flexapod.kinematics.motions import motion_names as motion_names
 from flexapod.kinematics.motions import refuse_loose as refuse_loose
+from flexapod.kinematics.path_series import PathSeries as PathSeries
 from flexapod.kinematics.rigid_poses import RigidPoses as RigidPoses
 from flexapod.kinematics.rigid_poses import determinants as determinants
 from flexapod.kinematics.rigid_poses import drive_jacobian as drive_jacobian

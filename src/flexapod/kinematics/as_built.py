@@ -112,6 +112,8 @@ def _heat(robot: Robot) -> list[BuiltPart]:
         for i, leg in enumerate(robot.legs):
             if acts[i]:
                 fixed[i, L], share[i, L] = _grows(leg, part)
+        grown = expansion(robot, heat, part) * (heat.temperatures(part, n) - heat.reference)  # (T16.3)
+        varies = any(name.partition(" ")[0] == part for name in heat.columns)
         found.append(
             BuiltPart(
                 name=f"heat_{part}",
@@ -119,8 +121,8 @@ def _heat(robot: Robot) -> list[BuiltPart]:
                 platform=robot.platform_joints if part == "platform" else nothing,
                 fixed=fixed,
                 share=share,
-                values=expansion(robot, heat, part) * (heat.temperatures(part, n) - heat.reference),  # (T16.3)
-                time=heat.time if any(name.partition(" ")[0] == part for name in heat.columns) else None,
+                values=grown if varies else grown[:1],
+                time=heat.time if varies else None,
             )
         )
     return found

@@ -173,6 +173,19 @@ def solve_closures(limbs: Limbs, task: Task, q: Array, goal: Array | Poses, star
     return Closed(**dict(zip(("q", "x", "gap"), found, strict=True)))
 
 
+def close_nearby(limbs: Limbs, task: Task, near: Array, goal: Poses) -> Closed:
+    """Solution as of `solve_closures` by Newton's method, from coordinates `near` (T, n, 8) that are next to it."""
+    parts = []
+    for where in blocks(len(near)):
+        at = goal.part(where)
+        q, x, gap = _newton(limbs, task, near[where], np.zeros((len(at), 6)), at, CLOSE)
+        if not gap.max(initial=0.0) < TAKEN * limbs.L_c:
+            return solve_closures(limbs, task, near, goal)
+        parts.append((q, x, gap))
+    q, x, gap = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return Closed(q=q, x=x, gap=gap)
+
+
 def _close(limbs: Limbs, task: Task, q: Array, goal: Array | Poses, start: tuple[Array, Array]) -> Closed:
     """Solution at the instants of a block: from `start`, or from between neighbours where these lie close together."""
     if len(q) < 4 * APART:
@@ -281,6 +294,12 @@ class ClosureMotion(NamedTuple):
     q_dot: Array
     q_ddot: Array
     platform: Law
+
+    def part(self, where: slice) -> ClosureMotion:
+        """Part of the instants."""
+        return ClosureMotion(
+            self.q[where], self.q_dot[where], self.q_ddot[where], Law(*(part[where] for part in self.platform))
+        )
 
 
 def solve_rates(limbs: Limbs, task: Task, found: Closed, given: Law | Poses) -> ClosureMotion:

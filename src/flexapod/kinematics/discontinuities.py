@@ -56,7 +56,7 @@ def robot_breaks(study: Study, far: float | None = None) -> Breaks:
     nearer than an output step.
     """
     far = study.simulation.stored_step if far is None else far
-    found = _motion(study.motion) | _load(study.load.wrench, far)
+    found = motion_breaks(study.motion) | _load(study.load.wrench, far)
     for drive in {id(leg.drive): leg.drive for leg in study.robot.legs}.values():
         values = drive.force if isinstance(drive, ForceDrive) else getattr(drive, "torque", None)
         if values is not None and drive.time is not None:  # type: ignore[union-attr]
@@ -79,7 +79,7 @@ def actuator_breaks(study: ActuatorStudy, far: float | None = None) -> Breaks:
     return found
 
 
-def _motion(motion: Motion) -> Breaks:
+def motion_breaks(motion: Motion) -> Breaks:
     """Jumps in rate or acceleration of a platform's path."""
     if isinstance(motion, AxisMotion | CombinedMotion):
         return _profile(motion.profile, 0.0, motion.duration)

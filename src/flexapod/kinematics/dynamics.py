@@ -19,6 +19,7 @@ import numpy as np
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError
 from flexapod.kinematics.inverse import JointTurn, LegState, leg_rotations
+from flexapod.kinematics.jacobian import sharing_inverse
 from flexapod.kinematics.rotations import Vector, blocks, cross, rotate_vector, time_first, time_last
 from flexapod.kinematics.trajectory import Poses
 
@@ -80,17 +81,24 @@ class PayloadBody:
     tool: Array
 
 
+class LoadSharing(NamedTuple):
+    """Load sharing of n legs UPS that are not six driven ones: which of them carry, and how stiff they are."""
+
+    stiffness: Array  # (n,), axial [N/m]
+    pushed: Array  # (n,), forces of drives [N]; NaN of those that hold the robot, at least six
+
+
 @dataclass(frozen=True, kw_only=True)
 class RigidForces:
     """Forces of the rigid robot along a path of T poses, world axes.
 
     Attributes
     ----------
-    actuator_force : ndarray, shape (T, 6)
+    actuator_force : ndarray, shape (T, n)
         Of the drive on the piston along the leg [N]; positive pushes out.
-    joint_force : ndarray, shape (T, 6, 3)
+    joint_force : ndarray, shape (T, n, 3)
         Of the legs on the platform [N].
-    base_force, base_moment : ndarray, shape (T, 6, 3)
+    base_force, base_moment : ndarray, shape (T, n, 3)
         Of the base on the legs, at the universal joints [N], [N m].
     """
 
@@ -185,18 +193,30 @@ def _payload_balance(payload: PayloadBody, gravity: Array, poses: Poses, wrench:
     return np.concatenate([force, rotate_vector(turn, spin) - wrench[3:] - cross(lever, wrench[:3])])
 
 
-def _along_the_legs(balance: Array, arms: Vector, axes: Vector, sides: Vector) -> Array:
-    """Force of the legs on the platform along them [N], (n, T), from the payload's balances, Eqs. (T2.32)-(T2.33)."""
+def _along_the_legs(
+    balance: Array, arms: Vector, axes: Vector, sides: Vector, own: Array, sharing: LoadSharing | None
+) -> Array:
+    """Force of the legs on the platform along them [N], (n, T), from the payload's balances, Eqs. (T2.32)-(T2.33).
+
+    ``own`` (n, T): of the pistons, what a drive's force is reduced by on the way to the platform.
+    """
     lines = np.array([*axes, *cross(arms, axes)])  # (6, n, T)
     rest = balance - np.array([x.sum(axis=0) for x in (*sides, *cross(arms, sides))])
     try:
-        found = np.linalg.solve(np.moveaxis(lines, -1, 0), rest.T[..., None])[..., 0]
+        if sharing is None:
+            found = np.linalg.solve(np.moveaxis(lines, -1, 0), rest.T[..., None])[..., 0]
+            return np.asarray(found.T, dtype=np.float64)
+        holds = np.isnan(sharing.pushed)
+        along = sharing.pushed[:, None] - own
+        rest = rest - np.einsum("int,nt->it", lines[:, ~holds], along[~holds])
+        shares = sharing_inverse(np.moveaxis(lines[:, holds], -1, 0).swapaxes(1, 2), sharing.stiffness[holds])
+        along[holds] = (shares @ rest.T[..., None])[..., 0].T  # (T7.30)
     except np.linalg.LinAlgError:
         raise ComputationError(
             "The legs cannot carry the payload: a pose of the path is singular",
             next_step="Check the path for singular poses and change the layout or the motion",
         ) from None
-    return np.asarray(found.T, dtype=np.float64)
+    return along
 
 
 def _inertial_forces(bodies: LegBodies, motion: LegMotion, gravity: Vector) -> list[Array]:
@@ -216,14 +236,15 @@ def inverse_dynamics(
     poses: Poses,
     legs: LegState,
     wrench: Array | None = None,
+    sharing: LoadSharing | None = None,
 ) -> RigidForces:
     """Drive forces and joint reactions that move the rigid robot along a path, Eqs. (T2.26)-(T2.35).
 
     Parameters
     ----------
-    frames : ndarray, shape (6, 3, 3)
+    frames : ndarray, shape (n, 3, 3)
         Home frames of the legs, from `kinematics.leg_frames`.
-    platform_joints : ndarray, shape (6, 3)
+    platform_joints : ndarray, shape (n, 3)
         Platform axes [m].
     bodies, payload : LegBodies, PayloadBody
     gravity : ndarray, shape (3,)
@@ -234,6 +255,8 @@ def inverse_dynamics(
         Of the same poses.
     wrench : ndarray, shape (T, 6) or (6,), optional
         External force and moment at the tool, world axes [N], [N m].
+    sharing : LoadSharing, optional
+        Of legs that are not six driven ones.
 
     Returns
     -------
@@ -246,22 +269,23 @@ def inverse_dynamics(
     """
     count = len(poses)
     external = np.broadcast_to(np.zeros(6) if wrench is None else np.asarray(wrench, dtype=float), (count, 6))
-    shapes = {"actuator_force": (count, 6)}
-    forces = {field.name: np.empty(shapes.get(field.name, (count, 6, 3))) for field in fields(RigidForces)}
+    shapes, n = {"actuator_force": (count, len(frames))}, len(frames)
+    forces = {field.name: np.empty(shapes.get(field.name, (count, n, 3))) for field in fields(RigidForces)}
     robot = frames, platform_joints - payload.com, bodies.upright
     for where in blocks(count):
         part = poses.part(where)
         balance = _payload_balance(payload, gravity, part, time_last(external[where]))
-        found = _forces(*robot, gravity, part, LegArrays.from_state(legs, where), balance)
+        found = _forces(*robot, gravity, part, LegArrays.from_state(legs, where), balance, sharing)
         for name, values in zip(forces, found, strict=True):
             forces[name][where] = values
     return RigidForces(**forces)
 
 
 def _forces(
-    frames: Array, joints: Array, bodies: LegBodies, gravity: Array, poses: Poses, legs: LegArrays, balance: Array
-) -> tuple[Array, Array, Array, Array]:
-    """Entries of `RigidForces` for one block; `joints` (6, 3) from the payload's CoM, `balance` (6, T)."""
+    frames: Array, joints: Array, bodies: LegBodies, gravity: Array, poses: Poses, legs: LegArrays, balance: Array,
+    sharing: LoadSharing | None,
+) -> tuple[Array, Array, Array, Array]:  # fmt: skip
+    """Entries of `RigidForces` for one block; `joints` (n, 3) from the payload's CoM, `balance` (6, T)."""
     motion, home = leg_motion(bodies, legs), np.moveaxis(frames, 0, -1)[..., None]  # (3, 3, n, 1)
 
     def in_world(vector: Vector) -> tuple[Array, Array, Array]:
@@ -272,7 +296,8 @@ def _forces(
     sides = [-x for x in in_world(across)]
     none = np.zeros_like(legs.length)
     axes = in_world((none, none, none + 1.0))
-    along = _along_the_legs(balance, joints @ time_last(poses.rotation), axes, sides)
+    own = none if sharing is None else axial_drive_force(bodies, motion, leg_gravity, none)
+    along = _along_the_legs(balance, joints @ time_last(poses.rotation), axes, sides, own, sharing)
     joint_force = [side + along * axis for side, axis in zip(sides, axes, strict=True)]
     inertial = in_world(_inertial_forces(bodies, motion, leg_gravity))
     return (

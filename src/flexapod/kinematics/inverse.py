@@ -257,6 +257,18 @@ def state_of(legs: LegMap, poses: Poses) -> LegState:
     return state
 
 
+def lengths_of(legs: LegMap, poses: Poses) -> Array:
+    """Lengths of the legs at T poses, (T, n) [m]: those of `state_of`, to the bit."""
+    found = np.empty((len(poses), legs.number))
+    for where in blocks(len(poses)):
+        x = np.concatenate([time_last(poses.rotation[where]).reshape(9, -1), poses.position[where].T])
+        s = (legs.reach @ x).reshape(3, legs.number, -1) + legs.offset
+        across = np.sqrt(s[1] ** 2 + s[2] ** 2)
+        found[where] = np.sqrt(s[0] ** 2 + across**2).T
+    _refuse_no_length(found)
+    return found
+
+
 def directions_of(legs: LegMap, poses: Poses) -> tuple[Array, Array, Array]:
     """Length [m], alpha and beta [rad] of the legs at T poses, (T, n) each, however far their joints fold."""
     x = np.concatenate([time_last(poses.rotation).reshape(9, -1), poses.position.T])

@@ -183,6 +183,37 @@ def scaled_path(base_joints: ArrayLike, platform_joints: ArrayLike, poses: Poses
     return dimensionless_jacobian(raw, characteristic_length(joints))
 
 
+def sharing_inverse(lines: Array, leg_stiffness: Array) -> Array:
+    """Axial forces of the legs for unit wrenches, of those that balance the ones of least strain energy, Eq. (T7.30).
+
+    Its transpose is the displacement by unit errors of lengths that springs of these stiffnesses share.
+
+    Parameters
+    ----------
+    lines : ndarray, shape (T, n, 6)
+        Length Jacobians at a point about which moments are taken, n at least 6.
+    leg_stiffness : ndarray, shape (n,)
+        Axial stiffness of the legs, in any unit.
+
+    Returns
+    -------
+    ndarray, shape (T, n, 6)
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        A pose is exactly singular.
+    """
+    if lines.shape[1] == lines.shape[2]:
+        return np.asarray(np.linalg.inv(lines.swapaxes(1, 2)), dtype=np.float64)
+    per_length = np.sqrt(np.mean(lines[..., :3] ** 2) / np.mean(lines[..., 3:] ** 2))
+    unit = np.array([1.0, 1.0, 1.0, per_length, per_length, per_length])
+    scaled, weight = lines * unit, (leg_stiffness / leg_stiffness.max())[:, None]
+    back = (weight * scaled) @ np.linalg.inv(scaled.swapaxes(1, 2) @ (weight * scaled))
+    back = back @ (2 * np.eye(6) - scaled.swapaxes(1, 2) @ back)  # a step of refinement: rounding as of one solution
+    return np.asarray(back * unit, dtype=np.float64)
+
+
 def stiffness(jacobian: Array, leg_stiffness: ArrayLike) -> Array:
     """Stiffness of the unloaded platform on axial springs, ``J^T diag(k) J``, Eq. (T2.25).
 

@@ -31,8 +31,14 @@ def legs_at(limbs: Limbs, path: Poses) -> Closed:
     return found
 
 
-def leg_state(limbs: Limbs, path: Poses, found: Closed) -> LegState:
-    """Legs at T poses with two derivatives; `found`: as of `legs_at` there.
+def moved_legs(limbs: Limbs, path: Poses, found: Closed) -> ClosureMotion:
+    """Coordinates of the legs at T poses with two derivatives; `found`: as of `legs_at` there."""
+    task = Task(limbs.unknown, np.zeros(6, dtype=bool), np.zeros(3))
+    return solve_rates(limbs, task, found, path)
+
+
+def leg_state(limbs: Limbs, path: Poses, found: Closed, moved: ClosureMotion | None = None) -> LegState:
+    """Legs at T poses with two derivatives; `found`: as of `legs_at` there; `moved`: of them, where it is known.
 
     Raises
     ------
@@ -41,8 +47,7 @@ def leg_state(limbs: Limbs, path: Poses, found: Closed) -> LegState:
     """
     refuse_lost(limbs, found)
     _refuse_folded(limbs, found.q)
-    task = Task(limbs.unknown, np.zeros(6, dtype=bool), np.zeros(3))
-    return _as_state(limbs, solve_rates(limbs, task, found, path))
+    return _as_state(limbs, moved_legs(limbs, path, found) if moved is None else moved)
 
 
 def follow(limbs: Limbs, unknown: Mask, law: Law, pivot: Array, t: Array | None = None) -> Poses:
@@ -54,12 +59,21 @@ def follow(limbs: Limbs, unknown: Mask, law: Law, pivot: Array, t: Array | None 
         The mechanism cannot take a pose with these coordinates at an instant `t` (T,); without instants such poses
         are NaN.
     """
+    return poses_of(limbs, follow_with_legs(limbs, unknown, law, pivot, t), pivot)
+
+
+def follow_with_legs(limbs: Limbs, unknown: Mask, law: Law, pivot: Array, t: Array | None = None) -> ClosureMotion:
+    """Coordinates of the legs and of the platform of `follow`, with two derivatives."""
     task = Task(limbs.unknown, unknown, pivot)
     given = Law(*(np.where(unknown, 0.0, part) for part in law))
     found = solve_closures(limbs, task, _tiled(limbs, len(law.position)), given.position)
     if t is not None:
         refuse_lost(limbs, found, t)
-    moved = solve_rates(limbs, task, found, Law(found.x, *given[1:]))
+    return solve_rates(limbs, task, found, Law(found.x, *given[1:]))
+
+
+def poses_of(limbs: Limbs, moved: ClosureMotion, pivot: Array) -> Poses:
+    """Poses of a platform whose coordinates are about a pivot."""
     return poses_from_coordinates(Poses.at_rest(limbs.position, limbs.rotation), moved.platform, pivot)
 
 
@@ -164,11 +178,9 @@ def sides(limbs: Limbs, q: Array) -> Array:
     if limbs.carriage == "crank":
         reach = np.linalg.norm(np.cross(limbs.carriage_axis, limbs.carriage_arm), axis=1)
 
-    def cosine(q: Array) -> Array:
-        columns = screws(limbs, q).columns[..., :3, :]
-        return np.sum(columns[..., CHI] * columns[..., L], axis=-1) / np.where(reach > 0, reach, 1.0)
-
-    return cosine(q) * np.sign(cosine(limbs.home[None]))
+    columns = screws(limbs, np.concatenate([q, limbs.home[None]])).columns[..., :3, :]
+    cosine = np.sum(columns[..., CHI] * columns[..., L], axis=-1) / np.where(reach > 0, reach, 1.0)
+    return cosine[:-1] * np.sign(cosine[-1])
 
 
 def _tiled(limbs: Limbs, count: int) -> Array:

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod.common.arrays import Array, Mask
 from flexapod.kinematics import dynamics, inverse, jacobian, mechanism, workspace
-from flexapod.kinematics.closures import Closed
-from flexapod.kinematics.dynamics import RigidForces
+from flexapod.kinematics.closures import Closed, ClosureMotion
+from flexapod.kinematics.dynamics import LoadSharing, RigidForces
 from flexapod.kinematics.inverse import LegState
 from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN
 from flexapod.kinematics.mechanism import Reach
@@ -47,17 +47,27 @@ class RigidPoses:
         Of the platform frame.
     legs : LegState, optional
         There, where they are known.
+    moved : ClosureMotion, optional
+        Coordinates of the legs there with two derivatives, where they are known.
     """
 
-    def __init__(self, robot: Robot, poses: Poses, legs: LegState | None = None) -> None:
+    moved: ClosureMotion | None = None
+
+    def __init__(
+        self, robot: Robot, poses: Poses, legs: LegState | None = None, moved: ClosureMotion | None = None
+    ) -> None:
         self.robot = robot
         self.poses = poses
         if legs is not None:
             self.legs = legs
+        self.moved = moved
 
     @cached_property
     def closed_legs(self) -> Closed:
         """Coordinates of the legs by their closures, NaN where they do not reach."""
+        moved = self.moved
+        if moved is not None:
+            return Closed(q=moved.q, x=moved.platform.position, gap=np.zeros(moved.q.shape[:2]))
         return mechanism.legs_at(rigid_limbs(self.robot), self.poses)
 
     @cached_property
@@ -82,7 +92,7 @@ class RigidPoses:
         legs = rigid_limbs(self.robot)
         if legs.plain:
             return inverse.state_of(leg_map(self.robot), self.poses)
-        return mechanism.leg_state(legs, self.poses, self.closed_legs)
+        return mechanism.leg_state(legs, self.poses, self.closed_legs, self.moved)
 
     @cached_property
     def axes(self) -> Array:
@@ -110,33 +120,37 @@ class RigidPoses:
         return RigidPoses(self.robot, Poses.at_rest(self.poses.position[which], self.poses.rotation[which]))
 
     @cached_property
-    def _held(self) -> Array:
+    def constraints(self) -> Array:
         """Constraints of the locked legs on the platform, (T, m, d) with m at least d, Eqs. (T2.23), (T14.19)."""
         robot, path, legs = self.robot, self.poses, rigid_limbs(self.robot)
         held = legs.hub_held
-        if legs.plain and not held.any() and len(legs) == 6:
-            return jacobian.scaled_path(robot.base_joints, robot.platform_joints, path)
         if held.all():
             return np.ones((len(path), 1, 1))
-        rows = constraint_wrenches(legs, self.closed_legs.q, path, legs.platform.mean(axis=0))
-        found = jacobian.dimensionless_jacobian(rows, legs.L_c)[..., ~held]
+        if legs.plain:
+            found = jacobian.scaled_path(robot.base_joints, robot.platform_joints, path)
+            if len(legs) == 6 and not held.any():
+                return found
+            found = found[:, legs.state[:, COORDINATES.index("l")] == DRIVEN][..., ~held]
+        else:
+            rows = constraint_wrenches(legs, self.closed_legs.q, path, legs.platform.mean(axis=0))
+            found = jacobian.dimensionless_jacobian(rows, legs.L_c)[..., ~held]
         short = max(found.shape[2] - found.shape[1], 0)
         return np.concatenate([found, np.zeros((len(path), short, found.shape[2]))], axis=1)
 
     @cached_property
     def singularity(self) -> jacobian.SingularityPath:
         """Singular values, condition and determinant along the poses; see `jacobian.singularity_measures`."""
-        return jacobian.singularity_measures(self._held)
+        return jacobian.singularity_measures(self.constraints)
 
     @cached_property
     def nearest(self) -> jacobian.NearestSingularity:
         """The pose that is nearest to a singularity; see `jacobian.most_singular_pose`."""
-        return jacobian.most_singular_pose(self._held)
+        return jacobian.most_singular_pose(self.constraints)
 
     @cached_property
     def determinants(self) -> Array:
         """Determinants of the constraints of six locked legs on the six motions of the platform, (T,)."""
-        return np.asarray(np.linalg.det(self._held), dtype=np.float64)
+        return np.asarray(np.linalg.det(self.constraints), dtype=np.float64)
 
     @property
     def drive_positions(self) -> Array:
@@ -147,8 +161,9 @@ class RigidPoses:
         """Rates of the m driven coordinates for twists of a platform point, (T, m, 6); `mobility.drive_jacobian`."""
         robot, path, legs = self.robot, self.poses, rigid_limbs(self.robot)
         at = np.asarray(point, dtype=float)
-        if legs.plain and (legs.state[:, COORDINATES.index("l")] == DRIVEN).all():
-            return jacobian.length_jacobian(robot.base_joints, robot.platform_joints, path.position, path.rotation, at)
+        if legs.plain:
+            rows = jacobian.length_jacobian(robot.base_joints, robot.platform_joints, path.position, path.rotation, at)
+            return rows[:, legs.state[:, COORDINATES.index("l")] == DRIVEN]
         return rates_of_drives(legs, self.closed_legs.q, path, at)
 
     def refuse_folded(self) -> None:
@@ -156,8 +171,11 @@ class RigidPoses:
         if not rigid_limbs(self.robot).plain or (self.reach.angles["universal joint"] > inverse.BETA_LIMIT).any():
             _ = self.legs
 
-    def inverse_dynamics(self, wrench: ArrayLike | None = None) -> RigidForces:
-        """Drive forces and joint reactions of legs UPS; `wrench` (T, 6) or (6,) at the tool, world axes."""
+    def inverse_dynamics(self, wrench: ArrayLike | None = None, sharing: LoadSharing | None = None) -> RigidForces:
+        """Drive forces and joint reactions of legs UPS; `wrench` (T, 6) or (6,) at the tool, world axes.
+
+        ``sharing``: of legs that are not six driven ones.
+        """
         robot = self.robot
         return dynamics.inverse_dynamics(
             home_frames(robot),
@@ -168,6 +186,7 @@ class RigidPoses:
             self.poses,
             self.legs,
             None if wrench is None else np.asarray(wrench, dtype=float),
+            sharing,
         )
 
     def energies(self) -> tuple[Array, Array]:

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import InputError
 from flexapod.kinematics import forward, inverse, mechanism, motions, trajectory, workspace
+from flexapod.kinematics.closures import ClosureMotion
 from flexapod.kinematics.dynamics import LegBodies, PayloadBody
 from flexapod.kinematics.laws import Law
 from flexapod.kinematics.leg_geometry import Limbs, limbs
@@ -23,21 +24,38 @@ if TYPE_CHECKING:
 
 
 T = TypeVar("T")
+LATEST = 4  # robots that are known without a comparison
 
 
-def cache_per_robot(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
+def _latest_kept(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
     """Compute it once for each of the last 64 robots; the same robot again is not compared with its equals."""
     of_equals = cast("Callable[[Robot], T]", lru_cache(maxsize=64)(compute))
-    latest: tuple[Robot, T] | None = None
+    latest: dict[int, tuple[Robot, T]] = {}  # a robot and its ideal one are asked for in turns
 
     def look_up(robot: Robot) -> T:
-        nonlocal latest
-        known = latest
+        known = latest.get(id(robot))
         if known is None or known[0] is not robot:
-            known = latest = robot, of_equals(robot)
+            if len(latest) >= LATEST:
+                latest.clear()
+            known = latest[id(robot)] = robot, of_equals(robot)
         return known[1]
 
     return wraps(compute)(look_up)
+
+
+@_latest_kept
+def _first_equal(robot: Robot) -> Robot:
+    """The first one of robots that are equal."""
+    return robot
+
+
+def cache_per_robot(compute: Callable[[Robot], T]) -> Callable[[Robot], T]:
+    """Compute it once for each of the last 64 robots.
+
+    A robot is compared with its equals once for all that is computed of it, not for each.
+    """
+    of_first = _latest_kept(compute)
+    return wraps(compute)(lambda robot: of_first(_first_equal(robot)))
 
 
 @cache_per_robot
@@ -124,6 +142,25 @@ def poses_of_law(robot: Robot, motion: Motion, law: Law, t: Array) -> Poses:
     return trajectory.poses_from_coordinates(home_pose(robot), law, motion.pivot)
 
 
+def poses_with_legs(robot: Robot, motion: Motion, t: Array) -> tuple[Poses, ClosureMotion]:
+    """Poses of a motion at instants `t` (T,) [s] and the legs there by their closures; NaN where legs do not reach.
+
+    Raises
+    ------
+    InputError
+        The robot does not have a motion that is asked for, or the motion leads beyond all robots.
+    """
+    legs = rigid_limbs(robot)
+    unknown = ~(commanded_axes(robot, motion) | legs.hub_held)
+    if not legs.guides or not unknown.any():
+        path = poses(robot, motion, t)
+        return path, mechanism.moved_legs(legs, path, mechanism.legs_at(legs, path))
+    law = trajectory.coordinates(motion, t)
+    mechanism.refuse_far(legs, law, motion.pivot, t)
+    moved = mechanism.follow_with_legs(legs, unknown, law, motion.pivot)
+    return mechanism.poses_of(legs, moved, motion.pivot), moved
+
+
 def commanded_axes(robot: Robot, motion: Motion) -> Mask:
     """Coordinates of the platform (6,) that a motion commands; the others follow, or stay.
 
@@ -164,13 +201,16 @@ def places(robot: Robot, motion: Motion, t: ArrayLike) -> tuple[Array, Array]:
     )
 
 
-def poses_from_home(robot: Robot, values: Array, named: Mask | None = None) -> Poses:
-    """Poses at rest from surge, sway, heave [m], roll, pitch, yaw [rad] from home, (P, 6).
+def poses_from_home(robot: Robot, values: Array, named: Mask | None = None, about: Array | None = None) -> Poses:
+    """Poses at rest from surge, sway, heave [m] of a point, roll, pitch, yaw [rad] about it, from home, (P, 6).
+
+    The point `about` (3,) is one of the platform frame, by default its origin.
 
     Where legs guide the platform the values of those that are `named` (6,), by default those that are not all zero,
     count, and the others follow; a pose that the legs cannot take is NaN.
     """
-    legs, still, pivot = rigid_limbs(robot), np.zeros_like(values), np.zeros(3)
+    legs, still = rigid_limbs(robot), np.zeros_like(values)
+    pivot = np.zeros(3) if about is None else about
     law = Law(values, still, still)
     if not legs.guides:
         return Poses.at_rest(*trajectory.places(home_pose(robot), law, pivot))

@@ -95,6 +95,10 @@ from flexapod.model.study.disturbance import Floor as Floor
 from flexapod.model.study.disturbance import Spectrum as Spectrum
 from flexapod.model.study.home import Home as Home
 from flexapod.model.study.payload import Payload as Payload
+from flexapod.model.study.requirement import LeastStiffness as LeastStiffness
+from flexapod.model.study.requirement import Requirement as Requirement
+from flexapod.model.study.requirement import RotationRanges as RotationRanges
+from flexapod.model.study.requirement import TravelRanges as TravelRanges
 from flexapod.model.study.robot import Robot as Robot
 from flexapod.model.study.simulation import DEFAULT_TOLERANCE as DEFAULT_TOLERANCE
 from flexapod.model.study.simulation import FIDELITIES as FIDELITIES

@@ -32,18 +32,23 @@ def base_on_mount(system: System, robot: Robot, q: Array) -> kinematics.Placed:
     return kinematics.placed(shared_by_legs(system, q, "f"), at)
 
 
-def platform_frame(robot: Robot, pose: Array) -> tuple[Array, Array]:
-    """Origin (..., 3) and axes (..., 3, 3) of the platform frame of payload poses (..., 7)."""
-    R = matrix(pose[..., 3:])
+def platform_frame(robot: Robot, pose: Array, turn: Array | None = None) -> tuple[Array, Array]:
+    """Origin (..., 3) and axes (..., 3, 3) of the platform frame of poses (..., 7), of attitudes `turn` if known."""
+    R = matrix(pose[..., 3:]) if turn is None else turn
     return pose[..., :3] - R @ robot.com, R
 
 
-def plate_frames(system: System, robot: Robot, q: Array, pose: Array) -> list[tuple[str, Array, Array]]:
+def plate_frames(
+    system: System, robot: Robot, q: Array, pose: Array, turn: Array | None = None
+) -> list[tuple[str, Array, Array]]:
     """Platform frame, origin (..., 3) and axes (..., 3, 3), as ever more of the moving frames are taken away.
 
-    By cause: seen from the floor, where it is below the mount of the platform, as seen from the base plate.
+    By cause: seen from the floor, where it is below the mount of the platform, as seen from the base plate. `turn`:
+    attitudes (..., 3, 3) of the payload, where they are known.
     """
-    place, R = floor(system, robot, q).seen(*platform_frame(robot, pose))
+    place, R = platform_frame(robot, pose, turn)
+    if system.kernel.shapes.has("g"):
+        place, R = floor(system, robot, q).seen(place, R)
     found = [("", place, R)]
     if robot.platform_mount is not None:
         below = kinematics.placed(shared_by_legs(system, q, "m"), robot.platform_mount.at)
@@ -55,11 +60,12 @@ def plate_frames(system: System, robot: Robot, q: Array, pose: Array) -> list[tu
     return found
 
 
-def rigid_pose(system: System, robot: Robot, q: Array, pose: Array) -> tuple[Array, Array]:
+def rigid_pose(system: System, robot: Robot, q: Array, pose: Array, turn: Array | None = None) -> tuple[Array, Array]:
     """Centre of mass (..., 3) and attitude (..., 3, 3) of a payload on rigid frames at rest between the same joints."""
+    turn = matrix(pose[..., 3:]) if turn is None else turn
     if not _moves(system):
-        return pose[..., :3], matrix(pose[..., 3:])
-    _, place, R = plate_frames(system, robot, q, pose)[-1]
+        return pose[..., :3], turn
+    _, place, R = plate_frames(system, robot, q, pose, turn)[-1]
     return place + R @ robot.com, R
 
 

@@ -62,8 +62,8 @@ class ExpectedVibration:
     left_out: float | None
 
 
-def expected_vibration(rest: RestingRobot) -> ExpectedVibration | None:
-    """Residual vibration after the motion, which ends at `rest`; None where it cannot vibrate."""
+def expected_vibration(rest: RestingRobot, band: float = BAND) -> ExpectedVibration | None:
+    """Residual vibration after the motion, which ends at `rest`, down to a band [m]; None where it cannot vibrate."""
     study, end = rest.study, rest.time
     robot = study.robot
     if robot.platform_fixed:
@@ -78,7 +78,7 @@ def expected_vibration(rest: RestingRobot) -> ExpectedVibration | None:
     count = int(np.clip(np.ceil(PER_PERIOD * wanted.max(initial=0.0) * end), FEWEST, MOST))
     t = np.linspace(0.0, end, count + 1)
     path = kinematics.poses(robot, study.motion, t)
-    found = residual_vibration(robot, modes, t, path, BAND, from_rest=study.initial.start != "moving")
+    found = residual_vibration(robot, modes, t, path, band, from_rest=study.initial.start != "moving")
     if not found.frequency.size:
         return None
     largest = first_largest(found.amplitude, EQUALS)
@@ -87,6 +87,6 @@ def expected_vibration(rest: RestingRobot) -> ExpectedVibration | None:
         frequency=float(found.frequency[largest]),
         share=float(found.amplitude[largest] / found.total) if found.total > 0 else 0.0,
         settling=found.time_to_band(),
-        band=BAND,
+        band=band,
         left_out=min(set(wanted.tolist()) - set(found.frequency.tolist()), default=None),
     )

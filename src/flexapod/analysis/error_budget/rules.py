@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -23,6 +23,28 @@ def combine_by_kind(kind: str, parts: Array) -> Array:
     if kind == "hysteretic":
         return np.add.reduce(np.abs(parts))
     return np.sqrt(np.add.reduce(parts * parts)) if kind == "random" else np.add.reduce(parts)
+
+
+#: Terms of which accuracies and repeatabilities are made: systematic errors that calibration takes out and others,
+#: standard deviations of what stands in a machine and of what differs between approaches, bounds of reversal.
+TERMS = ("calibratable", "systematic", "fixed", "cycles", "hysteretic")
+
+
+def error_terms(rows: Sequence[ErrorRow], parts: Sequence[str]) -> Array:
+    """Each of `TERMS` of each part, (terms, parts, 6): of rows of one part and term their sum by its rule."""
+    found = np.zeros((len(TERMS), len(parts), 6))
+    for row in rows:
+        term, part = TERMS.index(_term(row)), parts.index(row.part)
+        found[term, part] = combine_by_kind(
+            row.kind, np.array([found[term, part], combine_by_kind(row.kind, row.by_leg)])
+        )
+    return found
+
+
+def _term(row: ErrorRow) -> str:
+    if row.kind == "random":
+        return "fixed" if row.stands else "cycles"
+    return "calibratable" if row.nature == "calibratable" else row.kind
 
 
 @dataclass(frozen=True, kw_only=True)

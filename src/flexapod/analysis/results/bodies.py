@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache
 from itertools import combinations
 from typing import TYPE_CHECKING
@@ -16,10 +17,12 @@ from flexapod.common.arrays import Array
 from flexapod.kinematics.robot import cache_per_robot, rigid_limbs
 from flexapod.model import Robot
 from flexapod.solve.frames import rigid_pose, to_world
+from flexapod.solve.result_rows import DrawnLegs
 
 if TYPE_CHECKING:
     from flexapod.analysis.results.time_history import Record
     from flexapod.solve.batch import RestStates
+    from flexapod.solve.kernel import Kernel
     from flexapod.solve.system import System
 
 Pairs = list[tuple[int, int]]
@@ -47,8 +50,12 @@ def clearance(robot: Robot, tips: Array, axes: Array, length: Array) -> kinemati
 
 
 def _nearest(robot: Robot, pairs: Pairs, tips: Array, axes: Array, length: Array) -> kinematics.Nearest:
-    mouth = np.array([leg.cylinder.mouth for leg in robot.legs])
-    return kinematics.nearest_legs(tips - length[..., None] * axes, tips, mouth, _radii(robot), np.array(pairs))
+    feet = tips - length[..., None] * axes
+    return kinematics.nearest_legs(feet, tips, _mouths(robot), _radii(robot), np.array(pairs))
+
+
+def _mouths(robot: Robot) -> Array:
+    return np.array([leg.cylinder.mouth for leg in robot.legs])
 
 
 @cache_per_robot
@@ -75,46 +82,66 @@ def _radii(robot: Robot) -> Array:
     return np.stack([cylinders, pistons], axis=1)
 
 
-def body_results(
-    robot: Robot, drawn: Callable[[], tuple[Array, Array, Array]], length: Callable[[], Array]
-) -> dict[str, ArraySource]:
-    """Turns of joints and least distance of legs over time, computed on request.
+@dataclass(frozen=True, kw_only=True)
+class Drawn:
+    """Robot at T instants as it is drawn, in the axes of the base.
 
-    ``drawn``: the payload's centre (T, 3) and attitude (T, 3, 3), the legs' axes (T, n, 3); ``length``: theirs (T, n).
+    ``place`` (T, 3), ``rotation`` (T, 3, 3): of the payload's centre of mass; ``base`` (T or 1, n, 3): base joints.
     """
-    drawn, largest, pairs = cache(drawn), joint_angle_limits(robot), pairs_of_legs(robot)
 
-    @cache
-    def turn_angles() -> Array:
-        _, R, axes = drawn()
-        return joint_angles(robot, axes, R)
+    place: Array
+    rotation: Array
+    base: Array
 
-    @cache
-    def nearest() -> kinematics.Nearest:
-        place, R, axes = drawn()
-        tips = place[:, None] + (robot.platform_joints - robot.com) @ R.swapaxes(1, 2)
-        return _nearest(robot, pairs, tips, axes, length())
+    def tips(self, robot: Robot) -> Array:
+        """Platform joints, (T, n, 3)."""
+        return self.place[:, None] + (robot.platform_joints - robot.com) @ self.rotation.swapaxes(1, 2)
 
+    def axes(self, robot: Robot) -> Array:
+        """Unit vectors from base to platform joint, (T, n, 3)."""
+        vectors = self.tips(robot) - self.base
+        return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+
+def drawn_turns(robot: Robot, kernel: Kernel, at: Drawn) -> Array:
+    """Turns of joints since home, (T, n, 2) [rad], by compiled loops where the equations are compiled."""
+    if kernel.library is None:
+        return joint_angles(robot, at.axes(robot), at.rotation)
+    return DrawnLegs(kernel, robot, at.place, at.rotation, at.base).turns()
+
+
+def drawn_clearance(robot: Robot, kernel: Kernel, at: Drawn, length: Array) -> kinematics.Nearest:
+    """The two legs of `pairs_of_legs` nearest to each other, by compiled loops where the equations are compiled."""
+    pairs = pairs_of_legs(robot)
+    if kernel.library is None:
+        return _nearest(robot, pairs, at.tips(robot), at.axes(robot), length)
+    legs = DrawnLegs(kernel, robot, at.place, at.rotation, at.base)
+    return legs.nearest(np.array(pairs), _mouths(robot), _radii(robot), length)
+
+
+def body_results(
+    robot: Robot, kernel: Kernel, drawn: Callable[[], Drawn], length: Callable[[], Array]
+) -> dict[str, ArraySource]:
+    """Turns of joints and least distance of legs over time, computed on request; `length` of the legs, (T, n)."""
+    largest = joint_angle_limits(robot)
+    turn_angles = cache(lambda: drawn_turns(robot, kernel, drawn()))
+    nearest = cache(lambda: drawn_clearance(robot, kernel, drawn(), length()))
     found: dict[str, ArraySource] = {"joint_turn": turn_angles}
     if np.isfinite(largest).any():
         found["joint_margin"] = lambda: largest - turn_angles()
-    if pairs:
+    if pairs_of_legs(robot):
         found |= {"leg_clearance": lambda: nearest().gap, "nearest_legs": lambda: nearest().legs + 1}
     return found
 
 
 def flexible_axes(robot: Robot, system: System, record: Record | RestStates) -> Array:
     """Unit vectors from base to platform joint, world axes, (T, legs, 3)."""
-    return to_world(system, robot, record.q, axes_as_drawn(robot, system, record))
+    return to_world(system, robot, record.q, draw(robot, system, record).axes(robot))
 
 
-def axes_as_drawn(robot: Robot, system: System, record: Record | RestStates) -> Array:
-    """Unit vectors from base to platform joint in the axes of the base, (T, legs, 3)."""
-    (place, R), legs, shapes = (
-        rigid_pose(system, robot, record.q, record.pose),
-        rigid_limbs(robot),
-        system.kernel.shapes,
-    )
-    tips = place[:, None] + (robot.platform_joints - robot.com) @ R.swapaxes(1, 2)
-    vectors = tips - base_points(legs, record.q[..., shapes.index("chi")] if shapes.has("chi") else None)
-    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+def draw(robot: Robot, system: System, record: Record | RestStates) -> Drawn:
+    """The robot as it is drawn at the instants of a record."""
+    place, R = rigid_pose(system, robot, record.q, record.pose, getattr(record, "attitude", None))
+    shapes = system.kernel.shapes
+    base = base_points(rigid_limbs(robot), record.q[..., shapes.index("chi")] if shapes.has("chi") else None)
+    return Drawn(place=place, rotation=R, base=base if base.ndim == 3 else base[None])

@@ -14,6 +14,7 @@ from flexapod.analysis.results.elongations import (
     elongations,
     frame_names,
     gap_elongations,
+    has_gap,
     part_names,
     tip_displacements,
 )
@@ -22,7 +23,7 @@ from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.analysis.results.time_history import Record
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError
-from flexapod.kinematics.closures import Task, solve_closures
+from flexapod.kinematics.closures import Task, close_nearby
 from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN, FREE, Limbs
 from flexapod.kinematics.robot import cache_per_robot
 from flexapod.kinematics.screws import screws
@@ -31,7 +32,8 @@ from flexapod.mechanics.elements.springs import Place
 from flexapod.model import Robot
 from flexapod.solve.batch import RestStates
 from flexapod.solve.frames import plate_frames
-from flexapod.solve.statics.ideal_robot import is_hexapod, rigid_errors
+from flexapod.solve.statics import cause_rows
+from flexapod.solve.statics.ideal_robot import is_hexapod
 from flexapod.solve.statics.lost_motion import before_friction, places_with_friction
 from flexapod.solve.system import System
 
@@ -182,7 +184,7 @@ def _straight(robot: Robot, found: Limbs, platform: Sequence[Array], q: Array) -
         q = q.copy()
         q[..., L] = kinematics.leg_lengths(found.base, found.platform, at.position, at.rotation)
         return q
-    needed = solve_closures(found, Task(closure_coordinates(found), np.zeros(6, dtype=bool), np.zeros(3)), q, at).q
+    needed = close_nearby(found, Task(closure_coordinates(found), np.zeros(6, dtype=bool), np.zeros(3)), q, at).q
     needed[..., CHI] = q[..., CHI]
     return needed
 
@@ -195,6 +197,29 @@ def closure_coordinates(found: Limbs) -> NDArray[np.bool_]:
     spins = found.pose_closure & (found.state[:, COORDINATES.index("spin")] == FREE)
     taken[spins, COORDINATES.index("spin")], taken[spins, COORDINATES.index("gamma3")] = True, False
     return taken
+
+
+def shares_and_sums(system: System, path: RigidPath, record: Record) -> tuple[Array, Array]:
+    """Displacement of the payload by cause and leg in a simulation, (T, causes, legs, 3), and their sums (T, 3) [m].
+
+    By compiled loops of legs UPS, where the equations are compiled. World axes, also where the base moves.
+    """
+    robot, turn = path.robot, None if path.base is None else path.base.rotation
+    if not cause_rows.serves(system.kernel, robot):
+        shares = deviation_by_cause(path, errors_of(system, path, record))
+        shares = shares if turn is None else np.einsum("txy,tcly->tclx", turn, shares)
+        return shares, shares.reshape(len(shares), -1, 3).sum(axis=1)
+    moved = cause_rows.Moved(
+        time=record.time,
+        q=record.q,
+        pose=record.pose,
+        turn=record.attitude,
+        command=path.lengths,
+        played=gap_elongations(system, record.q) if has_gap(system) else None,
+        rubs=record.friction[..., -1] if "drive" in places_with_friction(robot) else None,
+    )
+    moves = None if is_hexapod(robot) else _by_error(path)[:, :, L]
+    return cause_rows.deviation_by_cause(system, path, moved, cause_names(robot), turn, moves)
 
 
 def deviation_by_cause(path: RigidPath, errors: Errors) -> Array:
@@ -218,7 +243,7 @@ def _by_error(path: RigidPath) -> Array:
     robot, poses = path.robot, path.poses
     found = kinematics.rigid_limbs(robot)
     if not is_hexapod(robot):
-        return rigid_errors(path)[..., :3]
+        return path.displacement_by_error[..., :3]
     moves = np.zeros((len(poses), *found.state.shape, 3))
     jacobian = path.drive_jacobian(robot.com)
     try:

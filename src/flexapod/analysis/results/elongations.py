@@ -12,9 +12,10 @@ from numpy.polynomial.polynomial import polyval
 
 from flexapod.analysis.results.element_outputs import columns_by_name
 from flexapod.common.arrays import Array
-from flexapod.mechanics.elements.element import SeriesSprings
+from flexapod.mechanics.elements.element import Physics, SeriesSprings
 from flexapod.mechanics.elements.flexure import Flexures
 from flexapod.mechanics.elements.kink import LEAST, kink
+from flexapod.mechanics.elements.slot import Slot
 from flexapod.mechanics.elements.springs import Place, Spring, servo_spring, springs_along
 from flexapod.mechanics.leg.layout import columns, leg_parameters
 from flexapod.model import Robot, ServoDrive
@@ -191,7 +192,7 @@ def elongations(
 def gap_elongations(system: System, q: Array) -> Array:
     """Elongation of legs by their play where it is a gap, at most half of it, (..., legs) [m], Eq. (T16.26)."""
     shapes = system.kernel.shapes
-    if not shapes.has("r"):
+    if not has_gap(system):
         return np.zeros(q.shape[:-1])
     p, now = columns_by_name(system.leg_p, leg_parameters(shapes)), columns_by_name(q, shapes.layout)
     still, springs = columns_by_name(np.zeros_like(q), shapes.layout), SeriesSprings(1.0, now.l, 0.0)
@@ -201,6 +202,16 @@ def gap_elongations(system: System, q: Array) -> Array:
     for element in shapes.elements:
         past, _ = element.gap_deflection(past, still.r, p)
     return past - apart
+
+
+def has_gap(system: System) -> bool:
+    """Test whether an element of the legs makes a gap of the play before their strokes."""
+    shapes = system.kernel.shapes
+    return shapes.has("r") and any(map(_opens, shapes.elements))
+
+
+def _opens(slot: Slot) -> bool:
+    return slot.kind.gap_deflection.__func__ is not Physics.gap_deflection.__func__  # type: ignore[attr-defined]
 
 
 def _gives(system: System, q: Array) -> dict[Place, Array]:

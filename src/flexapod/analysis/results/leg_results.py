@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike
 
 from flexapod.analysis.results import legs as by_name
 from flexapod.analysis.results.bodies import (
-    axes_as_drawn,
+    Drawn,
     body_results,
+    draw,
     flexible_axes,
     joint_angle_limits,
     pairs_of_legs,
@@ -42,10 +43,11 @@ from flexapod.kinematics.rotations import exponential, matrix
 from flexapod.mechanics.elements.springs import twist_share
 from flexapod.mechanics.leg.layout import columns, leg_parameters
 from flexapod.model import Robot, Study
+from flexapod.solve import result_rows
 from flexapod.solve.batch import RestStates
-from flexapod.solve.frames import rigid_pose, to_world
+from flexapod.solve.frames import to_world
 from flexapod.solve.friction import sliding_jacobian
-from flexapod.solve.statics.ideal_robot import RobotForces, idealize_robot, rigid_system
+from flexapod.solve.statics.ideal_robot import idealize_robot, reactions, rigid_system
 from flexapod.solve.statics.lost_motion import places_with_friction
 from flexapod.solve.system import System
 
@@ -58,7 +60,8 @@ def leg_results(system: System, path: RigidPath, record: Record) -> dict[str, Ar
     """Lengths, angles, deflections and forces of the legs."""
     robot, shapes, q = path.robot, system.kernel.shapes, record.q
     found = robot_limbs(robot)
-    forces, length = cache(lambda: _port_forces(system, record)), cache(lambda: flexible_lengths(robot, system, record))
+    forces, drawn = cache(lambda: _port_forces(system, record)), cache(lambda: draw(robot, system, record))
+    length = cache(lambda: flexible_lengths(robot, system, record, drawn()))
     zero, turns = _zero(found), by_name.screw_travel(robot)
     results: dict[str, ArraySource] = {
         "leg_angle": lambda: np.stack([q[..., shapes.index(x)] for x in by_name.angle_names(found).values()], axis=-1),
@@ -68,10 +71,10 @@ def leg_results(system: System, path: RigidPath, record: Record) -> dict[str, Ar
         "tip_deflection": lambda: _tip_deflections(robot, system, q),
         "joint_force": record.lam[..., :3],
     }
-    results |= body_results(robot, lambda: _as_drawn(robot, system, record), length)
+    results |= body_results(robot, system.kernel, drawn, length)
     if by_name.has_strokes(robot):
         made = (
-            lambda: path.legs.length,
+            lambda: path.lengths,
             length,
             q[..., shapes.l_index],
             lambda: by_name.stroke_forces(found, drive_forces(robot, system, record)),
@@ -94,14 +97,9 @@ def leg_results(system: System, path: RigidPath, record: Record) -> dict[str, Ar
     return results
 
 
-def _as_drawn(robot: Robot, system: System, record: Record) -> tuple[Array, Array, Array]:
-    """Centre of mass (T, 3) and attitude (T, 3, 3) of the payload, axes of the legs (T, legs, 3)."""
-    return *rigid_pose(system, robot, record.q, record.pose), axes_as_drawn(robot, system, record)
-
-
 def _tip_deflections(robot: Robot, system: System, q: Array) -> Array:
     shapes, moves = system.kernel.shapes, tip_displacements(robot, system, q)
-    bent = by_name.lateral_amplitudes(shapes, q) @ by_name.bending_basis(shapes).tip
+    bent = np.tensordot(by_name.lateral_amplitudes(shapes, q), by_name.bending_basis(shapes).tip, 1)
     return bent + sum(place for place, _ in moves.values())
 
 
@@ -120,15 +118,17 @@ def rigid_leg_results(path: RigidPath) -> dict[str, Array]:
     return values
 
 
-def rigid_reactions(robot: Robot, forces: RobotForces) -> dict[str, Array]:
+def rigid_reactions(path: RigidPath) -> dict[str, Array]:
     """Reactions of the rigid robot's joints, other than forces on the platform."""
-    if forces.states is None or forces.held is None or forces.closure is None:
-        return {"base_force_rigid": forces.base_force, "base_moment_rigid": forces.base_moment}  # type: ignore[dict-item]
+    robot, on_base = path.robot, (path.forces.base_force, path.forces.base_moment)
+    if on_base[0] is not None and on_base[1] is not None:
+        return {"base_force_rigid": on_base[0], "base_moment_rigid": on_base[1]}
+    states, forces = reactions(path, path.wrench)
     system, found, values = rigid_system(robot), robot_limbs(idealize_robot(robot)), {}
     if held := by_name.held_names(found):
         values["held_force_rigid"] = _held_forces(found, system, forces.held, held)
     if _bears_moments(found):
-        states = replace(forces.states, lam=forces.closure)
+        states = replace(states, lam=forces.closure)
         values["joint_moment_rigid"] = _joint_moments(idealize_robot(robot), found, system, states, forces.held)
     return values
 
@@ -149,10 +149,10 @@ def _drive_positions(robot: Robot, system: System, record: Record) -> Array:
     """Positions of the drives, (T, legs): strokes, carriages, travel of rotors; of a servo its end of the spring."""
     shapes, q = system.kernel.shapes, record.q
     found = by_name.drive_values(robot_limbs(robot), shapes, q)
-    gives = elongations(robot, system, q, ("nut",))
-    give = np.sum(list(gives.values()), axis=0)
-    give = give + gap_elongations(system, q)
-    return found - give if shapes.has("r") else found
+    if not shapes.has("r"):
+        return found
+    gap = gap_elongations(system, q)
+    return found - (np.sum(list(elongations(robot, system, q, ("nut",), gap).values()), axis=0) + gap)
 
 
 def _motor_forces(robot: Robot, system: System, forces: Array) -> Array:
@@ -192,8 +192,11 @@ def drive_forces(robot: Robot, system: System, record: Record) -> Array:
 
 def _commands(found: Limbs, path: RigidPath) -> Array:
     """Places of the drives on the rigid path, (T, legs)."""
-    of = {name: path.legs.coordinate(name)[0] for name in {*by_name.drive_names(found)}}
-    return np.stack([of[name][:, i] for i, name in enumerate(by_name.drive_names(found))], axis=1)
+    names = by_name.drive_names(found)
+    if {*names} == {"l"}:
+        return path.lengths
+    of = {name: path.legs.coordinate(name)[0] for name in {*names}}
+    return np.stack([of[name][:, i] for i, name in enumerate(names)], axis=1)
 
 
 def _held_forces(found: Limbs, system: System, forces: Array, held: list[str]) -> Array:
@@ -244,11 +247,15 @@ def drive_forms(robot: Robot) -> dict[str, Variable]:
     return {name: form._replace(units=units[form.units]) for name, form in DRIVES.items()}
 
 
-def flexible_lengths(robot: Robot, system: System, record: Record) -> Array:
+def flexible_lengths(robot: Robot, system: System, record: Record, at: Drawn) -> Array:
     """Joint-to-joint lengths of the flexible robot, (T, legs) [m], Eq. (T8.1)."""
-    (place, R), built = rigid_pose(system, robot, record.q, record.pose), built_limbs(robot, robot_limbs(robot))
-    tips = place[:, None] + (built.platform - robot.com) @ R.swapaxes(1, 2)
-    return np.linalg.norm(tips - by_name.base_points(built, _carriages(system, record.q)), axis=-1)
+    built = built_limbs(robot, robot_limbs(robot))
+    base, platform = by_name.base_points(built, _carriages(system, record.q)), built.platform - robot.com
+    if system.kernel.library is not None:
+        base = base if base.ndim == 3 else base[None]
+        return result_rows.lengths(system.kernel, at.place, at.rotation, base, platform)
+    tips = at.place[:, None] + platform @ at.rotation.swapaxes(1, 2)
+    return np.linalg.norm(tips - base, axis=-1)
 
 
 def _carriages(system: System, q: Array) -> Array | None:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.analysis.results.causes import deviation_by_cause, errors_of
+from flexapod.analysis.results.causes import shares_and_sums
 from flexapod.analysis.results.lazy_arrays import ArraySource
 from flexapod.analysis.results.leg_results import leg_labels, leg_results, sliding_words
 from flexapod.analysis.results.legs import bending_basis, has_strokes, screw_travel, stroke_forces
@@ -15,11 +16,14 @@ from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.analysis.results.time_history import Record
 from flexapod.common.arrays import Array
 from flexapod.kinematics.robot import robot_limbs
-from flexapod.kinematics.rotations import canonical, difference, matrix, quaternion
+from flexapod.kinematics.rotations import canonical, difference, quaternion
 from flexapod.kinematics.trajectory import coordinates, turning_axes
 from flexapod.model import Robot, Study
 from flexapod.solve.frames import base_on_mount, floor, shared_by_legs
 from flexapod.solve.system import System
+
+if TYPE_CHECKING:
+    from flexapod.solve.kernel import Kernel
 
 
 def robot_results(system: System, path: RigidPath, record: Record) -> dict[str, ArraySource]:
@@ -53,9 +57,11 @@ def payload_results(path: RigidPath, record: Record) -> dict[str, ArraySource]:
     robot, com = path.robot, record.pose[:, :3]
     e = cache(lambda: canonical(record.pose[:, 3:]))
     e_rigid = cache(lambda: quaternion(path.rotation))
-    R = cache(lambda: matrix(e()))
     com_rigid = cache(lambda: path.place(robot.com))
-    tool, tool_rigid = cache(lambda: com + R() @ (robot.tool - robot.com)), cache(lambda: path.place(robot.tool))
+    tool, tool_rigid = (
+        cache(lambda: com + record.attitude @ (robot.tool - robot.com)),
+        cache(lambda: path.place(robot.tool)),
+    )
     return {
         "com_position_rigid": com_rigid,
         "com_position": com,
@@ -66,33 +72,28 @@ def payload_results(path: RigidPath, record: Record) -> dict[str, ArraySource]:
         "rotation_deviation": lambda: difference(e(), e_rigid()),
         "platform_quaternion": e,
         "platform_quaternion_rigid": e_rigid,
-        "platform_angular_velocity": lambda: np.einsum("tij,tj->ti", R(), record.turn),
+        "platform_angular_velocity": lambda: np.einsum("tij,tj->ti", record.attitude, record.turn),
     }
 
 
 def cause_results(system: System, path: RigidPath, record: Record) -> dict[str, ArraySource]:
     """Deviation of the centre of mass by cause."""
-
-    @cache
-    def shares() -> Array:
-        found = deviation_by_cause(path, errors_of(system, path, record))
-        return found if path.base is None else np.einsum("txy,tcly->tclx", path.base.rotation, found)
-
-    def residual() -> Array:
-        deviation = record.pose[:, :3] - path.place(path.robot.com)
-        return deviation - shares().reshape(len(deviation), -1, 3).sum(axis=1)
-
-    return {"deviation_by_cause": shares, "deviation_residual": residual}
+    found = cache(lambda: shares_and_sums(system, path, record))
+    return {
+        "deviation_by_cause": lambda: found()[0],
+        "deviation_residual": lambda: record.pose[:, :3] - path.place(path.robot.com) - found()[1],
+    }
 
 
-def rigid_force_results(path: RigidPath) -> dict[str, ArraySource]:
-    """Drive and joint forces of the rigid robot."""
+def rigid_force_results(path: RigidPath, kernel: Kernel | None = None) -> dict[str, ArraySource]:
+    """Drive and joint forces of the rigid robot; `kernel`: equations of a simulation that has integrated the robot."""
+    forces = cache(lambda: path.forces if kernel is None else path.forces_of_simulation(kernel))
     found: dict[str, ArraySource] = {
-        "drive_force_rigid": lambda: path.forces.drive_force * screw_travel(path.robot),
-        "joint_force_rigid": lambda: path.forces.joint_force,
+        "drive_force_rigid": lambda: forces().drive_force * screw_travel(path.robot),
+        "joint_force_rigid": lambda: forces().joint_force,
     }
     if has_strokes(path.robot):
-        found["actuator_force_rigid"] = lambda: stroke_forces(robot_limbs(path.robot), path.forces.drive_force)
+        found["actuator_force_rigid"] = lambda: stroke_forces(robot_limbs(path.robot), forces().drive_force)
     return found
 
 
@@ -137,7 +138,7 @@ def frame_results(system: System, path: RigidPath, record: Record) -> dict[str, 
 
 def _from_the_base(robot: Robot, system: System, record: Record) -> tuple[Array, Array]:
     """Tool (T, 3) and attitude of the payload (T, 3, 3) as seen from the base plate."""
-    R = matrix(record.pose[:, 3:])
+    R = record.attitude
     tool = record.pose[:, :3] + R @ (robot.tool - robot.com)
     return base_on_mount(system, robot, record.q).seen(*floor(system, robot, record.q).seen(tool, R))
 

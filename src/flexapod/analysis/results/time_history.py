@@ -5,12 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError, InputError
+from flexapod.kinematics.rotations import matrix
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -64,6 +66,11 @@ class Record:
     wall_time: float
     failure: ComputationError | None
     interrupted: bool
+
+    @cached_property
+    def attitude(self) -> Array:
+        """Attitude of the payload, (T, 3, 3)."""
+        return matrix(self.pose[:, 3:])
 
     def part(self, which: slice) -> Record:
         """Record of some of the instants."""

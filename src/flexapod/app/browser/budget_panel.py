@@ -23,11 +23,13 @@ if TYPE_CHECKING:
     from flexapod.analysis.error_budget.text import Bar
     from flexapod.common import quantities
     from flexapod.output.text import budget
+    from flexapod.output.text import verdict as text_verdict
 else:
     analysis = LazyModule("flexapod.analysis")
     text = LazyModule("flexapod.analysis.error_budget.text")
     quantities = LazyModule("flexapod.common.quantities")
     budget = LazyModule("flexapod.output.text.budget")
+    text_verdict = LazyModule("flexapod.output.text.verdict")
 
 CHANGED = 0.3  # after a change of the study, before its budget is computed [s]
 
@@ -80,13 +82,24 @@ def budget_html(study: model.Study | model.ActuatorStudy, data: Dataset | None =
     found = analysis.budget(study) if found is None else found
     first, *more = found.attrs["summary"].splitlines()
     note = f"At rest, {where}; world axes. What is dynamic: flexapod budget FILE --motion."
-    sentences = markup.block(first, "good") + "".join(markup.block(line) for line in more)
+    verdict = verdict_html(study)
+    sentences = verdict + markup.block(first, "good") + "".join(markup.block(line) for line in more)
     return (
         sentences
         + chart_html(text.bars(found))
         + markup.scrollable_html(markup.table_html(*budget.table(found)))
         + markup.block(note, "soft")
     )
+
+
+def verdict_html(study: model.Study) -> str:
+    """Verdict on the requirement of a study in a sentence and a table; nothing without one."""
+    found = text_verdict.study_verdict(study)
+    if found is None:
+        return ""
+    table = text_verdict.verdict_table(found)
+    said = markup.block(text_verdict.answer(found), "good" if text_verdict.all_kept(found) else "error")
+    return said + markup.scrollable_html(markup.table_html(list(table.head), [list(row) for row in table.rows]))
 
 
 def chart_html(rows: list[Bar]) -> str:

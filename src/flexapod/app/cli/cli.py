@@ -85,6 +85,8 @@ HOMES = {
     "damp": "linear",
     "budget": "poses",
     "map": "map",
+    "sensitivity": "design",
+    "optimise": "design",
     "converge": "surveys",
     "sweep": "surveys",
     "verify": "proof",

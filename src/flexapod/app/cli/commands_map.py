@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from flexapod.design.maps import maps as maps_maps
     from flexapod.output import figures as output_figures
     from flexapod.output.text import answers
+    from flexapod.output.text import verdict as text_verdict
 else:
     resource_limits = LazyModule("flexapod.analysis.checks.resource_limits")
     store = LazyModule("flexapod.analysis.store")
@@ -50,6 +51,7 @@ else:
     maps_maps = LazyModule("flexapod.design.maps.maps")
     output_figures = LazyModule("flexapod.output.figures")
     answers = LazyModule("flexapod.output.text.answers")
+    text_verdict = LazyModule("flexapod.output.text.verdict")
 
 COMPUTING = 0.7  # share of the bar for the poses; the rest is for figures
 _FORM = '"surge=-100..100mm:41"'
@@ -94,6 +96,7 @@ def workspace_map(
         "acceleration": pose_options.parse_acceleration(acceleration),
     }
     folder = results_folder(file, "map", out)
+    verdict = text_verdict.study_verdict(study)
     with terminal.progress_bar(quiet=quiet or json) as report:
         with as_options(axes="--x", at="--at", direction="--direction", acceleration="--acceleration"):
             poses, frequencies = grid.build_grid(study.robot, axes, fixed), max(mode, maps_maps.FREQUENCIES)
@@ -111,7 +114,9 @@ def workspace_map(
     figures = " and a figure of each quantity" if len(files) > 1 else ""
     where = f"In {folder}: map.nc{figures}. ({data.attrs['wall_time']:.2g} s of computation)"
     more = {"wall_time": data.attrs["wall_time"], "folder": folder, "files": files}
-    terminal.print_answer(chain(answers.map_items(data, found), [where]), lambda: found.as_dict() | more, json=json)
+    items = chain(text_verdict.verdict_items(verdict), answers.map_items(data, found), [where])
+    more |= text_verdict.verdict_as_dict(verdict)
+    terminal.print_answer(items, lambda: found.as_dict() | more, json=json)
 
 
 def _write(data: Dataset, folder: Path, mode: int, report: Report, formats: Sequence[str]) -> list[Path]:

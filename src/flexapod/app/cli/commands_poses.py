@@ -21,12 +21,15 @@ from flexapod.app.cli.options import (
     Pose,
     Quiet,
     Settings,
+    Strict,
     StudyFile,
     Verbose,
     as_options,
     check_writable,
+    exit_strictly,
     load_study,
     parse_formats,
+    refuse_unrequired,
     robot_study,
 )
 from flexapod.common.lazy_imports import LazyModule
@@ -45,6 +48,7 @@ if TYPE_CHECKING:
     from flexapod.output import figures
     from flexapod.output.text import answers, description
     from flexapod.output.text import budget as text_budget
+    from flexapod.output.text import verdict as text_verdict
 else:
     analysis = LazyModule("flexapod.analysis")
     disturbances = LazyModule("flexapod.analysis.pose_errors.disturbances")
@@ -57,6 +61,7 @@ else:
     answers = LazyModule("flexapod.output.text.answers")
     text_budget = LazyModule("flexapod.output.text.budget")
     description = LazyModule("flexapod.output.text.description")
+    text_verdict = LazyModule("flexapod.output.text.verdict")
 
 Folder = Annotated[
     Path | None,
@@ -118,11 +123,13 @@ BudgetFolder = Annotated[
 def budget(
     file: StudyFile, settings: Settings = None, pose: Pose = None, motion: Motion = False,
     out: BudgetFolder = None, formats: Format = USUAL, no_figures: NoFigures = False, quiet: Quiet = False,
-    verbose: Verbose = False, json: Json = False,
+    strict: Strict = False, verbose: Verbose = False, json: Json = False,
 ) -> None:  # fmt: skip
     """Error budget of the tool: which part adds what, and what halving the largest error would bring."""
     study, drawn = robot_study(file, settings), parse_formats(formats, no_figures)
     check_writable(out)
+    refuse_unrequired(study, strict=strict)
+    verdict = text_verdict.study_verdict(study)
     with as_options(pose="--pose"), progress_bar(quiet=quiet or json) as report:
         data = analysis.budget(
             study,
@@ -135,13 +142,18 @@ def budget(
         description.ideal_words(idealizations.idealization(study.robot)),
         None if motion else text_budget.budget_counts(study.robot),
     )
-    items = chain(text_budget.budget_items(data, (ideal, counts)), map("Written: {}".format, files))
+    told = text_budget.budget_items(data, (ideal, counts))
+    items = chain(text_verdict.verdict_items(verdict), told, map("Written: {}".format, files))
     print_answer(
         items,
-        lambda: {**text_budget.budget_as_dict(data, files), "ideal": ideal, "counts": counts},
+        lambda: (
+            {**text_budget.budget_as_dict(data, files), "ideal": ideal, "counts": counts}
+            | text_verdict.verdict_as_dict(verdict)
+        ),
         json=json,
         verbose=verbose,
     )
+    exit_strictly(verdict, strict=strict)
 
 
 def _write(data: Dataset, folder: Path, formats: Sequence[str]) -> list[Path]:

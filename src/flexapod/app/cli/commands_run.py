@@ -19,10 +19,13 @@ from flexapod.app.cli.options import (
     Out,
     Quiet,
     Settings,
+    Strict,
     StudyFile,
     Verbose,
+    exit_strictly,
     load_study,
     parse_formats,
+    refuse_unrequired,
     results_folder,
     write_all,
     write_data,
@@ -36,16 +39,20 @@ if TYPE_CHECKING:
 
     from flexapod import analysis, model
     from flexapod.analysis.checks import resource_limits
+    from flexapod.analysis.requirements import record
     from flexapod.mechanics.symbolic import cache as symbolic_cache
     from flexapod.mechanics.symbolic.cache import CacheContent
     from flexapod.model import ActuatorStudy, Study
     from flexapod.output.text import answers
+    from flexapod.output.text import verdict as text_verdict
 else:
     analysis = LazyModule("flexapod.analysis")
     resource_limits = LazyModule("flexapod.analysis.checks.resource_limits")
+    record = LazyModule("flexapod.analysis.requirements.record")
     symbolic_cache = LazyModule("flexapod.mechanics.symbolic.cache")
     model = LazyModule("flexapod.model")
     answers = LazyModule("flexapod.output.text.answers")
+    text_verdict = LazyModule("flexapod.output.text.verdict")
 
 COMPUTING = 0.88  # share of the bar for the simulation; the rest is for files
 
@@ -53,11 +60,14 @@ COMPUTING = 0.88  # share of the bar for the simulation; the rest is for files
 @report_failures
 def run(
     file: StudyFile, settings: Settings = None, out: Out = None, formats: Format = USUAL,
-    no_figures: NoFigures = False, json: Json = False, quiet: Quiet = False, verbose: Verbose = False,
+    no_figures: NoFigures = False, strict: Strict = False, json: Json = False, quiet: Quiet = False,
+    verbose: Verbose = False,
 ) -> None:  # fmt: skip
     """Simulate a study, rigid and flexible: results.nc, results.csv, figures, report.html."""
     drawn = parse_formats(formats, no_figures)
-    _run(load_study(file, settings), results_folder(file, "run", out), drawn, json=json, quiet=quiet, verbose=verbose)
+    refuse_unrequired(study := load_study(file, settings), strict=strict)
+    found = _run(study, results_folder(file, "run", out), drawn, json=json, quiet=quiet, verbose=verbose)
+    exit_strictly(found, strict=strict)
 
 
 @report_failures
@@ -80,32 +90,38 @@ def actuator(
 
 def _run(
     study: Study | ActuatorStudy, folder: Path, formats: Sequence[str], *, json: bool, quiet: bool, verbose: bool
-) -> None:
+) -> Dataset | None:
+    """Simulate, write and say; the verdict on the requirement of the study, if it has one."""
     resource_limits.check_disk(study, folder)
-    interrupted = False
+    verdict, interrupted = text_verdict.study_verdict(study), False
     with hide_package("dask"), hide_package("pint"), terminal.progress_bar(quiet=quiet or json) as report:
         try:
             data = analysis.run(study, progress=lambda time, end: report("simulating", COMPUTING * time / end))
         except analysis.Interrupted as stop:
             data, interrupted = stop.dataset, True
+        if verdict is not None:
+            verdict = record.with_record(verdict, study, data)  # type: ignore[arg-type]
         try:
-            files = write_data(data, folder) if interrupted else write_all(data, folder, report, formats)
+            files = write_data(data, folder) if interrupted else write_all(data, folder, report, formats, verdict)
         except KeyboardInterrupt:  # a second one ends it
             files, interrupted = write_data(data, folder), True
-    _say(study, data, folder, files, json=json, verbose=verbose)
+    _say(study, data, folder, files, verdict, json=json, verbose=verbose)
     if interrupted:
         _stopped(data, json=json)
         raise typer.Exit(INTERRUPTED)
     if data.attrs["partial"]:
         _failed(data, json=json)
         raise typer.Exit(1)
+    return verdict
 
 
 def _say(
-    study: Study | ActuatorStudy, data: Dataset, folder: Path, files: list[Path], *, json: bool, verbose: bool
-) -> None:
-    items = chain(answers.run_items(study, data), ["", _where(data, folder, files)])
-    places = {"folder": folder, "files": files}
+    study: Study | ActuatorStudy, data: Dataset, folder: Path, files: list[Path], verdict: Dataset | None, *,
+    json: bool, verbose: bool,
+) -> None:  # fmt: skip
+    told = answers.run_items(study, data)
+    items = chain(text_verdict.verdict_items(verdict), told, ["", _where(data, folder, files)])
+    places = {"folder": folder, "files": files} | text_verdict.verdict_as_dict(verdict)
     terminal.print_answer(items, lambda: answers.run_as_dict(study, data) | places, json=json, verbose=verbose)
 
 

@@ -9,13 +9,26 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from importlib.resources import files
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from flexapod.app.cli.failures import report_failures
-from flexapod.app.cli.options import Force, Json, Settings, StudyFile, Verbose, as_options, load_study, refuse_existing
+from flexapod.app.cli.options import (
+    Force,
+    Json,
+    Settings,
+    Strict,
+    StudyFile,
+    Verbose,
+    as_options,
+    exit_strictly,
+    load_study,
+    refuse_existing,
+    refuse_unrequired,
+)
 from flexapod.common.errors import InputError, closest_word, suggest_word
 from flexapod.common.files import write_text
 from flexapod.common.lazy_imports import LazyModule
@@ -31,8 +44,9 @@ if TYPE_CHECKING:
     from flexapod.common.tables.reference import Entry
     from flexapod.design import first_robot
     from flexapod.model.file import json_schema, page
-    from flexapod.output.text import answers, description
+    from flexapod.output.text import answers, description, first_robot_verdict
     from flexapod.output.text import check as text_check
+    from flexapod.output.text import verdict as text_verdict
 else:
     key_rows = LazyModule("flexapod.common.tables.key_rows")
     robot_description = LazyModule("flexapod.analysis.description.robot_description")
@@ -42,8 +56,10 @@ else:
     json_schema = LazyModule("flexapod.model.file.json_schema")
     page = LazyModule("flexapod.model.file.page")
     answers = LazyModule("flexapod.output.text.answers")
+    first_robot_verdict = LazyModule("flexapod.output.text.first_robot_verdict")
     text_check = LazyModule("flexapod.output.text.check")
     description = LazyModule("flexapod.output.text.description")
+    text_verdict = LazyModule("flexapod.output.text.verdict")
     reference = LazyModule("flexapod.common.tables.reference")
 
 Name = Annotated[Path | None, typer.Argument(metavar="NAME.toml", help="File to write.")]
@@ -62,7 +78,8 @@ From = Annotated[
         "--from",
         metavar='"home=300 mm, payload=20 kg, stroke=60 mm"',
         help="A first robot of catalogue parts that fit: electric cylinders, or drive=hydraulic; also base, platform "
-        "(radii), diameter (of pistons), material, motion (surge to yaw), duration.",
+        "(radii), diameter (of pistons), material, motion (surge to yaw), duration. Or what it must do, as of "
+        '[requirement]: "travel=15 mm, tilt=3 deg, payload=25 kg, accuracy=1 um"; then home and stroke follow.',
     ),
 ]
 Ideal = Annotated[
@@ -150,8 +167,11 @@ def _first_robot(request: str, preset: str | None, *, ideal: bool) -> tuple[str,
         raise InputError(
             "is given together with --from drive", key="--ideal", value=wanted.drive, allowed="one of the two"
         )
-    text = first_robot.first_robot(replace(wanted, drive=first_robot.IDEAL) if ideal else wanted)
-    return text, {"from": request}, answers.first_robot_sentences(text)
+    wanted = replace(wanted, drive=first_robot.IDEAL) if ideal else wanted
+    text = first_robot.first_robot(wanted)
+    data, best = first_robot.attainable(wanted, text)
+    source = {"from": request, **({} if data is None else {"attainable": first_robot_verdict.attained_as_dict(best)})}
+    return text, source, [*answers.first_robot_sentences(text), *first_robot_verdict.attained_sentences(data, best)]
 
 
 Table = Annotated[str | None, typer.Argument(metavar="[TABLE]", help="Only this table and those in it: leg.drive")]
@@ -198,13 +218,19 @@ def _key_chapter(found: ListedEntry, head: Sequence[str], *, alone: bool) -> par
 
 
 @report_failures
-def check(file: StudyFile, settings: Settings = None, verbose: Verbose = False, json: Json = False) -> None:
+def check(
+    file: StudyFile, settings: Settings = None, strict: Strict = False, verbose: Verbose = False, json: Json = False
+) -> None:
     """Validate a study and say in words what it asks of its legs: lengths, strokes, loads, stiffness, frequencies."""
-    found, control = robot_description.describe(study := load_study(file, settings)), ()
+    refuse_unrequired(study := load_study(file, settings), strict=strict)
+    verdict = text_verdict.study_verdict(study)
+    found, control = robot_description.describe(study), ()
     if isinstance(study, model.Study) and study.control is not None:
         control = description.control_words(predicted_damping.control_effect(study))
     data = lambda: description.description_as_dict(found) | ({"control": control} if control else {})  # noqa: E731
-    print_answer(text_check.check_items(found, control), data, json=json, verbose=verbose)
+    items = chain(text_verdict.verdict_items(verdict), text_check.check_items(found, control))
+    print_answer(items, lambda: data() | text_verdict.verdict_as_dict(verdict), json=json, verbose=verbose)
+    exit_strictly(verdict, strict=strict)
 
 
 _FOLDERS = {"--example": "examples/gallery", "--notebook": "examples/notebooks"}

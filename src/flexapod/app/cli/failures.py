@@ -56,7 +56,7 @@ _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 #: Tables of study files: what is below one of them stands in the file that the command was given.
 _TABLES = {
     "robot", "payload", "leg", "motion", "simulation", "load", "initial", "geometry", "heat", "tolerances",
-    "disturbance", "control", "actuator",
+    "disturbance", "control", "requirement", "actuator",
 }  # fmt: skip
 
 

@@ -25,12 +25,14 @@ if TYPE_CHECKING:
     from flexapod.output.report import figures as report_figures
     from flexapod.output.report import report as report_report
     from flexapod.output.text import html
+    from flexapod.output.text import verdict as text_verdict
 else:
     store = LazyModule("flexapod.analysis.store")
     model = LazyModule("flexapod.model")
     report_figures = LazyModule("flexapod.output.report.figures")
     report_report = LazyModule("flexapod.output.report.report")
     html = LazyModule("flexapod.output.text.html")
+    text_verdict = LazyModule("flexapod.output.text.verdict")
 
 StudyFile = Annotated[Path, typer.Argument(metavar="FILE", help="Study file (TOML); `flexapod new` writes one.")]
 Settings = Annotated[
@@ -58,6 +60,11 @@ Pose = Annotated[
     str | None,
     typer.Option("--pose", metavar='"roll=20deg,heave=10mm"', help="From home; numbers without unit in m and rad."),
 ]
+Strict = Annotated[
+    bool,
+    typer.Option("--strict", help="Exit code 3 if a requirement of the study is not kept, or not judged."),
+]
+NOT_KEPT = 3  # exit code of --strict
 Force = Annotated[bool, typer.Option("--force", help="Replace the file if it exists.")]
 _PARTS = ("what", "file", "value", "allowed", "next_step")
 
@@ -70,6 +77,21 @@ def as_options(**options: str) -> Iterator[None]:
     except InputError as error:
         key = options.get(error.key or "", error.key)
         raise InputError(**{name: getattr(error, name) for name in _PARTS}, key=key) from None
+
+
+def refuse_unrequired(study: Study | ActuatorStudy, *, strict: bool) -> None:
+    """Refuse --strict of a study that requires nothing."""
+    if strict and getattr(study, "requirement", None) is None:
+        raise InputError(
+            "has nothing to be strict about: the study has no [requirement]", key="--strict",
+            next_step='Add a table [requirement] (`flexapod keys requirement`), or leave --strict out',
+        )  # fmt: skip
+
+
+def exit_strictly(found: Dataset | None, *, strict: bool) -> None:
+    """Exit code 3 where it is asked for and a requirement is not kept or not judged."""
+    if strict and not text_verdict.all_kept(found):
+        raise typer.Exit(NOT_KEPT)
 
 
 def load_study(file: Path, settings: Sequence[str] | None = None) -> Study | ActuatorStudy:
@@ -167,8 +189,13 @@ def write_data(data: Dataset, folder: Path) -> list[Path]:
     return [store.save(data, folder / "results.nc"), store.save_csv(data, folder / "results.csv")]
 
 
-def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str]) -> list[Path]:
-    """Data, figures in the formats asked for (none: no figures), ``report.html``; `report` is told what is written."""
+def write_all(
+    data: Dataset, folder: Path, report: Report, formats: Sequence[str], verdict: Dataset | None = None
+) -> list[Path]:
+    """Data, figures in the formats asked for (none: no figures), ``report.html``; `report` is told what is written.
+
+    ``verdict``: on the requirement of the study, for the report.
+    """
     data.load()  # what nobody has asked for yet each copy of this process would make for itself
     figures: list[report_figures.StoredFigure] = []
     processes = PROCESSES if data.sizes["time"] >= MANY else 1
@@ -187,5 +214,5 @@ def write_all(data: Dataset, folder: Path, report: Report, formats: Sequence[str
             figures.extend(drawn())
             return figures
 
-        page = report_report.write_report(data, folder, finish_figures)
+        page = report_report.write_report(data, folder, finish_figures, verdict)
     return [*files, *(path for figure in figures for path in figure.files), page]

@@ -129,6 +129,8 @@ class Quantity(Key):
         allowed = f"{self.smallest:g} to {most}" if self.smallest else f"at most {most} in size"
 
         def within(value: Any) -> Any:
+            if isinstance(value, str):  # a word where no number stands
+                return value
             size = np.abs(value).max(initial=0.0) if isinstance(value, np.ndarray) else abs(value)
             if not self.smallest <= size <= self.largest:
                 raise PydanticCustomError("size", "is out of range", {"allowed": allowed})

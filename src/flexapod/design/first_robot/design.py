@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.errors import InputError
 from flexapod.common.quantities import text
 from flexapod.design.first_robot import sizing
+from flexapod.design.first_robot.box import boxed_robot, robot_of_home
 from flexapod.design.first_robot.electric_choice import electric_robot
 from flexapod.design.first_robot.hydraulic import hydraulic_robot
 from flexapod.design.first_robot.sizing import OPTION, Body, Joints, Request, SizedLeg
@@ -41,6 +43,23 @@ def first_robot(request: Request) -> str:
     InputError
         No robot of these proportions does it; the message names the number to change.
     """
+    if request.demand is not None and request.demand.ranges:
+        return boxed_robot(request, _robot_of_stroke)
+    return _robot_of_stroke(request)
+
+
+def robot_at_home(request: Request, home: float) -> str | None:
+    """The text of the robot of another home height, for the same box of poses if there is one; None where none fits."""
+    if request.demand is not None and request.demand.ranges:
+        return robot_of_home(request, _robot_of_stroke, home)
+    try:
+        return _robot_of_stroke(replace(request, home=home))
+    except InputError:
+        return None
+
+
+def _robot_of_stroke(request: Request) -> str:
+    """The text of a study file of a robot whose home is known."""
     joints = sizing.size_joints(request)
     body, stroke = sizing.size_body(request, joints), sizing.leg_stroke(request)
     if request.drive == "electric":

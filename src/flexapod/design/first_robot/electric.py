@@ -9,7 +9,15 @@ from flexapod.common.quantities import number
 from flexapod.design.first_robot import sizing
 from flexapod.design.first_robot.catalogue import BORE, FASTEST, Screw, joint_stiffness, motor_inertia, motor_mass
 from flexapod.design.first_robot.sizing import Joints, SizedLeg
-from flexapod.design.first_robot.study_text import LEG, Plan, comment_lines, length_text, material_words, value_origin
+from flexapod.design.first_robot.study_text import (
+    LEG,
+    Plan,
+    comment_lines,
+    length_text,
+    material_words,
+    stroke_origin,
+    value_origin,
+)
 from flexapod.design.first_robot.warm import accuracy_tables
 from flexapod.model import MATERIALS
 
@@ -196,9 +204,7 @@ def _bodies(self: ElectricActuator, plan: Plan) -> list[str]:
         *comment_lines("inner_diameter: chosen, the screw turns inside; length: computed, one width stays guided"),
         *comment_lines(f"{material_words(request)}{'; shear: it is short and thick' if shear else ''}"),
         f'stroke = {{ min = "{length_text(leg.shortest)}", max = "{length_text(leg.longest)}" }}   # joint to joint',
-        *comment_lines(
-            f"stroke: {value_origin(request.stroke, f'{sizing.STROKE:g} of the home height')}; half of it either way"
-        ),
+        *comment_lines(f"stroke: {stroke_origin(request)}; half of it either way"),
         "damping = 0.005              # chosen: usual for bare metal; joints, nut and bearing damp more",
     ]
 

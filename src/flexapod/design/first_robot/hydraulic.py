@@ -23,6 +23,7 @@ from flexapod.design.first_robot.study_text import (
     comment_lines,
     length_text,
     material_words,
+    stroke_origin,
     value_origin,
     write_study_text,
 )
@@ -163,9 +164,7 @@ def _leg(self: HydraulicActuator, plan: Plan) -> list[str]:
             f"{material_words(request)}{'; shear: it is short and thick' if shear else ''}"
         ),
         f'stroke = {{ min = "{length_text(leg.shortest)}", max = "{length_text(leg.longest)}" }}   # joint to joint',
-        *comment_lines(
-            f"stroke: {value_origin(request.stroke, f'{sizing.STROKE:g} of the home height')}; half of it either way"
-        ),
+        *comment_lines(f"stroke: {stroke_origin(request)}; half of it either way"),
         "damping = 0.005              # chosen: usual for bare metal; the oil damps more",
     ]  # fmt: skip
 

@@ -12,10 +12,12 @@ from flexapod.common.arrays import Array
 from flexapod.common.errors import InputError, suggest_word
 from flexapod.common.quantities import text
 from flexapod.common.units import quantity
+from flexapod.design.first_robot.demand import ALIASES, DEMANDS, RANGE, Demand, parse_demand
 from flexapod.model import AXES, MATERIALS, base_circle, platform_circle
 
 OPTION = "--from"
 EXAMPLE = "home=300 mm, payload=20 kg, stroke=60 mm"
+BOX_EXAMPLE = "travel=15 mm, tilt=3 deg, payload=25 kg"
 IDEAL = "ideal"
 CHOICES: dict[str, tuple[str, ...]] = {
     "material": tuple(MATERIALS),
@@ -41,7 +43,8 @@ class Request:
     `home`: height of the platform's joints above the base's; `payload`: mass with the platform; `stroke`: of a leg,
     from its shortest to its longest; `base`, `platform`: radii of the joints' circles; `diameter`: of the pistons;
     `duration`: of the motion; `drive`: what the legs are, "ideal" ones have exact drives and joints that do not give
-    way; `texts`: what was typed, by key.
+    way; `demand`: what [requirement] says, and the box of poses that home and stroke follow from; `texts`: what was
+    typed, by key.
     """
 
     home: float
@@ -54,11 +57,12 @@ class Request:
     material: str = "steel"
     motion: str = "heave"
     drive: str = "electric"
+    demand: Demand | None = None
     texts: dict[str, str] = field(default_factory=dict)
 
 
 def parse_request(text: str) -> Request:
-    """A request from ``"home=300 mm, payload=20 kg, stroke=60 mm"``.
+    """A request from ``"home=300 mm, payload=20 kg, stroke=60 mm"`` or ``"travel=15 mm, tilt=3 deg, payload=25 kg"``.
 
     Raises
     ------
@@ -69,19 +73,34 @@ def parse_request(text: str) -> Request:
     for part in filter(None, (" ".join(piece.split()) for piece in _BETWEEN.split(text))):
         key, equals, value = (piece.strip() for piece in part.partition("="))
         key = key.lower()
-        if key not in (*_NUMBERS, *CHOICES):
-            names = ", ".join((*_NUMBERS, *CHOICES))
-            hint = suggest_word(key, (*_NUMBERS, *CHOICES)) or f'For example {OPTION} "{EXAMPLE}"'
-            raise InputError("unknown key", key=OPTION, value=key, allowed=names, next_step=hint)
+        known = (*_NUMBERS, *CHOICES, *ALIASES, *DEMANDS)
+        if key not in known:
+            hint = suggest_word(key, known) or f'For example {OPTION} "{EXAMPLE}"'
+            raise InputError("unknown key", key=OPTION, value=key, allowed=", ".join(known), next_step=hint)
         if not equals or not value or key in given:
             what = "is given twice" if key in given else "has no value"
             raise InputError(what, key=f"{OPTION} {key}", next_step=f'For example {OPTION} "{EXAMPLE}"')
         given[key] = value
-    for key in ("home", "payload"):
+    demand = parse_demand(given, OPTION)
+    _check_given(given, demand)
+    most = given if demand is None else {**given, "payload": given["payload"].split(RANGE)[-1].strip()}
+    values = {key: _number(key, value) for key, value in most.items() if key in _NUMBERS}
+    chosen = {key: _choice(key, given[key]) for key in CHOICES if key in given}
+    return Request(**{"home": math.nan, **values}, **chosen, demand=demand, texts=given)  # type: ignore[arg-type]
+
+
+def _check_given(given: dict[str, str], demand: Demand | None) -> None:
+    """Refuse a request without its payload, without home or a box, and a stroke that a box has already."""
+    boxed = demand is not None and bool(demand.ranges)
+    for key in ("payload",) if boxed else ("home", "payload"):
         if key not in given:
-            raise InputError("is missing", key=f"{OPTION} {key}", next_step=f'For example {OPTION} "{EXAMPLE}"')
-    values = {key: _number(key, value) for key, value in given.items() if key in _NUMBERS}
-    return Request(**values, **{key: _choice(key, given[key]) for key in CHOICES if key in given}, texts=given)  # type: ignore[arg-type]
+            example = BOX_EXAMPLE if boxed else EXAMPLE
+            raise InputError("is missing", key=f"{OPTION} {key}", next_step=f'For example {OPTION} "{example}"')
+    if boxed and "stroke" in given:
+        raise InputError(
+            "follows from the poses that the robot must take", key=f"{OPTION} stroke", value=given["stroke"],
+            allowed="a stroke, or travel and rotation", next_step="Leave one of them out",
+        )  # fmt: skip
 
 
 def _number(key: str, value: str) -> float:
@@ -112,6 +131,8 @@ WIDEST, FLATTEST = 1.5, 0.1  # radius of that body over the larger circle's; hei
 SAFETY = 5.0  # Euler load over the largest thrust; yield stress over the largest stress
 SLENDER = 30.0  # largest free length over diameter
 SHARE = 0.8  # of the half stroke that the motion uses
+USED = 0.9  # of the half stroke, by a box of poses that is asked for
+GROW = 1.05  # home height over that of the trial before
 OUTER, BORE = 2.0, 1.2  # diameters of the cylinder over the piston's
 #: Diameters of piston rods [m]: the series of ISO 3320, continued downwards by those of small shafts.
 RODS = tuple(d * 1e-3 for d in (

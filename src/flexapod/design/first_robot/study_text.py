@@ -49,8 +49,8 @@ class Plan:
 
 def write_study_text(plan: Plan) -> str:
     """The commented study file."""
-    asked = ", ".join(f"{key}={value}" for key, value in plan.request.texts.items())
-    parts = plan.parts
+    request, parts = plan.request, plan.parts
+    asked = ", ".join(f"{key}={value}" for key, value in request.texts.items())
     return "\n".join([
         *comment_lines(f'A first robot, from "{asked}".'),
         *comment_lines(
@@ -59,7 +59,7 @@ def write_study_text(plan: Plan) -> str:
         ),
         *(line for source in (parts.sources if parts else ()) for line in comment_lines(source)),
         "", *_robot(plan), "", *_payload(plan.body), "", *(parts.leg(plan) if parts else _leg(plan)), "",
-        *_motion(plan), "", *(parts.tables(plan) if parts else ()),
+        *_motion(plan), "", *(parts.tables(plan) if parts else ()), *_requirement(request),
         "[simulation]",
         'fidelity = "assumed-modes"   # legs bend and stretch; "lumped" (stretch only) is faster',
         "modes = 3                    # shapes per lateral plane; `flexapod converge` says which number will do",
@@ -78,10 +78,29 @@ def value_origin(value: object, computed: str) -> str:
     return "given" if value else f"computed, {computed}"
 
 
+def stroke_origin(request: Request) -> str:
+    """Origin of the stroke as text: given, or how it was computed."""
+    if request.demand is not None and request.demand.ranges:
+        left = 50 * (1 - sizing.USED)
+        return (
+            "computed, twice what the legs stretch or shrink at most over the box of [requirement], and "
+            f"{left:g} % of it left at either end"
+        )
+    return value_origin(request.stroke, f"{sizing.STROKE:g} of the home height")
+
+
+def _requirement(request: Request) -> list[str]:
+    return [] if request.demand is None else [*request.demand.lines, ""]
+
+
 def _robot(plan: Plan) -> list[str]:
     request, joints = plan.request, plan.joints
     base = value_origin(request.base, f"{sizing.BASE:g} of the home height: legs lean and hold sideways as well")
     platform = value_origin(request.platform, f"{sizing.PLATFORM:g} of the base's radius")
+    height = value_origin(
+        "home" in request.texts or not request.texts,
+        f"the least, in steps of {100 * (sizing.GROW - 1):.0f} %, whose legs have room for their stroke",
+    )
     angle = f'half_angle = "{sizing.HALF_ANGLE:g} deg"'
     return [
         "[robot]",
@@ -89,7 +108,7 @@ def _robot(plan: Plan) -> list[str]:
         f'base     = {{ radius = "{length_text(joints.base)}", {angle} }}   # {base}',
         f'platform = {{ radius = "{length_text(joints.platform)}", {angle} }}   # {platform}',
         *comment_lines("half_angle: chosen, joints in close pairs are far from the singular arrangement at 30 deg"),
-        f'home_height = "{length_text(joints.height)}"   # given; legs are then {1e3 * joints.length:.4g} mm long',
+        f'home_height = "{length_text(joints.height)}"   # {height}; legs are then {1e3 * joints.length:.4g} mm long',
         "gravity = [0, 0, -9.81]      # m/s^2, z up",
     ]
 
@@ -116,7 +135,6 @@ def _leg(plan: Plan) -> list[str]:
         f"the thinnest rod of the series of ISO 3320 that is {sizing.SAFETY:g} times safe against buckling at its "
         f"longest, and against yield, and is no longer outside than {sizing.SLENDER:g} times its width",
     )
-    stroke = value_origin(request.stroke, f"{sizing.STROKE:g} of the home height")
     return [
         LEG,
         f'cylinder = {{ mass = "{mass:.4g} kg", com = "{length_text(com)}", inertia = {inertia:.4g}, '
@@ -135,7 +153,7 @@ def _leg(plan: Plan) -> list[str]:
         *comment_lines("length: computed, as far as it comes out and two widths that stay guided"),
         *comment_lines(material_words(request)),
         f'stroke = {{ min = "{length_text(leg.shortest)}", max = "{length_text(leg.longest)}" }}   # joint to joint',
-        *comment_lines(f"stroke: {stroke}; half of it either way from home"),
+        *comment_lines(f"stroke: {stroke_origin(request)}; half of it either way from home"),
         "damping = 0.005              # chosen: 0.5 % of the critical one is usual for bare metal",
         'drive = { type = "prescribed" }  # chosen: the stroke follows its command exactly; or "servo", "force"',
     ]

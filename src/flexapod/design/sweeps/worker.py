@@ -115,7 +115,7 @@ def _remarked(result: PointResult, kept: OutputSelection, absent: Sequence[str])
 def _robot(kept: OutputSelection, study: Study) -> PointResult:
     path = RigidPath(study)
     remarks = [*study.warnings, *check_path(study, path)]
-    march = prepare(study)
+    march = prepare(study, path=path.series)
     record = collect(march.chunks, damped_angles(march.system), study.duration, None)
     _refuse_partial(record.failure, record.interrupted, float(record.time[-1]))
     run = RobotRun(study, march.system, record, march.counters, path.at(record.time))

@@ -33,6 +33,7 @@ from flexapod.mechanics.symbolic.cache import (
     store_library,
     warn_unused,
 )
+from flexapod.mechanics.symbolic.processor import built_loops, processor
 
 #: C text that every generated function needs before it.
 PRELUDE = Path(__file__).parent / "lanes.h"
@@ -177,14 +178,41 @@ def compiled_library(
     return found
 
 
-def written_library(sources: Sequence[Path], command: list[str]) -> ctypes.CDLL:
-    """Load (compiling on first use) hand-written C `sources`, in this order; raises as `compiled_library`."""
-    unit = "\n".join([PRELUDE.read_text(), *(path.read_text() for path in sources), _signatures({})])
-    cache, name = open_cache(), _name([unit], LOOPS, command)
+def written_library(
+    sources: Sequence[Path], command: list[str], *, flags: Sequence[str] = LOOPS, bodies: int | None = None
+) -> ctypes.CDLL:
+    """Load hand-written C `sources`, in this order: from the wheel, or compiled on first use.
+
+    Parameters
+    ----------
+    sources : sequence of Path
+    command : list of str
+        C compiler.
+    flags : sequence of str
+        Of the compiler; the wheel has the loops with theirs.
+    bodies : int, optional
+        How many stand side by side in the vectors of the equations; what the wheel has for others is not taken.
+
+    Raises
+    ------
+    ComputationError
+        As `compiled_library` does.
+    """
+    unit, key = written_text(sources)
+    if (built := built_loops()) and built.key == key and (found := _first([built.path])):
+        if bodies in (None, lanes(found[0])):
+            return found[0]
+    cache, name = open_cache(), _name([unit], flags, command)
     if cache and (found := _first(intact_libraries(cache, name))):
         return found[0]
     with _announced(), temporary_folder() as folder:
-        return _library(name, [unit], LOOPS, command, cache, folder)[0]
+        return _library(name, [unit], flags, command, cache, folder)[0]
+
+
+def written_text(sources: Sequence[Path]) -> tuple[str, str]:
+    """One C text of hand-written `sources`, and the key that a wheel has its library under: of text and flags."""
+    unit = "\n".join([PRELUDE.read_text(), *(path.read_text() for path in sources), _signatures({})])
+    return unit, _hash([unit, *COMMON, *LOOPS])[:16]
 
 
 def shared_object(texts: Mapping[str, str], sources: Sequence[str], flags: Sequence[str]) -> bytes:
@@ -276,7 +304,8 @@ def _name(key: Sequence[object], flags: Sequence[str], command: list[str]) -> st
         raise _failed(command, "there is no such program")
     made_by = [str(program), program.stat().st_size, program.stat().st_mtime_ns, *command[1:]]
     made_by += [version("ziglang")] if "ziglang" in command else []
-    machine = [sys.platform, platform.machine(), sys.maxsize, _processor()]
+    made_by += [built.path.name] if (built := built_loops()) else []  # target of equations, and hash of the loops
+    machine = [sys.platform, platform.machine(), sys.maxsize, processor()]
     return _hash([*key, *COMMON, *flags, *made_by, *machine])
 
 
@@ -286,17 +315,6 @@ def _hash(parts: Sequence[object]) -> str:
         text = part if isinstance(part, bytes) else repr(part).encode()
         digest.update(b"%d:" % len(text) + text)  # the length keeps neighbours apart
     return digest.hexdigest()[:32]
-
-
-@cache
-def _processor() -> str:
-    """Name and features of this processor: a kernel made for it may not run on another that shares the cache."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        return platform.processor()
-    told = dict(line.split(":", 1) for line in reversed(lines) if ":" in line)
-    return "".join(text for key, text in told.items() if key.strip() in ("model name", "flags", "Features"))
 
 
 def _load(path: Path) -> tuple[ctypes.CDLL, dict[str, Signature]]:
@@ -327,12 +345,12 @@ def _build(units: list[str], flags: Sequence[str], command: list[str], folder: P
     # be the same from one process to the next.
     line = [os.path.abspath(program), *command[1:], *COMMON]
     names = [f"unit{k}" for k in range(len(units))]
-    target = [] if any(word.startswith(("-march=", "-mcpu=")) for word in command) else [NATIVE]
+    target = _targets(command)
     fault = ""
     try:
         for name, unit in zip(names, units, strict=True):
             (folder / f"{name}.c").write_text(unit)
-        for targets in [target, []] if target else [[]]:
+        for targets in [*([word] for word in target), []]:
             each = [[*line, *flags, "-c", "-o", f"{name}.o", f"{name}.c", *targets] for name in names]
             if not (fault := _fault(each, command, folder)):
                 link = [*line, "-shared", "-o", "kernel.so", *(f"{name}.o" for name in names), "-lm"]
@@ -345,6 +363,15 @@ def _build(units: list[str], flags: Sequence[str], command: list[str], folder: P
     if fault:
         raise _failed(command, fault)
     return folder / "kernel.so"
+
+
+def _targets(command: Sequence[str]) -> list[str]:
+    """Words for the processor to compile for, the next one where a compiler does not know the one before."""
+    if any(word.startswith(("-march=", "-mcpu=")) for word in command):
+        return []
+    target = built.target if (built := built_loops()) else None
+    named = target.replace("-", "_") if target and "ziglang" in command else target
+    return [*([f"-march={named}"] if named else []), NATIVE]
 
 
 def _fault(lines: list[list[str]], command: list[str], folder: Path) -> str:

@@ -22,6 +22,7 @@ from flexapod.model.leg.actuator import Actuator, ActuatorInitial, read_drives
 from flexapod.model.motion import AxisMotion, CombinedMotion, CsvMotion, Motion, WaypointMotion
 from flexapod.model.study.control import DampedControl, FileControl, ForceControl, StrokeControl, ToolControl
 from flexapod.model.study.disturbance import read_disturbance
+from flexapod.model.study.requirement import Requirement
 from flexapod.model.study.robot import Robot, platform_fixed, read_robot
 from flexapod.model.study.simulation import STRAIGHT, Initial, Simulation, read_simulation, unused_settings
 from flexapod.model.study.study import ActuatorStudy, Study
@@ -250,7 +251,7 @@ def _lookup(data: object, path: str) -> str:
 
 
 def _study(top: Section, text: str) -> Study:
-    top.check_keys("robot", "payload", "leg", *_AS_BUILT, *_COMMON, "disturbance", "control")
+    top.check_keys("robot", "payload", "leg", *_AS_BUILT, *_COMMON, "disturbance", "control", "requirement")
     fixed = platform_fixed(top)
     top.require_keys("robot", *(() if fixed else ("payload",)), "leg", *(() if fixed else ("motion",)))
     settings = top.section("simulation")
@@ -265,6 +266,7 @@ def _study(top: Section, text: str) -> Study:
         simulation=simulation,
         disturbance=read_disturbance(top, robot),
         control=None if (loop := top.section("control")) is None else loop.one_of(_LOOPS),
+        requirement=None if (asked := top.section("requirement")) is None else asked.read(Requirement),
         source_text=text,
         path=top.file,
         notes=(*unused_settings(settings, simulation), *_unused_axial_modes(top, simulation)),

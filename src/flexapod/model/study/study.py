@@ -18,6 +18,7 @@ from flexapod.model.motion import AXES, Motion, moved_axes
 from flexapod.model.study.control import Control, ToolControl
 from flexapod.model.study.disturbance import Disturbance
 from flexapod.model.study.remarks import actuator_remarks, robot_remarks, settings_remarks
+from flexapod.model.study.requirement import Requirement
 from flexapod.model.study.robot import Robot
 from flexapod.model.study.simulation import FIDELITIES, OWN_BASIS, SOLID, Initial, Simulation
 
@@ -127,11 +128,18 @@ class Study(_Documented):
     simulation: Simulation = Simulation()
     disturbance: Disturbance | None = None
     control: Control | None = None
+    requirement: Requirement | None = None
 
     @model_validator(mode="after")
     def _disturbance(self) -> Self:
         if self.disturbance is not None:
             self.disturbance.check(self.robot.count)
+        return self
+
+    @model_validator(mode="after")
+    def _required(self) -> Self:
+        if self.requirement is not None:
+            self.requirement.check(self.robot)
         return self
 
     @model_validator(mode="after")

@@ -24,5 +24,6 @@ from flexapod.output.figures.poles import pole_map as pole_map
 from flexapod.output.figures.poles import root_locus as root_locus
 from flexapod.output.figures.robot3d import modes_3d as modes_3d
 from flexapod.output.figures.robot3d import robot_3d as robot_3d
+from flexapod.output.figures.sensitivity import tornado as tornado
 from flexapod.output.figures.style import save as save
 from flexapod.output.figures.sweep import sweep as sweep

@@ -27,6 +27,7 @@ from flexapod.output.text.description import control_words, vibration_words
 from flexapod.output.text.html import Html
 from flexapod.output.text.parts import Chapter, Item, Lines, Remarks, Text, TextTable, warning_lines
 from flexapod.output.text.study import modes_section, study_items
+from flexapod.output.text.verdict import study_verdict, verdict_items
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from flexapod.analysis.description.actuator_description import ActuatorDescription
     from flexapod.analysis.description.robot_description import RobotDescription
     from flexapod.analysis.pose_errors import disturbances
+    from flexapod.analysis.requirements import record
     from flexapod.analysis.results.summary import ActuatorSummary
     from flexapod.model import ActuatorStudy, Study
     from flexapod.output import figures as output_figures
@@ -44,6 +46,7 @@ if TYPE_CHECKING:
 else:
     analysis = LazyModule("flexapod.analysis")
     disturbances = LazyModule("flexapod.analysis.pose_errors.disturbances")
+    record = LazyModule("flexapod.analysis.requirements.record")
     predicted_damping = LazyModule("flexapod.analysis.predicted_damping")
     output_figures = LazyModule("flexapod.output.figures")
     report_figures = LazyModule("flexapod.output.report.figures")
@@ -134,17 +137,34 @@ def robot_report(study: Study | ActuatorStudy, data: Dataset) -> str:
         return _page(study, data, lambda: report_figures.draw_figures(data, folder, ("png",)))
 
 
-def write_report(data: Dataset, folder: str | Path, figures: Callable[[], Sequence[StoredFigure]] = tuple) -> Path:
+def write_report(
+    data: Dataset,
+    folder: str | Path,
+    figures: Callable[[], Sequence[StoredFigure]] = tuple,
+    verdict: Dataset | None = None,
+) -> Path:
     """Write ``report.html`` of a robot's or an actuator's run, whole or partial, with drawn `figures`; its path.
+
+    ``verdict``: on the requirement of its study, where that is known; else it is computed.
 
     The figures are asked for last. The folder is made if needed; an existing report is replaced when the new one is
     complete. InputError: the folder cannot be written to.
     """
-    return write_text(Path(folder) / "report.html", _page(carried_study(data), data, figures))
+    return write_text(Path(folder) / "report.html", _page(carried_study(data), data, figures, verdict))
 
 
-def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[[], Sequence[StoredFigure]]) -> str:
+def _page(
+    study: Study | ActuatorStudy | None,
+    data: Dataset,
+    figures: Callable[[], Sequence[StoredFigure]],
+    verdict: Dataset | None = None,
+) -> str:
     first, *further = summaries(data)
+    judged = verdict if verdict is not None else _verdict(study, data)
+    lead, told = first.sentence, []
+    if judged is not None:
+        lead, *told = verdict_items(judged)  # type: ignore[assignment]
+        told.append(first.sentence)
     described = _described(study)
     name = Path(str(data.attrs.get("study_file") or "study")).name
     modes = modes_section(study, described)
@@ -162,6 +182,7 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[
     links |= {part: TITLES.get(part, part.capitalize()) for part, there in parts.items() if there}
     links |= {"solver": "Solver", "toml": "Study file", "repeat": "Repeat"}
     body = [
+        *told,
         *(*(found.sentence for found in further), *bodies_words(data)),
         *filter(None, idealization_remarks(study)),
         Text(f"Report of {name}, flexapod {data.attrs['flexapod_version']}.", "soft"),
@@ -179,7 +200,16 @@ def _page(study: Study | ActuatorStudy | None, data: Dataset, figures: Callable[
         html.section("toml", "Study file", [Lines(str(data.attrs["study"]))]),
         repeat_section("Save the study file above as study.toml, then", "flexapod run study.toml --out results"),
     ]
-    return html.page(f"flexapod: {name}", first.sentence, body)
+    return html.page(f"flexapod: {name}", str(lead), body)
+
+
+def _verdict(study: Study | ActuatorStudy | None, data: Dataset) -> Dataset | None:
+    """Verdict on the requirement of a run's study; None without one, or where it cannot be judged at all."""
+    try:
+        found = study_verdict(study)
+    except FlexapodError:
+        return None
+    return None if found is None else record.with_record(found, study, data)  # type: ignore[arg-type]
 
 
 def _described(study: Study | ActuatorStudy | None) -> RobotDescription | ActuatorDescription | None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import lru_cache
 from typing import NamedTuple, cast
 
@@ -23,6 +25,21 @@ from flexapod.model import (
 )
 from flexapod.solve.modal.modes import single_pose_modes
 from flexapod.solve.statics.locked_robot import lock
+
+_kept: ContextVar[float | None] = ContextVar("frequency of loss factors", default=None)
+
+
+@contextmanager
+def hold_loss_frequency(robot: Robot, simulation: Simulation) -> Iterator[None]:
+    """Keep the frequency of loss factors as it is for this robot, also for the variants of it that are computed inside.
+
+    Half of what the modes of a variant cost is this frequency, which only their dampers need.
+    """
+    mark = _kept.set(loss_frequency(robot, simulation) or None)
+    try:
+        yield
+    finally:
+        _kept.reset(mark)
 
 
 def per_loss(robot: Robot, simulation: Simulation) -> float:
@@ -51,6 +68,8 @@ def loss_frequency(robot: Robot, simulation: Simulation) -> float:
     lossy = any(x.loss or x.leakage for leg in robot.legs for x in springs_along(leg))
     if not (lossy or any(joints) or any(guides) or any(mounts)):
         return 0.0
+    if (held := _kept.get()) is not None:
+        return held
     # rigid legs have springs, too, and are locked by prescribed strokes
     sliding = simulation if simulation.friction == "sliding" else simulation.replace(friction="sliding")
     return _first(robot, sliding.replace(fidelity="lumped") if simulation.fidelity == "rigid" else sliding)

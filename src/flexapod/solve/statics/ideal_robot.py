@@ -11,7 +11,10 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.common.arrays import Array, Index, Mask
+from flexapod.common.errors import ComputationError
 from flexapod.common.ranking import EQUALS, first_largest, is_largest
+from flexapod.kinematics.dynamics import LoadSharing
+from flexapod.kinematics.jacobian import sharing_inverse
 from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN
 from flexapod.kinematics.robot import cache_per_robot
 from flexapod.model import ForceDrive, Leg, PrescribedDrive, Robot, Simulation
@@ -21,8 +24,10 @@ from flexapod.solve.robot_system import robot_system
 from flexapod.solve.statics.elimination import LegBases, keep_held_pivots, leg_bases
 from flexapod.solve.statics.minimum_energy_forces import open_forces
 from flexapod.solve.statics.reduction import border_rows, flat_columns
-from flexapod.solve.statics.rigid_forces import displacement_by_error, joint_forces
+from flexapod.solve.statics.rigid_forces import JointForces, displacement_by_error, joint_forces
 from flexapod.solve.system import System
+
+LENGTH = COORDINATES.index("l")
 
 #: Frames of an ideal robot
 STILL = {"base_mount": None, "platform_mount": None, "base_motion": None}
@@ -76,10 +81,7 @@ class RobotForces:
     joint_moment : ndarray, shape (T, legs, 3), or None
         Of the legs on the platform [N m]; None of legs UPS.
     base_force, base_moment : ndarray, shape (T, legs, 3), or None
-        Of the base on legs UPS, at the universal joints [N], [N m].
-    states, held, closure
-        Configurations, forces on all coordinates that are held (T, legs, n) and forces of the closures (T, legs, rows)
-        of the equations `rigid_system`, where the forces are theirs.
+        Of the base on six legs UPS, at the universal joints [N], [N m].
     open_forces : int
         How many the rigid statics leaves open: shown are those of the least strain energy of the legs.
     """
@@ -89,17 +91,14 @@ class RobotForces:
     joint_moment: Array | None = None
     base_force: Array | None = None
     base_moment: Array | None = None
-    states: RestStates | None = None
-    held: Array | None = None
-    closure: Array | None = None
     open_forces: int = 0
 
 
 def rigid_forces(at: kinematics.RigidPoses, wrench: Array) -> RobotForces:
     """Forces of drives and joints of the robot of the rigid path.
 
-    Six legs UPS by Newton and Euler (T2.26)-(T2.36), others by their equations of motion (T7.24). Drives with a
-    constant force have it where the others hold the robot.
+    Legs UPS by Newton and Euler (T2.26)-(T2.36), more than six of them as their stiffness shares the load (T7.30);
+    others by their equations of motion (T7.24). Drives with a constant force have it where the others hold the robot.
 
     Parameters
     ----------
@@ -121,6 +120,30 @@ def rigid_forces(at: kinematics.RigidPoses, wrench: Array) -> RobotForces:
             base_force=found.base_force,
             base_moment=found.base_moment,
         )
+    if has_closed_form(robot):
+        sharing = _load_sharing(robot)
+        found = at.inverse_dynamics(wrench, sharing)
+        force = found.actuator_force * kinematics.rigid_limbs(robot).given[:, LENGTH]
+        return RobotForces(
+            drive_force=force,
+            joint_force=found.joint_force,
+            open_forces=max(int(np.isnan(sharing.pushed).sum()) - 6, 0),
+        )
+    forces = reactions(at, wrench)[1]
+    return RobotForces(
+        drive_force=_of_drives(robot, forces.held),
+        joint_force=forces.joint_force,
+        joint_moment=forces.joint_moment,
+        open_forces=forces.open_forces,
+    )
+
+
+def reactions(at: kinematics.RigidPoses, wrench: Array) -> tuple[RestStates, JointForces]:
+    """Forces in every joint by the equations of motion `rigid_system`, Eq. (T7.24), and its states.
+
+    Parameters and errors as of `rigid_forces`.
+    """
+    robot = at.robot
     system = rigid_system(robot)
     states, rates = rigid_motion(system, _ideal_poses(at))
     pushed, loose = _constant(robot, system)
@@ -129,16 +152,7 @@ def rigid_forces(at: kinematics.RigidPoses, wrench: Array) -> RobotForces:
         system = replace(system, held=system.held & ~loose)
     else:
         pushed = np.zeros_like(pushed)
-    forces = joint_forces(system, states, rates, wrench, pushed)
-    return RobotForces(
-        drive_force=_of_drives(robot, forces.held),
-        joint_force=forces.joint_force,
-        joint_moment=forces.joint_moment,
-        states=states,
-        held=forces.held,
-        closure=forces.closure,
-        open_forces=forces.open_forces,
-    )
+    return states, joint_forces(system, states, rates, wrench, pushed)
 
 
 def _ideal_poses(at: kinematics.RigidPoses) -> kinematics.RigidPoses:
@@ -156,6 +170,30 @@ def _constant(robot: Robot, system: System) -> tuple[Array, Mask]:
             at = system.kernel.shapes.index(COORDINATES[int((legs.state[i] == DRIVEN).argmax())])
             force[i, at], loose[i, at] = drive.value, True
     return force, loose
+
+
+def has_closed_form(robot: Robot) -> bool:
+    """Test whether a robot has legs UPS alone, at least six of them driven, with ball joints ideal or released."""
+    legs = kinematics.rigid_limbs(robot)
+    driven = np.count_nonzero(legs.state[:, LENGTH] == DRIVEN)
+    return legs.plain and bool(driven >= 6) and not bool(legs.hub_held.any())
+
+
+@cache_per_robot
+def _load_sharing(robot: Robot) -> LoadSharing:
+    """Sharing of the load between legs UPS: by their pistons; drives with a constant force where others hold."""
+    driven = kinematics.rigid_limbs(robot).state[:, LENGTH] == DRIVEN
+    constant = [leg.drive.value if isinstance(leg.drive, ForceDrive) else None for leg in robot.legs]
+    given = np.array([np.nan if value is None else value for value in constant])
+    pushed = np.where(driven, given, 0.0)
+    if np.isnan(pushed).sum() < 6:
+        pushed = np.where(driven, np.nan, 0.0)
+    return LoadSharing(_axial_stiffness(robot), pushed)
+
+
+def _axial_stiffness(robot: Robot) -> Array:
+    """Axial stiffness of the pistons, (legs,) [N/m], Eq. (T7.25)."""
+    return np.array([leg.piston.EA / leg.piston.length for leg in robot.legs])
 
 
 def is_hexapod(robot: Robot) -> bool:
@@ -178,13 +216,31 @@ def _of_drives(robot: Robot, held: Array) -> Array:
 
 def rigid_errors(at: kinematics.RigidPoses) -> Array:
     """Displacement of the payload for unit errors of each of `COORDINATES`, (T, legs, 8, 6); see T7.27."""
-    system = rigid_system(at.robot)
+    robot = at.robot
+    if has_closed_form(robot):
+        return _errors_of_lengths(at)
+    system = rigid_system(robot)
     states = rigid_motion(system, _ideal_poses(at))[0]
     steps, shapes = displacement_by_error(system, states), system.kernel.shapes
     found = np.zeros((*steps.shape[:2], len(COORDINATES), 6))
     for k, name in enumerate(COORDINATES):
         if shapes.has(name):
             found[:, :, k] = steps[:, :, shapes.index(name)]
+    return found
+
+
+def _errors_of_lengths(at: kinematics.RigidPoses) -> Array:
+    """`rigid_errors` of legs UPS, in closed form."""
+    robot, poses = at.robot, at.poses
+    driven = kinematics.rigid_limbs(robot).state[:, LENGTH] == DRIVEN
+    try:
+        by_length = sharing_inverse(at.drive_jacobian(robot.com), _axial_stiffness(robot)[driven])
+    except np.linalg.LinAlgError:
+        raise ComputationError(
+            "a pose on the path is singular: lengths do not determine it", next_step="See `flexapod check`."
+        ) from None
+    found = np.zeros((len(poses), robot.count, len(COORDINATES), 6))
+    found[:, driven, LENGTH] = np.concatenate([by_length[..., :3], by_length[..., 3:] @ poses.rotation], axis=-1)
     return found
 
 

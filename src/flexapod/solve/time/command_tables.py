@@ -6,7 +6,6 @@ import numpy as np
 
 from flexapod import kinematics
 from flexapod.common.arrays import Array, Mask
-from flexapod.common.piecewise_chebyshev import Groups, Pieces
 from flexapod.kinematics.leg_geometry import COORDINATES, DRIVEN
 from flexapod.model import ForceDrive, Load, Robot
 from flexapod.solve.statics.static_loads import feed_forward, force_ports, is_turned
@@ -19,12 +18,11 @@ Law = Callable[[Array], tuple[Array, Array]]
 RigidAt = Callable[[Array], kinematics.RigidPoses]
 
 
-def robot_law(system: System, robot: Robot, load: Load, rigid: RigidAt, knots: Array | None = None) -> Law:
+def robot_law(system: System, robot: Robot, load: Load, rigid: RigidAt) -> Law:
     """Return what a robot is commanded as a function of time; ``rigid`` is the rigid path.
 
     Driven coordinates follow the path; what else is held stays where it is at home, of a flexure at zero; and to both
-    comes what the robot as built adds (T16.5). With the ``knots`` (n,) between which the path is smooth, legs without
-    a closed form are computed at few instants: `pieces`.
+    comes what the robot as built adds (T16.5).
     """
     chains, shapes = kinematics.robot_limbs(robot), system.kernel.shapes
     names = {shapes.index(name): name for name in COORDINATES if shapes.has(name)}
@@ -42,8 +40,7 @@ def robot_law(system: System, robot: Robot, load: Load, rigid: RigidAt, knots: A
     places = {k: (COORDINATES.index(names[port]), turned.get(port, every)) for k, port in ports if port in names}
     pushed = system.ports == force_ports(system, robot)[:, None]
 
-    def command_values(t: Array) -> list[Array]:
-        at = rigid(t)
+    def command_values(at: kinematics.RigidPoses, t: Array) -> Array:
         legs = at.legs
         parts = np.zeros((3, len(t), system.legs, system.ports.size))
         parts[0] = home
@@ -53,25 +50,21 @@ def robot_law(system: System, robot: Robot, load: Load, rigid: RigidAt, knots: A
                 part[:, which, k] = values[:, which]
         if built:
             _as_built(at, t, parts, places)
-        return list(parts)
+        return parts
 
     built = kinematics.built_parts(robot)
     forces = any(isinstance(leg.drive, ForceDrive) or is_turned(leg.drive) for leg in robot.legs)
-    coordinates: Groups = command_values
-    changing = any(part.time is not None for part in built)
-    if knots is not None and not (kinematics.rigid_limbs(robot).plain or forces or changing):
-        coordinates = Pieces(command_values, knots)
 
     def law(t: Array) -> tuple[Array, Array]:
-        wrench = kinematics.wrench(load, t)
+        wrench, at = kinematics.wrench(load, t), rigid(t)
         table = np.zeros((len(t), system.legs, system.ports.size, COLUMNS))
-        for column, part in enumerate(coordinates(t)):
+        for column, part in enumerate(command_values(at, t)):
             table[..., column] = part
         if system.floor.any():
             for column, part in enumerate(kinematics.base_law(robot, t)):
                 table[:, :, system.floor, column] = part[:, None]
         if forces:
-            table[:, pushed, 3] = feed_forward(rigid(t), t, wrench)[:, pushed.any(axis=1)]
+            table[:, pushed, 3] = feed_forward(at, t, wrench)[:, pushed.any(axis=1)]
         return table, wrench
 
     return law

@@ -104,15 +104,16 @@ def settings(system: System, method: GeneralizedAlpha, h: float, every: int) -> 
 
 
 def loops(kernel: Kernel) -> ctypes.CDLL:
-    """Compiled time loops, the same for all kernels that one compiler makes.
+    """Compiled time loops, the same for all kernels that one compiler makes: of the wheel, or its own.
 
     Raises
     ------
     ComputationError
         They were made for other vectors than the kernel.
     """
-    library = _loops(kernel.compiler)
-    if kernel.library is not None and lanes(kernel.library) != lanes(library):
+    bodies = None if kernel.library is None else lanes(kernel.library)
+    library = _loops(kernel.compiler, bodies)
+    if bodies not in (None, lanes(library)):
         raise ComputationError(
             "equations and time loops were not compiled for the same processor",
             next_step="`flexapod cache --clear`, then once more: both are compiled anew.",
@@ -121,9 +122,9 @@ def loops(kernel: Kernel) -> ctypes.CDLL:
 
 
 @cache
-def _loops(command: tuple[str, ...]) -> ctypes.CDLL:
+def _loops(command: tuple[str, ...], bodies: int | None) -> ctypes.CDLL:
     retain_freed_memory()
-    library = written_library(SOURCES, list(command))
+    library = written_library(SOURCES, list(command), bodies=bodies)
     library.march_memory.restype = library.radau_memory.restype = c_long
     library.record_state.restype = None
     return library

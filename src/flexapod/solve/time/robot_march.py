@@ -10,7 +10,6 @@ from flexapod import kinematics
 from flexapod.common.arrays import Array
 from flexapod.common.errors import ComputationError, InputError
 from flexapod.common.generalized_alpha import GeneralizedAlpha
-from flexapod.common.piecewise_chebyshev import Pieces
 from flexapod.kinematics.inverse import BETA_LIMIT
 from flexapod.kinematics.rotations import matrix
 from flexapod.mechanics.leg.layout import columns
@@ -63,6 +62,7 @@ def prepare(
     state: State | None = None,
     sampled: "SampledController | None" = None,
     elastic: ElasticRobot | None = None,
+    path: kinematics.PathSeries | None = None,
 ) -> RobotMarch:
     """Start and time integration of a robot study.
 
@@ -75,6 +75,8 @@ def prepare(
         A controller.
     elastic : ElasticRobot, optional
         The robot of the study in its fidelity, where it is known.
+    path : PathSeries, optional
+        The rigid path of the study, where it is known.
 
     Raises
     ------
@@ -86,14 +88,14 @@ def prepare(
     _refuse_unfit(study)
     robot, simulation = study.robot, study.simulation
     elastic = elastic or ElasticRobot(robot, simulation, study.load)
-    system, path = elastic.moving, _Path(study)
-    law = robot_law(system, robot, study.load, path.rigid, path.knots)
+    system, rigid = elastic.moving, _Path(study, path)
+    law = robot_law(system, robot, study.load, rigid.rigid)
     method = GeneralizedAlpha(simulation.rho_inf)
     state = _begun(study, elastic, law) if state is None else state
     refuse_false_root(system, robot, RestStates.from_state(state))
     system = release_redundant(system, state)
-    measure, loop = _Measure(study, system, path), _around(sampled, system, study, path)
-    problem = _problem(study, system, path, law, method, measure, loop)
+    measure, loop = _Measure(study, system, rigid), _around(sampled, system, study, rigid)
+    problem = _problem(study, system, rigid, law, method, measure, loop)
     step = initial_step(problem, simulation.step)
     start, impact = consistent_start(system, state, law, 0.0, method, step)
     if loop is not None:
@@ -126,7 +128,7 @@ def _problem(
         outputs=outputs,
         measure=measure,
         weights=measure.weights(),
-        knots=path.knots,
+        knots=path.series.knots,
         restart=restart,
         stops=Stops.from_breaks(kinematics.robot_breaks(study, far), output_step, simulation.step, outputs),
         check=_Range(study, system, controlled=loop is not None),
@@ -246,25 +248,23 @@ def _summed(robot: Robot, system: System, still: System, state: State) -> State:
 class _Path:
     """Rigid path, for commands and error measure: the last poses are remembered, and places of outputs."""
 
-    def __init__(self, study: Study) -> None:
+    def __init__(self, study: Study, series: kinematics.PathSeries | None) -> None:
         self.robot, self.motion = study.robot, study.motion
-        self.knots = kinematics.path_knots(study.motion, study.duration)
+        self.series = series or kinematics.PathSeries(study.robot, study.motion, study.duration)
         self.time, self.last = np.zeros(0), None
-        self.guided = Pieces(self.exact, self.knots) if kinematics.rigid_limbs(study.robot).guides else None
         self.output_step, self.outputs = study.simulation.stored_step, study.simulation.outputs(study.duration)
+        if series is None:
+            self.series.make(self.outputs + 1)
         self.stored, self.centres = np.zeros(0), (np.zeros((0, 3)), np.zeros((0, 3, 3)))
 
     def rigid(self, t: Array) -> kinematics.RigidPoses:
         """The rigid robot at instants (T,), ascending."""
         if self.last is None or not np.array_equal(t, self.time):
-            self.time, self.last = t, kinematics.rigid_poses(self.robot, self.motion, t)
+            self.time, self.last = t, self.series.at(t)
         return self.last
 
     def centre(self, t: Array) -> tuple[Array, Array]:
         """Centre of mass (T, 3) and rotation (T, 3, 3) at instants (T,), ascending: many outputs are made at once."""
-        if self.guided is not None:
-            place, rotation = self.guided(t)
-            return place, rotation
         if len(t) > 1 and not (len(self.stored) and self.stored[0] <= t[0] and t[-1] <= self.stored[-1]):
             first = round(t[0] / self.output_step)
             self.stored = np.arange(first, min(first + AHEAD, self.outputs) + 1) * self.output_step
@@ -276,7 +276,10 @@ class _Path:
         return place[at], rotation[at]
 
     def exact(self, t: Array) -> tuple[Array, Array]:
-        """Centre of mass and rotation as of `centre` at any instants, computed one by one."""
+        """Centre of mass and rotation as of `centre` at any instants."""
+        if self.series.limbs.guides:
+            path = self.series.at(t).poses
+            return path.place(self.robot.com), path.rotation
         place, rotation = kinematics.places(self.robot, self.motion, t)
         return place + rotation @ self.robot.com, rotation
 
