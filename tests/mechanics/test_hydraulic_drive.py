@@ -223,26 +223,6 @@ class TestFile:
         assert given.robot.legs[0].begins == pytest.approx(2.1)
         assert model.preset("motion-base").robot.legs[0].begins == pytest.approx(2.1)
 
-    @pytest.mark.parametrize(
-        ("old", "new", "key", "words"),
-        [
-            ('rod = "70 mm" ', 'rod = "100 mm" ', "leg.drive.rod", "below bore = 100 mm"),
-            ('bulk_modulus = "1.4 GPa"', 'bulk_modulus = "-1 GPa"', "leg.drive.bulk_modulus", "above 0"),
-            ('bulk_modulus = "1.4 GPa"', 'bulk_modulus = "1.4 mm"', "leg.drive.bulk_modulus", "Pa"),
-            ('dead_volume = ["0.5 l", "0.9 l"]', 'dead_volume = "-1 l"', "leg.drive.dead_volume", "0 or more"),
-            ('leakage = "2e-12', 'leakage = "-2e-12', "leg.drive.leakage", "at least 0"),
-            ('bore = "100 mm"', 'boer = "100 mm"', "leg.drive.boer", "bore"),
-        ],
-    )  # fmt: skip
-    def test_refused(self, old, new, key, words):
-        with pytest.raises(InputError) as caught:
-            changed((old, new))
-        assert caught.value.key == key and words in str(caught.value)
-
-    def test_a_bottom_that_nobody_knows_is_asked_for(self):
-        with pytest.raises(InputError, match=r"drive\.bottom"):
-            changed(('bottom = "0.5 m"             #', "#"), ('stroke = { min = "2.1 m", max = "3.35 m" }', ""))
-
     @pytest.mark.parametrize("change", [('bottom = "0.5 m"', 'bottom = "1.2 m"'),
                                         ('stroke = "1.25 m"', 'stroke = "0.9 m"')])  # fmt: skip
     def test_a_piston_that_leaves_its_oil_is_refused_on_the_path(self, change):

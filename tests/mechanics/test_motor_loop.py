@@ -255,23 +255,6 @@ class TestFiles:
         assert drive.lag == pytest.approx(1 / (2 * np.pi * 300))
         assert model.loads(model.to_toml(given)).robot == given.robot
 
-    @pytest.mark.parametrize(("text", "key", "words"), [
-        ('command = "position"\nmotor = { bandwidth = "300 Hz" }', "leg.drive.motor.bandwidth", "held"),
-        ('command = "torque"\nencoder = { at = "stroke" }', "leg.drive.encoder.at", "no loop"),
-        ('command = "torque"\nencoder = { rate = "rotor" }', "leg.drive.encoder.rate", "no loop"),
-        ('encoder = { at = "stroke", rate = "rotor" }', "leg.drive.encoder.rate", "held"),
-        ('command = "servo"\nloop = { stiffness = 500, damping = 6 }\nmotor = { bandwidth = 0 }',
-         "leg.drive.motor.bandwidth", "above 0"),
-        ('command = "servo"\nloop = { stiffness = 500, damping = 6 }\nmotor = { bandwidth = "3 ms" }',
-         "leg.drive.motor.bandwidth", "Hz"),
-        ('command = "servo"\nloop = { stiffness = 5000, damping = 2, integral = 10 }\nmotor = { bandwidth = "100 Hz" }',
-         "leg.drive.loop.integral", "lag"),
-    ])  # fmt: skip
-    def test_refused(self, text, key, words):
-        with pytest.raises(InputError) as caught:
-            self.loaded(text)
-        assert caught.value.key == key and words in str(caught.value)
-
 
 def test_elimination_without_symmetry_equals_the_dense_system():
     given = study(mixed(), fidelity="lumped", step=1e-3, duration=0.02)

@@ -171,19 +171,6 @@ class TestTorque:
         with pytest.raises(InputError, match="holds no position"):
             fx.modes(machine(drive=drive))
 
-    @pytest.mark.parametrize(("text", "key", "words"), [
-        ('command = "torque"\nlaw = "constant"', "leg.drive.value", "is missing"),
-        ('command = "torque"\nvalue = "1 N m"', "leg.drive.value", "not used by law 'rigid'"),
-        ('command = "torque"\nlaw = "csv"', "leg.drive.file", "is missing"),
-        ('law = "constant"\nvalue = "1 N m"', "leg.drive.value", "torque"),
-        ('command = "torque"\nlaw = "constant"\nvalue = "1 N"', "leg.drive.value", "N m"),
-    ])  # fmt: skip
-    def test_refused(self, text, key, words):
-        old = 'command = "position"         # ours'
-        with pytest.raises(InputError) as caught:
-            changed((old, f"{text} # ours"))
-        assert caught.value.key == key and words in str(caught.value)
-
     def test_files(self, tmp_path):
         head = "time [s], " + ", ".join(f"leg {i} [N m]" for i in range(1, 7))
         (tmp_path / "torques.csv").write_text(f"{head}\n0, 1, 2, 3, 4, 5, 6\n1, 2, 2, 3, 4, 5, 6\n")

@@ -167,19 +167,6 @@ def test_shapes_that_do_not_know_shear_are_refused(settings):
         fx.ladder(thick)
 
 
-@pytest.mark.parametrize(("piston", "words"), [
-    ('{ sections = [], bow = 0 }', r"leg\.piston\.sections.*is empty"),
-    ('{ sections = [{ length = 1, diameter = 0.03, material = "steel" }], diameter = 0.03 }', "together with sections"),
-    ('{ sections = [{ length = 1, material = "steel" }] }', r"sections\[1\]\.diameter.*is missing"),
-    ('{ sections = [{ length = 1, width = 0.03, material = "steel" }] }', "does not fit the other sizes"),
-    ('{ sections = [{ length = 1, diameter = 0.03, inner_diameter = 0.04, material = "steel" }] }', "leaves no wall"),
-    ('{ length = 1, EI = 1, EA = 1, rhoA = 1, shear = true }', r"leg\.piston\.shear.*needs a section and a material"),
-])  # fmt: skip
-def test_bad_sections_are_refused(piston, words):
-    with pytest.raises(fx.InputError, match=words):
-        fx.loads(re.sub(r"piston = \{ dia.*?\}", "piston = " + piston, preset_text("paper-robot"), count=1))
-
-
 def test_sections_go_through_a_file_and_a_sweep():
     of = study(40)
     assert fx.loads(fx.model.to_toml(of)).robot == of.robot

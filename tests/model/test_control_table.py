@@ -107,32 +107,6 @@ def test_settings_of_a_call_stand_in_place_of_those_of_the_table():
     assert np.abs(limited.control_input.values).max() == 1e-3
 
 
-@pytest.mark.parametrize(
-    ("table", "preset", "words"),
-    [
-        (IFF, "paper-robot", "keeps its command whatever the force"),
-        (IFF.replace("iff", "lqr"), "nano-hexapod", "Allowed: iff, dvf, pid, tool-pid, file"),
-        (IFF.replace("gain = 200", "gain = -1"), "nano-hexapod", "control.gain"),
-        (IFF.replace('sample = "0.1 ms"', ""), "nano-hexapod", "sample"),
-        (DVF + "high_pass = 1\n", "nano-hexapod", "high_pass"),
-        (PID.replace("0.2 N/um", "2 N"), "nano-hexapod", r"control.proportional = '2 N'.* N/m"),
-        (PID.replace('"2 kN/(m s)"', "-1"), "nano-hexapod", "control.integral = -1"),
-        ('[control]\nlaw = "pid"\nsample = 1e-4\n', "nano-hexapod", "control.proportional: is 0, and so are"),
-        (TOOL.replace("500, 500, 200", "500, -500, 200"), "nano-hexapod", r"proportional\[5\]"),
-        (TOOL.replace("30, 30, 120,", "30, 30,"), "nano-hexapod", "6 numbers"),
-        (
-            FILE.replace('"law.json"', '"none.json"'),
-            "nano-hexapod",
-            "control.file = 'none.json': cannot be read: No such",
-        ),
-        (FILE.replace("law.json", "law.txt"), "nano-hexapod", "Write it as .npz, .mat, .json"),
-    ],
-)
-def test_refusals(table, preset, words):
-    with pytest.raises(InputError, match=words):
-        study(table, preset)
-
-
 def test_keys_of_the_table_are_those_of_sweeps():
     sweep = read_plan({"vary": [{"key": "control.gain", "values": [100.0, 300.0]}]})
     found = Points(study(IFF), sweep)

@@ -43,32 +43,6 @@ def test_moments_by_load():
     assert StrokeFriction(force=10.0).presliding == 1e-5
 
 
-@pytest.mark.parametrize(
-    ("key", "text", "said"),
-    [
-        ("leg.base_joint.friction", "{ viscous = 1.0 }", "friction.moment: is missing"),
-        ("leg.base_joint.friction", "{ moment = 1.0, mu = 0.1, diameter = 0.04 }", "given together with moment"),
-        ("leg.base_joint.friction", "{ mu = 0.1 }", "diameter: is missing"),
-        ("leg.base_joint.friction", "{ moment = 1.0, diameter = 0.04 }", "no use without mu or f1"),
-        ("leg.base_joint.friction", "{ moment = 1.0, f1 = 0.001, diameter = 0.04 }", "belongs to M0"),
-        ("leg.base_joint.friction", "{ M0 = 0.0 }", "leave no friction"),
-        ("leg.base_joint.friction", "{ moment = 1.0, stribeck = { moment = 0.5, rate = 1.0 } }", "at least 1 N m"),
-        ("leg.base_joint.friction", "{ mu = 0.1, diameter = 0.04, stribeck = { moment = 1, rate = 1.0 } }", "constant"),
-        ("leg.base_joint.friction", "{ moment = -1.0 }", "above 0"),
-        ("leg.base_joint.friction", "{ moment = 1.0, presliding = 0 }", "above 0"),
-        ("leg.base_joint.friction", "{ moment = 1.0, presliding = 1e-9 }", "at least 1e-08 rad"),
-        ("leg.base_joint.friction", "{ mu = 1000, diameter = 0.04 }", "plain joints have 0.02 to 0.25"),
-        ("leg.drive.friction", "{ torque = 1.0, presliding = 1e-9 }", "less than an atom"),
-        ("leg.drive.friction", "{ force = '10 N' }", "torque"),
-    ],
-)
-def test_what_makes_no_sense_is_refused(key, text, said):
-    with pytest.raises(InputError) as caught:
-        of(key, text)
-    assert said in str(caught.value)
-    assert key in str(caught.value)
-
-
 def test_friction_of_what_does_not_turn_or_slide_is_refused():
     rubs = JointFriction(moment=1.0)
     leg = fx.loads(REAL_PARTS).robot.legs[0]

@@ -30,12 +30,6 @@ def robot(name, *pairs):
     return model.loads(changed(name, *pairs)).robot
 
 
-def refused(name, *pairs):
-    with pytest.raises(InputError) as caught:
-        model.loads(changed(name, *pairs), path="mine.toml")
-    return caught.value
-
-
 def test_there_are_nine_samples():
     types = {re.search(r'type = "([^"]+)"', text)[1] for text in SAMPLES.values()}
     assert types == {"6-UPS", "6-PUS", "3-RPS", "3-UPS+UP", "3-PRR", "3-PUU", "1-UPS", "6-FPF", "8-UPS"}
@@ -214,105 +208,6 @@ class TestPlacesAndWords:
         assert (drive.law, drive.value, drive.time) == ("constant", 500.0, None)
 
 
-REFUSALS = [
-    # (sample, replacements, key, words)
-    ("tripod", [('type = "3-RPS"', 'type = "4-RPS"')], "robot.base.angles", ("places 3", "4 angles", "4-RPS")),
-    ("tripod", [('type = "3-RPS"', 'type = "3-RPX"')], "robot.type", ("RPX: letters that make no leg", "UPS, RPS")),
-    ("tripod", [('type = "3-RPS"', 'type = ""')], "robot.type", ("COUNT-CHAIN",)),
-    ("tripod", [('type = "3-RPS"', 'type = "\u0663-RPS"')], "robot.type", ("COUNT-CHAIN",)),
-    ("tripod", [('350 mm", angles = [0, "120 deg", "240 deg"]', '350 mm", angles = [0, 120, 240]')],
-     "robot.base.angles", ("-2 pi to 2 pi", 'write degrees as "120 deg"')),
-    ("tripod", [('home_height = "0.6 m"', "home = { position = [0, 0, 0.6], rotation = [0, 0, 90] }")],
-     "robot.home.rotation", ("write degrees",)),
-    ("tripod", [('type = "3-RPS"', 'type = "3RPS"')], "robot.type", ("COUNT-CHAIN", "3-UPS+UP")),
-    ("tripod", [('type = "3-RPS"', 'type = "3-RS"')], "leg.strut", ("is missing", "strut = ")),
-    ("tripod", [('base = { radius = "350 mm", angles = [0, "120 deg", "240 deg"]', 'base = { radius = "350 mm", '
-      'half_angle = "5 deg"')], "robot.base.half_angle", ("3 joints", "odd number", "angles = ['0 deg', '120 deg'")),
-    ("hexapod", [('type = "6-UPS"', 'type = "8-UPS"')], "robot.base.half_angle", ("8 joints", "six joints")),
-    ("tripod", [('base = { radius = "350 mm", angles = [0, "120 deg", "240 deg"]', 'base = { radius = "350 mm"')],
-     "robot.base.angles", ("is missing",)),
-    ("tripod", [('axis = "tangential"', 'axis = "tangental"')], "leg.base_joint.axis", ("Did you mean 'tangential'",)),
-    ("tripod", [('base_joint = { axis = "tangential" }', 'base_joint = { axis = "tangential" }\nu_axis = [1, 0, 0]')],
-     "leg.u_axis", ("together with base_joint.axis",)),
-    ("tripod", [('axis = "tangential"', "axis = [0, 0, 0]")], "leg.base_joint.axis", ("no direction",)),
-    ("tripod", [('axis = "tangential"', "axis = [1e-300, 0, 0]")], "leg.base_joint.axis", ("no direction",)),
-    ("tripod", [('base_joint = { axis = "tangential" }', "u_axis = [1e-300, 0, 0]")], "leg.u_axis", ("no direction",)),
-    ("tripod", [('{ axis = "tangential" }', '{ axs = "tangential" }')], "leg.base_joint.axs", ("Did you mean 'axis'",)),
-    ("tripod", [('"roll", "pitch"]', '"rol", "pitch"]')], "motion.independent", ("surge, sway, heave",)),
-    ("tripod", [('"roll", "pitch"]', '"roll", "roll"]')], "motion.independent", ("each axis once",)),
-    ("tripod", [('"heave", "roll", "pitch"]', '"heave", "pitch"]')], "motion.type", ("asks for roll", "heave, pitch")),
-    ("tripod", [("damping = 0.005", 'damping = 0.005\nchain = "UPS"')], "leg.chain", ("RPS, as robot.type says",)),
-    ("tripod", [("damping = 0.005", "damping = 0.005\npassive = 1")], "leg.passive", ("neither true nor false",)),
-    ("tripod", [("damping = 0.005", "damping = 0.005\ncount = 2")], "leg", ("appears once, for 2 legs", "3 legs")),
-    ("tripod", [("damping = 0.005", 'damping = 0.005\nstrut = { length = 1, diameter = "9 mm", material = "steel" }')],
-     "leg.piston", ("together with strut",)),
-    ("tricept", [("passive = true ", "")], "leg[2].passive", ("must be said for UP", "true if nothing drives it")),
-    ("tricept", [("count = 3", "count = 2")], "[[leg]]", ("for 3 legs together", "4 legs (3-UPS+UP)")),
-    ("tricept", [('type = "3-UPS+UP"', 'type = "2-UPS+2-UP"')], "leg[1]", ("several kinds (UP, UPS)",)),
-    ("tricept", [("passive = true ", 'passive = true\ndrive = { type = "servo", stiffness = 1 }')],
-     "leg[2].drive", ("drives a passive leg",)),
-    ("tricept", [("passive = true ", 'passive = true\ndrive = { type = "force" }')],
-     "leg[2].drive", ("drives a passive leg", "Leave it out")),
-    ("strut", [("[initial]", "[load]\nwrench = [0, 0, 10, 0, 0, 0]\n[initial]")],
-     "load.wrench", ("platform that is fixed", "Leave it out")),
-    ("tricept", [("axis = [1, 0, 0]", 'axis = "radial"')], "leg[2].base_joint.axis", ("lies on the axis",)),
-    ("hexaglide", [("slider = [0, 0, 1], ", "")], "leg.carriage.slider", ("is missing", "For example: ".lower())),
-    ("hexaglide", [("slider = [0, 0, 1]", "crank = [0, 0, 1], arm = [0.1, 0, 0]"),
-      (', stroke = { min = 0, max = "0.6 m" }', "")],
-     "leg.carriage", ("is a crank",)),
-    ("hexaglide", [("slider = [0, 0, 1]", "slider = [0, 0, 1e-300]")], "leg.carriage.slider", ("no direction",)),
-    ("hexaglide", [("slider = [0, 0, 1]", "slider = [0, 0, 1e300]")], "leg.carriage.slider", ("out of range",)),
-    ("hexaglide", [('slider = [0, 0, 1], mass = "3 kg", stroke = { min = 0, max = "0.6 m" }, side = -1',
-      'crank = "radial", radius = 0.1, home = 90')], "leg.carriage.home", ("write degrees",)),
-    ("hexaglide", [("damping = 0.005", "damping = 0.005\ncylinder = { mass = 1, com = 0, inertia = 0, mouth = 0.1 }")],
-     "leg.cylinder", ("does not fit a strut (chain PUS)",)),
-    ("hexaglide", [("side = -1", "side = 2")], "leg.carriage.side", ("1 or -1",)),
-    ("hexaglide", [("side = -1", "side = -1, home = 0.2")], "leg.carriage.side", ("together with home",)),
-    ("hexaglide", [('length = "0.7 m"', 'length = "0.2 m"')], "leg.strut.length", ("leg 1", "from no position")),
-    ("hexaglide", [("damping = 0.005", "damping = 0.005\nstroke = { min = 0, max = 1 }")],
-     "leg.stroke", ("does not have", "carriage.stroke")),
-    ("hexaglide", [('diameter = "20 mm", inner_diameter = "16 mm"', "section = { width = 0.02, thickness = 0.002 }")],
-     "leg.strut", ("bends in a plane only",)),
-    ("hexaglide", [('type = "6-PUS"', 'type = "6-US"'), ('slider = [0, 0, 1], mass = "3 kg", stroke = { min = 0, max = '
-      '"0.6 m" }, side = -1', "slider = [0, 0, 1]")], "leg.carriage", ("is a slider (chain US)",)),
-    ("hexapod", [("damping = 0.005", 'damping = 0.005\ncarriage = { slider = "radial" }')],
-     "leg.carriage", ("is a slider (chain UPS)", "PUS")),
-    ("hexapod", [("damping = 0.005", "damping = 0.005\nplatfrom_joint = {}")], "leg.platfrom_joint",
-     ("Did you mean 'platform_joint'",)),
-    ("hexapod", [('home_height = "0.9 m"', 'home_height = "0.9 m"\nhome = { position = [0, 0, 1] }')],
-     "robot.home_height", ("together with home",)),
-    ("hexapod", [('home_height = "0.9 m"', "home = { rotation = [0, 0, 0] }")], "robot.home.position", ("is missing",)),
-    ("planar", [("surge = ", "heave = ")], "motion.type", ("out of the plane xy", "surge, sway, yaw")),
-    ("planar", [("[0.24, 0]", "[0.24, 0, 0.1]")], "robot.base", ("out of the plane xy", "z = 0")),
-    ("planar", [("[0.24, 0]", "[0.24]")], "robot.base.joints[1]", ("two in the plane xy",)),
-    ("planar", [('plane = "xy"', 'plane = "yx"')], "robot.plane", ("xy, yz, zx",)),
-    ("planar", [('slider = "tangential"', 'slider = "vertical"')], "leg.carriage", ("out of the plane xy",)),
-    ("planar", [("damping = 0.005", "damping = 0.005\nbase_joint = { axis = [1, 0, 0] }")],
-     "leg.base_joint.axis", ("the normal",)),
-    ("strut", [("fixed = true", "fixed = 1")], "robot.platform.fixed", ("neither true nor false",)),
-    ("strut", [("fixed = true", "fixed = false")], "payload", ("is missing",)),
-    ("strut", [("[initial]", '[motion]\ntype = "heave"\namplitude = 0.1\nduration = 1\n[initial]')],
-     "motion.type", ("fixed",)),
-    ("hexapod", [('150 mm", half_angle = "10 deg"', '150 mm", half_angle = "10 deg", fixd = true')],
-     "robot.platform.fixd", ("Did you mean 'fixed'",)),
-    ("eight-legs", [('law = "constant", value = "500 N"', 'law = "constant"')], "leg[2].drive.value", ("is missing",)),
-    ("eight-legs", [('law = "constant", value = "500 N"', 'value = "500 N"')], "leg[2].drive.value", ("law 'rigid'",)),
-    ("eight-legs", [("  [0.12, 0.30, 0], [0.12, -0.30, 0],\n", "")], "robot.base.joints", ("8 rows",)),
-    ("flexures", [('base_joint = { bending = "15 N m/rad"', 'base_joint = { bending = "15 N m"')],
-     "leg.base_joint.bending", ("is not a rotational stiffness", "N m/rad")),
-    ("flexures", [('base_joint = { bending', "base_joint = { stiffness = [[1, 2, 0], [0, 1, 0], [0, 0, 1]], bending")],
-     "leg.base_joint.stiffness", ("belongs to no spring",)),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("name", "pairs", "key", "words"), REFUSALS)
-def test_bad_mechanisms_are_refused_in_words(name, pairs, key, words):
-    error = refused(name, *pairs)
-    assert error.exit_code == 2
-    assert (error.file, error.key) == ("mine.toml", key), str(error)
-    assert all(word in str(error) for word in words), str(error)
-
-
 def test_what_only_python_can_give():
     found = robot("hexapod")
     with pytest.raises(InputError, match="says 6 legs, and there are 5"):
@@ -344,16 +239,3 @@ def test_what_only_python_can_give():
 def test_the_help_of_new_names_every_preset():
     text = (Path(__file__).parents[2] / "src/flexapod/app/cli/commands_study.py").read_text(encoding="utf-8")
     assert all(name in text for name in model.PRESETS)
-
-
-@pytest.mark.parametrize("end", ["base_joint", "platform_joint"])
-@pytest.mark.parametrize(("key", "words"), [("loss = 3", "at most 2"), ('damping = "-1 N s/m"', "at least 0")])
-def test_what_damps_a_joints_stiffness_is_refused_under_its_key(end, key, words):
-    """Once `leg.base_joint.stiffness_loss`, which no file has."""
-    name = key.partition(" ")[0]
-    stiffness = f'{{ axial = "100 N/um", radial = "50 N/um", {key} }}'
-    text = replaced(model.preset_text("paper-robot"), ("[leg] ", f"[leg]\n{end} = {{ stiffness = {stiffness} }} "))
-    with pytest.raises(InputError) as caught:
-        model.loads(text)
-    assert caught.value.key == f"leg.{end}.stiffness.{name}"
-    assert words in str(caught.value)

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 from tests.helpers.machines import BEARING, NUT, SCREW, SOFT, machine, study, symmetric
-from tests.helpers.texts import REAL_PARTS, replaced
+from tests.helpers.texts import REAL_PARTS
 from typer.testing import CliRunner
 
 import flexapod as fx
@@ -37,13 +37,6 @@ from flexapod.solve.statics.parts import part_stiffness
 pytestmark = pytest.mark.unit
 
 UM = 1e6  # N/m
-
-
-def refused(*pairs):
-    text = replaced(REAL_PARTS, *pairs)
-    with pytest.raises(InputError) as caught:
-        fx.loads(text, path="mine.toml")
-    return caught.value
 
 
 def along(name, length, screw, piston=0.0):
@@ -137,47 +130,6 @@ def test_the_parts_of_a_machine():
     np.testing.assert_allclose(1 / data.leg_stiffness, (1 / data.part_stiffness).sum("part"), rtol=1e-12)
     higher = fx.parts(robot, [0, 0, 0.05, 0, 0, 0])
     assert (higher.part_stiffness.sel(part="screw") < data.part_stiffness.sel(part="screw")).all()
-
-
-@pytest.mark.parametrize(
-    ("pairs", "key", "words"),
-    [
-        ([('preload = "2 kN"', 'preload = "4 kN"')], "leg.drive.nut.preload", "3080 N"),
-        ([('preload = "2 kN", ', "")], "leg.drive.nut.preload", "is missing"),
-        ([('preload = "2 kN"', 'backlash = "5 um", preload = "2 kN"')], "leg.drive.nut.backlash", "preloaded"),
-        ([('nut = { rigidity', 'nut = { stiffness = "1 N/um", rigidity')], "leg.drive.nut.rigidity", "stiffness"),
-        ([('lead = "10 mm"', 'lead = "-10 mm"')], "leg.drive.lead", "above 0"),
-        ([('"780 N/um"', '"-780 N/um"')], "leg.drive.bearing.stiffness", "above 0"),
-        ([('bearing = { stiffness = "780 N/um",', "bearing = {")], "leg.drive.bearing.stiffness", "is missing"),
-        ([('axial = "200 N/um"', 'axial = "0 N/um"')], "leg.base_joint.stiffness.axial", "above 0"),
-        (
-            [('radial = "150 N/um", loss = 0.01 }', 'radial = "150 N/um", loss = 0.01 }, play = "1 m"')],
-            "leg.base_joint.play",
-            "at most 5 %",
-        ),
-        (
-            [('rigidity = "1130 N/um", preload = "2 kN", dynamic_load = "30.8 kN"', "stiffness = 1e9, backlash = 1")],
-            "leg.drive.nut.backlash", "at most 5 %",
-        ),
-        ([("base_joint = {", "guide = { gland = 1e8, head = 1e8, clearance = 1 }\nbase_joint = {")],
-         "leg.guide.clearance", "at most 5 %"),
-        ([('axial = "200 N/um"', "axial = 1e-300")], "leg.base_joint.stiffness.axial", "1e-09 to"),
-        (
-            [("loss = 0.01 }", 'loss = 0.01, damping = "1 N s/m" }')],
-            "leg.base_joint.stiffness.damping",
-            "either of the two",
-        ),
-        ([('bracket = "500', 'nut = "500')], "leg.springs.nut", "letters"),
-        ([('bracket = "500 N/um"', 'bracket = "-500 N/um"')], "leg.springs.bracket", "above 0"),
-        ([('command = "servo"', 'command = "position"')], "leg.drive.loop", "servo"),
-        ([('loop = { stiffness = "5 kN m/rad", damping = "20 N m s/rad" }', "")], "leg.drive.loop", "is missing"),
-        ([('stiffness = "5 kN m/rad"', 'stiffness = "5 N/m"')], "leg.drive.loop.stiffness", "N m/rad"),
-    ],
-)  # fmt: skip
-def test_refusals(pairs, key, words):
-    error = refused(*pairs)
-    assert error.key == key
-    assert words in str(error)
 
 
 def test_a_spring_has_no_name_of_another_part_or_cause():

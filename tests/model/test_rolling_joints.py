@@ -86,18 +86,6 @@ def test_refusals(more, key):
     assert caught.value.key == key
 
 
-def test_a_file_is_refused_with_its_keys():
-    text = to_toml(study(machine(base_joint=Joint(rolling=law()))))
-    for old, new, key in (
-        ('"NA49"', '"NA50"', "series"),
-        ("load = 300.0", "load = -1", "load"),
-        ("bore", "boar", "boar"),
-    ):
-        with pytest.raises(InputError) as caught:
-            fx.loads(text.replace(old, new), path="mine.toml")
-        assert caught.value.key == f"leg.base_joint.stiffness.{key}"
-
-
 def test_a_load_far_from_that_of_the_law_is_remarked_on():
     # A ton on six legs: some 1.9 kN each.
     far, near = (study(machine(base_joint=Joint(rolling=law(load=load)))) for load in (300.0, 1900.0))

@@ -5,9 +5,7 @@ from pathlib import Path
 
 import pytest
 from tests.helpers.tables import classes
-from tests.helpers.texts import replaced
 
-from flexapod.common.errors import InputError
 from flexapod.common.tables.key_rows import list_entries
 from flexapod.common.tables.reference import example_line, plain_path, reference
 from flexapod.common.tables.toml import toml_value
@@ -139,23 +137,3 @@ def test_a_default_in_words_is_what_the_reader_takes(key):
     assert toml_value(value).strip('"') == reference().defaults[key]
     assert loads(text.replace(line, "")).robot == loads(text).robot
     assert table == "robot"
-
-
-REFUSED = (
-    ('type = "roll" ', 'type = "combined"\nsurge = "200 mm" #', "motion.surge", 'amplitudes = { surge = "20 mm"'),
-    ('amplitude = "26.6 deg"', 'amplitdue = "2 deg"', "motion.amplitdue", "'amplitude'? For example: amplitude = "),
-    ('amplitude = "26.6 deg"', 'amplitudes = "2 deg"', "motion.amplitudes", 'For example: amplitude = "10 deg"'),
-    ('mass = "100 kg"', "", "payload.mass", 'Add payload.mass, for example: mass = "100 kg"'),
-    ("com = [0,", "com = [", "payload.com", 'For example: com = [0, "373 mm", 0]'),
-    ('type = "prescribed"', 'type = "servo", stifness = 1', "leg.drive.stifness", 'stiffness = "50 N/um"'),
-    ('type = "prescribed"', 'type = "force", damping = 1', "leg.drive.damping", "feedback = { stiffness ="),
-    ('drive = { type = "prescribed" }', 'drive = "servo"', "leg.drive", 'drive = { type = "prescribed" }'),
-)  # fmt: skip
-
-
-@pytest.mark.parametrize(("old", "new", "key", "words"), REFUSED, ids=[case[2] for case in REFUSED])
-def test_a_wrong_key_is_refused_with_the_right_form(old, new, key, words):
-    with pytest.raises(InputError) as caught:
-        loads(replaced(preset_text("paper-robot"), (old, new)), path="robot.toml")
-    assert caught.value.key == key
-    assert words in str(caught.value)

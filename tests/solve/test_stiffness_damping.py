@@ -135,23 +135,6 @@ def test_in_files_and_back(text, old):
     assert plain[f"{table}.damping"].bounds.words == "at least 0, below 1"
 
 
-@pytest.mark.parametrize(
-    ("value", "key", "words"),
-    [
-        ('{ ratio = 1.5, stiffness = "1e-4 s" }', "leg.damping.ratio", "below 1"),
-        ('{ stiffness = "-1 ms" }', "leg.damping.stiffness", "at least 0"),
-        ('{ stiffness = "3 N/m" }', "leg.damping.stiffness", "is not a time"),
-        ("{ rate = 0.1 }", "leg.damping.rate", "ratio, stiffness"),
-        ("1.5", "leg.damping", "below 1"),
-        ('"1 ms"', "leg.damping", "number"),
-    ],
-)
-def test_what_is_refused(value, key, words):
-    with pytest.raises(InputError, match=words) as error:
-        loads(ROBOT.replace("damping = 0.005", f"damping = {value} "))
-    assert error.value.key == key
-
-
 def test_what_is_refused_from_python():
     leg = paper_robot().robot.legs[0]
     for damping, key in ((-0.1, "damping"), ("much", "damping"), ({"ratio": 2.0}, "damping.ratio")):
