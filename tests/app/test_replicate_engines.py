@@ -54,7 +54,7 @@ def few(monkeypatch):
 
 
 def replaced(monkeypatch, result):
-    def repeat(folder, *, engines, figures, progress):
+    def repeat(folder, *, engines, formats, progress):
         assert engines
         folder.mkdir(exist_ok=True)
         (folder / "report.html").write_text("page")

@@ -32,7 +32,7 @@ class Limit(NamedTuple):
     sense: int
 
     def margin(self, found: float) -> float:
-        """What is left of the limit, over its size; below 0 where it is not kept."""
+        """Rest of the limit over its size; below 0 where it is not kept."""
         return self.sense * (found - self.value) / (abs(self.value) or 1.0)
 
 
@@ -65,7 +65,7 @@ class Front:
 
 @dataclass(frozen=True, kw_only=True)
 class Problem:
-    """What is optimised; `sense` is 1 for the least of the objective and -1 for the most."""
+    """Problem of an optimisation; `sense` is 1 for the least of the objective and -1 for the most."""
 
     variables: tuple[Variable, ...]
     choices: tuple[Choice, ...]

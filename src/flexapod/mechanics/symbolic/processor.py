@@ -58,7 +58,7 @@ def system_name(system: str, machine: str) -> str:
 
 
 def file_stem(system: str, target: str | None) -> str:
-    """What the name of a file of loops begins with."""
+    """Begin of the name of a file of loops."""
     return f"{system}-{target}" if target else system
 
 
@@ -86,7 +86,7 @@ def processor() -> str:
 
 @cache
 def _told() -> dict[str, str]:
-    """What Linux says of the first processor."""
+    """Flags that Linux names of the first processor."""
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:

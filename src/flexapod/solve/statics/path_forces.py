@@ -28,7 +28,7 @@ class PathForces:
     """
 
     def __init__(self, path: kinematics.PathSeries) -> None:
-        self.path = path
+        self.path: kinematics.PathSeries = path
         legs = path.limbs
         turning = (legs.state[:, CHI] == DRIVEN) & (legs.carriage == "crank")
         drives = np.where(turning, 1 / path.length, 1.0)  # to newtons: a group has one physical scale
