@@ -38,7 +38,8 @@ class StudyValues:
     """Scalar outputs of one study at a pose; what several of them need is computed once, when it is asked for."""
 
     def __init__(self, study: Study, pose: PoseLike = None) -> None:
-        self.study, self.pose = study, pose
+        self.study: Study = study
+        self.pose: PoseLike = pose
 
     def values(self, names: Iterable[str]) -> dict[str, float]:
         """Numbers of these outputs, SI; NaN where the study has none.

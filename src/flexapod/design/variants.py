@@ -35,7 +35,8 @@ class Variants:
     """Variants of a robot's study by the keys of its file."""
 
     def __init__(self, study: Study) -> None:
-        self.study, self._files = study, files_of(study)
+        self.study: Study = study
+        self._files = files_of(study)
         self.data: dict[str, Any] = tomllib.loads(study.source_text)
 
     @cached_property

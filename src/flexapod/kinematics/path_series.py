@@ -10,7 +10,7 @@ from flexapod.common.piecewise_chebyshev import NODES, Pieces
 from flexapod.kinematics.closures import ClosureMotion
 from flexapod.kinematics.discontinuities import motion_breaks, path_knots
 from flexapod.kinematics.laws import Law
-from flexapod.kinematics.leg_geometry import COORDINATES
+from flexapod.kinematics.leg_geometry import COORDINATES, Limbs
 from flexapod.kinematics.rigid_poses import RigidPoses
 from flexapod.kinematics.robot import poses, poses_with_legs, rigid_limbs
 from flexapod.kinematics.trajectory import Poses
@@ -27,15 +27,17 @@ class PathSeries:
     """
 
     def __init__(self, robot: Robot, motion: Motion, duration: float) -> None:
-        self.robot, self.motion, self.duration = robot, motion, duration
-        self.knots = path_knots(motion, duration)
-        self.limbs = rigid_limbs(robot)
+        self.robot: Robot = robot
+        self.motion: Motion = motion
+        self.duration: float = duration
+        self.knots: Array = path_knots(motion, duration)
+        self.limbs: Limbs = rigid_limbs(robot)
         self._jumps = np.array(motion_breaks(motion).jumps)
         with_series = not self.limbs.plain or self.limbs.guides
         self._pieces = Pieces(self._groups, self.knots) if with_series else None
         self._constraints: Pieces | None = None
         lengths = {"l", "chi"} if self.limbs.carriage == "slider" else {"l"}
-        self.length = float(self.limbs.home[:, COORDINATES.index("l")].mean())
+        self.length: float = float(self.limbs.home[:, COORDINATES.index("l")].mean())
         unit = [1.0 if name in lengths else self.length for name in COORDINATES] * len(self.limbs)
         self._places = np.array([1.0] * 3 + [self.length] * 9 + unit)  # a group has one physical scale
         self._rates = np.array([1.0] * 3 + [self.length] * 3 + unit)

@@ -11,7 +11,7 @@ import numpy as np
 from flexapod import kinematics
 from flexapod.analysis.results.remarks import remark
 from flexapod.common.arrays import Array
-from flexapod.kinematics.closures import Closed
+from flexapod.kinematics.closures import Closed, ClosureMotion
 from flexapod.kinematics.inverse import LegState, lengths_of
 from flexapod.kinematics.robot import leg_map
 from flexapod.model import ActuatorStudy, Robot, Study
@@ -84,7 +84,7 @@ class RigidPath(kinematics.RigidPoses):
     def poses(self) -> kinematics.Poses:
         """Poses of the platform frame with rates and accelerations."""
         found = self.series.at(self.time)
-        self.moved = found.moved
+        self.moved: ClosureMotion | None = found.moved
         return found.poses
 
     @cached_property

@@ -13,7 +13,7 @@ from flexapod.solve.kernel import Kernel
 from flexapod.solve.system import Index
 from flexapod.solve.time.native import address, loops, memory
 
-GAUSS = np.array([[1 / 4, 1 / 4 - np.sqrt(3) / 6], [1 / 4 + np.sqrt(3) / 6, 1 / 4]])
+GAUSS: Array = np.array([[1 / 4, 1 / 4 - np.sqrt(3) / 6], [1 / 4 + np.sqrt(3) / 6, 1 / 4]])
 STAGES = 0.5 + np.sqrt(3) / 6 * np.array([-1.0, 1.0])  # of a step, at which loads are taken
 _ROOTS, _AXES = np.linalg.eig(GAUSS)
 #: The eigenvalue of one stage, its row of the inverse eigenvectors and its weight; the other stage is its conjugate.

@@ -218,7 +218,7 @@ TOPICS = (
         status=HERE,
         here="Any section and material; sweeps over any value ([sweep.md](sweep.md)); hollow and thinner pistons in a "
         "row below",
-        call='fx.modes(fx.loads(study.source_text.replace("steel", "titanium")))',
+        call='fx.modes(study.with_values({"leg.piston.material": "titanium"}))',
     ),
     Topic(
         paper="4.4, thermal, fluidic, electromagnetic effects",
