@@ -9,6 +9,7 @@ import numpy as np
 
 from flexapod.analysis.results.arguments import PoseLike, RobotLike, as_study
 from flexapod.analysis.results.attributes import attributes
+from flexapod.analysis.results.time_history import check_progress
 from flexapod.analysis.results.variables import Variable, dataset
 from flexapod.analysis.scalar_outputs import DEFAULTS, OUTPUTS, StudyValues, check_output
 from flexapod.common.arrays import Array
@@ -102,6 +103,7 @@ def sensitivity(
     >>> print(data.sensitivity.values.round(2).item())
     -0.52
     """
+    check_progress(progress)
     whole = as_study(study)
     if whole.robot.platform_fixed:
         raise InputError("has a platform that is fixed: its tool does not move", key="study")

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from flexapod.analysis.scalar_outputs import OUTPUTS
 from flexapod.common.arguments import integer
 from flexapod.common.errors import InputError, check_kind, check_known
+from flexapod.common.files import path_of
 from flexapod.common.units import to_si
 from flexapod.design.first_robot.catalogue import SCREWS, Screw
 from flexapod.design.sensitivity import check_outputs
@@ -91,7 +92,7 @@ def read_problem(design: Mapping[str, Any] | str | Path, variants: Variants) -> 
     """
     if isinstance(design, str | Path):
         try:
-            data: Mapping[str, Any] = tomllib.loads(Path(design).read_text(encoding="utf-8"))
+            data: Mapping[str, Any] = tomllib.loads(path_of(design, "design").read_text(encoding="utf-8"))
         except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
             raise InputError(f"cannot be read: {error}", file=design) from None
     else:
