@@ -28,7 +28,7 @@ VAGUE_ON_PURPOSE: dict[str, str] = {
     "when_bending_matters.when_bending_matters": "the heading of an example",
 }
 #: Names that only look like participles (grid, rigid, build), or belong to users or to a library (sampled, disabled).
-MOST_PARTICIPLES = 54
+MOST_PARTICIPLES = 45
 #: Modules whose name is no participle, or says which of two it is.
 MODULES = frozenset({"grid", "interpreted", "overconstrained", "solid"})
 

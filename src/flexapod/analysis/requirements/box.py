@@ -14,8 +14,7 @@ from flexapod.analysis.results.bodies import joint_angle_limits, joint_angles
 from flexapod.common.arrays import Array, Mask
 from flexapod.common.errors import InputError
 from flexapod.common.ranking import first_largest
-from flexapod.kinematics.envelope import Box as EnvelopeBox
-from flexapod.kinematics.envelope import LegRange, leg_range
+from flexapod.kinematics.envelope import Box, LegRange, leg_range
 from flexapod.model import AXES, Requirement, Robot
 
 LARGEST = 8.0  # times the box, up to which it is looked for its limits
@@ -27,7 +26,7 @@ FORBIDDEN = {"joint_folds", "joint_stops"}  # reasons of joints, whose leg is to
 
 
 @dataclass(frozen=True)
-class Box:
+class RequiredBox:
     """Ranges ``low`` and ``high`` (6,) of surge to yaw [m, rad] about home, of the axes that are ``moved`` (6,).
 
     ``alone``: each axis with the others at home; turns are about the point ``pivot`` (3,) of the platform frame [m].
@@ -46,7 +45,7 @@ class Box:
         return self._points((0, 2))
 
     @property
-    def looked(self) -> Array:
+    def trial_points(self) -> Array:
         """Corners, middles of edges and faces, home: three values of each axis, (P, 6)."""
         return self._points((0, 1, 2))
 
@@ -65,11 +64,11 @@ class Box:
         return found
 
     @property
-    def envelope(self) -> EnvelopeBox:
+    def envelope(self) -> Box:
         """The same for the lengths of its legs."""
-        return EnvelopeBox(low=self.low, high=self.high, pivot=self.pivot, alone=self.alone)
+        return Box(low=self.low, high=self.high, pivot=self.pivot, alone=self.alone)
 
-    def scaled(self, scale: float) -> Box:
+    def in_proportion(self, scale: float) -> RequiredBox:
         """The box in proportion."""
         return replace(self, low=scale * self.low, high=scale * self.high)
 
@@ -78,7 +77,7 @@ class Box:
         return kinematics.poses_from_home(self.robot, values, self.moved, self.pivot)
 
 
-def box_of(robot: Robot, wanted: Requirement) -> Box:
+def box_of(robot: Robot, wanted: Requirement) -> RequiredBox:
     """The box that is asked of a robot; of one axis at least where there are ranges.
 
     Raises
@@ -101,7 +100,7 @@ def box_of(robot: Robot, wanted: Requirement) -> Box:
                 allowed=", ".join(axis for k, axis in enumerate(AXES) if free[k]), next_step="Leave it out",
             )  # fmt: skip
     low, high = (np.array([0.0 if x is None else x[side] for x in ends]) for side in (0, 1))
-    return Box(robot, moved, low, high, wanted.alone, pivot)
+    return RequiredBox(robot, moved, low, high, wanted.alone, pivot)
 
 
 def _free_axes(robot: Robot, explicit: Mask, pivot: Array) -> Mask:
@@ -140,14 +139,14 @@ class BoxReach:
     looked: int
 
 
-def box_reach(box: Box) -> BoxReach:
+def box_reach(box: RequiredBox) -> BoxReach:
     """Legs, joints and singularities over a box.
 
     Lengths for sure by `kinematics.envelope`, Eqs. (T2.49)-(T2.52), of legs that are vectors between joints; joints,
     singularities and other legs at its corners, and three values of each axis. A pose out of reach is a proof that the
     box is not kept; that it is, poses alone do not prove.
     """
-    values = box.looked
+    values = box.trial_points
     at = kinematics.RigidPoses(box.robot, box.poses(values))
     code = rigid_codes(at, from_home=True)
     lengths = leg_range(box.robot, box.envelope)
@@ -189,17 +188,17 @@ def _with_pose(reach: BoxReach, at: kinematics.RigidPoses, code: Codes, values: 
     return replace(reach, worst=values[worst], leg=_leg(at, excess, worst, reason.flag), reason=reason.words)
 
 
-def _scale(box: Box, *, within: bool) -> float:
+def _scale(box: RequiredBox, *, within: bool) -> float:
     """Largest part of the box, in proportion, of which no pose was found out of reach; at most `LARGEST`."""
-    values = box.corners if within else box.looked
+    values = box.corners if within else box.trial_points
 
-    def reached(scale: float) -> bool:
+    def keeps_limits(scale: float) -> bool:
         at = kinematics.RigidPoses(box.robot, box.poses(scale * values))
         if not (rigid_codes(at, from_home=True) == REACHED).all():
             return False
-        return not leg_range(box.robot, box.scaled(scale).envelope, parts=()).out.any()
+        return not leg_range(box.robot, box.in_proportion(scale).envelope, parts=()).out.any()
 
-    return largest_reached(reached, within=within)
+    return largest_reached(keeps_limits, within=within)
 
 
 def largest_reached(reached: Callable[[float], bool], *, within: bool) -> float:

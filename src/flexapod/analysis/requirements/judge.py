@@ -16,7 +16,7 @@ from flexapod.analysis.description.robot_description import describe_legs
 from flexapod.analysis.description.screw_description import describe_screws
 from flexapod.analysis.error_budget.rows import names_of_rows
 from flexapod.analysis.pose_values import PoseRequest, Values, batch_values
-from flexapod.analysis.requirements.box import Box, box_of, box_reach
+from flexapod.analysis.requirements.box import RequiredBox, box_of, box_reach
 from flexapod.analysis.requirements.drives import (
     accelerations,
     has_force_limits,
@@ -26,8 +26,8 @@ from flexapod.analysis.requirements.drives import (
     speeds,
 )
 from flexapod.analysis.requirements.errors import ErrorTerms
-from flexapod.analysis.requirements.findings import HOME, Finding, worst_of
-from flexapod.analysis.requirements.states import COLD, State, as_drawn, states_of
+from flexapod.analysis.requirements.judgements import HOME, Judgement, worst_of
+from flexapod.analysis.requirements.states import COLD, LoadState, as_drawn, states_of
 from flexapod.analysis.results.bodies import clearance
 from flexapod.analysis.results.rigid_path import RigidPath
 from flexapod.common.arrays import Array
@@ -54,7 +54,7 @@ class Judge:
     def __init__(self, study: Study) -> None:
         self.study = study
         self.wanted: Requirement = study.requirement  # type: ignore[assignment]
-        self.box: Box | None = box_of(study.robot, self.wanted) if self.wanted.has_box else None
+        self.box: RequiredBox | None = box_of(study.robot, self.wanted) if self.wanted.has_box else None
 
     @cached_property
     def points(self) -> Array:
@@ -62,9 +62,9 @@ class Judge:
         return np.concatenate([HOME[None], np.zeros((0, 6)) if self.box is None else self.box.corners])
 
     @cached_property
-    def looked(self) -> Array:
+    def trial_points(self) -> Array:
         """Poses at which rigid measures are looked at, (P, 6): home, three values of each axis of the box."""
-        return np.concatenate([HOME[None], np.zeros((0, 6)) if self.box is None else self.box.looked])
+        return np.concatenate([HOME[None], np.zeros((0, 6)) if self.box is None else self.box.trial_points])
 
     def poses(self, points: Array) -> kinematics.Poses:
         """Poses of points of the box."""
@@ -72,12 +72,12 @@ class Judge:
         return kinematics.poses_from_home(robot, points) if self.box is None else self.box.poses(points)
 
     @cached_property
-    def states(self) -> list[State]:
+    def states(self) -> list[LoadState]:
         """States, cold and warm, with the most payload and the least."""
         return states_of(self.study)
 
     @cached_property
-    def loads(self) -> list[State]:
+    def loads(self) -> list[LoadState]:
         """One state of each payload."""
         return [state for state in self.states if state.heat == self.states[0].heat]
 
@@ -95,9 +95,9 @@ class Judge:
         elastic = ElasticRobot(study.robot, study.simulation, study.load)
         return batch_values(study, elastic, kinematics.RigidPoses(study.robot, self.poses(self.points)), request)
 
-    def findings(self) -> list[Finding]:
+    def findings(self) -> list[Judgement]:
         """Findings of all keys, in the order of the table."""
-        found: list[Finding] = []
+        found: list[Judgement] = []
         if self.box is not None:
             found += self._reach(self.box)
         for name in self.wanted.names:
@@ -109,7 +109,7 @@ class Judge:
                     for one in _stiffnesses(cast("LeastStiffness", self.wanted.stiffness))
                 ]
                 continue
-            one = Finding(
+            one = Judgement(
                 name=name,
                 unit="m" if name in ERRORS else UNITS.get(name, "1"),
                 wanted=getattr(self.wanted, name),
@@ -118,7 +118,7 @@ class Judge:
             found.append(self._protected(one, self._way(name)))
         return found
 
-    def _way(self, name: str) -> Callable[[Finding], Finding]:
+    def _way(self, name: str) -> Callable[[Judgement], Judgement]:
         ways = {
             "velocity": self._speed, "angular_velocity": self._speed, "acceleration": self._acceleration,
             "settling_time": self._settling, "force_margin": self._force, "buckling_factor": self._buckling,
@@ -127,16 +127,16 @@ class Judge:
         }  # fmt: skip
         return ways.get(name, self._elastic)
 
-    def _protected(self, asked: Finding, way: Callable[[Finding], Finding]) -> Finding:
+    def _protected(self, asked: Judgement, way: Callable[[Judgement], Judgement]) -> Judgement:
         """A finding, or that there is none where it cannot be computed."""
         try:
             return way(asked)
         except FlexapodError as error:
-            return asked.unknown(str(error))
+            return asked.without_number(str(error))
 
     # where the legs reach
 
-    def _reach(self, box: Box) -> list[Finding]:
+    def _reach(self, box: RequiredBox) -> list[Judgement]:
         """The box: one verdict for both keys, as the size that is reached in proportion."""
         reach, found = box_reach(box), []
         for name, part, unit in (("travel", slice(3), "m"), ("rotation", slice(3, 6), "rad")):
@@ -144,7 +144,7 @@ class Judge:
                 continue
             wanted = float(np.abs([box.low[part], box.high[part]]).max())
             found.append(
-                Finding(
+                Judgement(
                     name=name, unit=unit, wanted=wanted, at_most=False, found=wanted * reach.scale,
                     sure=reach.sure, pose=reach.worst, leg=reach.leg, why=reach.reason,
                 )
@@ -153,9 +153,9 @@ class Judge:
 
     # about the equilibrium
 
-    def _elastic(self, asked: Finding) -> Finding:
+    def _elastic(self, asked: Judgement) -> Judgement:
         if why := self._nothing_named(asked.name):
-            return asked.unknown(why)
+            return asked.without_number(why)
         values = np.array([self._values(asked.name, k) for k in range(len(self.states))])
         found = self._worst(asked, values, self.states, self.points)
         if asked.name in ERRORS and found.pose is not None:
@@ -218,12 +218,12 @@ class Judge:
         state, pose = np.unravel_index(worst_of(values.ravel(), at_most=at_most) or 0, values.shape)
         return int(state), int(pose)
 
-    def _worst(self, asked: Finding, values: Array, states: list[State], points: Array) -> Finding:
+    def _worst(self, asked: Judgement, values: Array, states: list[LoadState], points: Array) -> Judgement:
         """Worst of values (states, P), the first of which is at home; incomplete where some are NaN."""
         if worst_of(values.ravel(), at_most=asked.at_most) is None:
-            return asked.unknown(self._why_not())
+            return asked.without_number(self._why_not())
         state, pose = self._place(values, at_most=asked.at_most)
-        complete = bool(np.isfinite(values).all() or not np.isnan(values).any())
+        complete = not bool(np.isnan(values).any())
         warm = [k for k, other in enumerate(states) if other.heat != COLD and other.mass == states[state].mass]
         return _with(
             asked, found=float(values[state, pose]), complete=complete, pose=points[pose], state=states[state].words,
@@ -241,51 +241,51 @@ class Judge:
 
     # of the rigid robot
 
-    def _speed(self, asked: Finding) -> Finding:
+    def _speed(self, asked: Judgement) -> Judgement:
         if kinematics.rigid_limbs(self.study.robot).guides:
-            return asked.unknown(GUIDED)
+            return asked.without_number(GUIDED)
         if not np.isfinite(rate_limits(self.study.robot)).any():
-            return asked.unknown("the drives have no limits of their speed: give leg.drive.limits")
-        at = kinematics.RigidPoses(self.study.robot, self.poses(self.looked))
-        return self._of_legs(asked, speeds(at, turning=asked.name == "angular_velocity"), self.looked)
+            return asked.without_number("the drives have no limits of their speed: give leg.drive.limits")
+        at = kinematics.RigidPoses(self.study.robot, self.poses(self.trial_points))
+        return self._of_legs(asked, speeds(at, turning=asked.name == "angular_velocity"), self.trial_points)
 
-    def _acceleration(self, asked: Finding) -> Finding:
+    def _acceleration(self, asked: Judgement) -> Judgement:
         if kinematics.rigid_limbs(self.study.robot).guides:
-            return asked.unknown(GUIDED)
+            return asked.without_number(GUIDED)
         if not has_force_limits(self.study.robot):
-            return asked.unknown("the drives have no limits of their force: give leg.drive.limits")
+            return asked.without_number("the drives have no limits of their force: give leg.drive.limits")
         found = [accelerations(state.study, self.poses(self.points)) for state in self.loads]
         worst = int(np.argmin([values.min() for values in found]))
         return _with(self._of_legs(asked, found[worst], self.points), state=self.loads[worst].words)
 
-    def _of_legs(self, asked: Finding, values: Array, points: Array) -> Finding:
+    def _of_legs(self, asked: Judgement, values: Array, points: Array) -> Judgement:
         """Least of values (P, legs)."""
         pose, leg = np.unravel_index(first_largest(-values), values.shape)
         return _with(
             asked, found=float(values[pose, leg]), pose=points[pose], leg=int(leg) + 1, home=float(values[0].min())
         )
 
-    def _clearance(self, asked: Finding) -> Finding:
-        robot, path = self.study.robot, self.poses(self.looked)
+    def _clearance(self, asked: Judgement) -> Judgement:
+        robot, path = self.study.robot, self.poses(self.trial_points)
         at = kinematics.RigidPoses(robot, path)
         nearest = clearance(robot, path.place(robot.platform_joints), at.directions, at.reach.length)
         if nearest is None:
-            return asked.unknown("no two legs could meet but at a joint")
+            return asked.without_number("no two legs could meet but at a joint")
         if np.isnan(nearest.gap).any():
-            return asked.unknown("legs do not reach all poses of the box")
+            return asked.without_number("legs do not reach all poses of the box")
         k = first_largest(-nearest.gap)
         return _with(
-            asked, found=float(nearest.gap[k]), pose=self.looked[k], leg=int(nearest.legs[k][0]) + 1,
+            asked, found=float(nearest.gap[k]), pose=self.trial_points[k], leg=int(nearest.legs[k][0]) + 1,
             part=f"legs {nearest.legs[k][0] + 1} and {nearest.legs[k][1] + 1}", home=float(nearest.gap[0]),
         )  # fmt: skip
 
-    def _singularity(self, asked: Finding) -> Finding:
-        at = kinematics.RigidPoses(self.study.robot, self.poses(self.looked))
+    def _singularity(self, asked: Judgement) -> Judgement:
+        at = kinematics.RigidPoses(self.study.robot, self.poses(self.trial_points))
         if at.reach.lost.any():
-            return asked.unknown("legs do not reach all poses of the box")
+            return asked.without_number("legs do not reach all poses of the box")
         least = at.singularity.smallest_singular_value
         k = first_largest(-least)
-        return _with(asked, found=float(least[k]), pose=self.looked[k], home=float(least[0]))
+        return _with(asked, found=float(least[k]), pose=self.trial_points[k], home=float(least[0]))
 
     # along the motion
 
@@ -293,7 +293,7 @@ class Judge:
     def _paths(self) -> list[RigidPath]:
         return [RigidPath(state.study) for state in self.loads]
 
-    def _settling(self, asked: Finding) -> Finding:
+    def _settling(self, asked: Judgement) -> Judgement:
         found, motion = [], self.study.motion
         for state in self.states:
             study = state.study
@@ -301,20 +301,20 @@ class Judge:
             rest = RestingRobot(study, elastic, min(motion.end_time - motion.hold, study.duration))
             expected = expected_vibration(rest, self.wanted.settling_band)
             if expected is None:
-                return asked.unknown("no vibration after the motion can be estimated")
+                return asked.without_number("no vibration after the motion can be estimated")
             found.append(expected.settling)
         worst = first_largest(np.array(found))
         return _with(asked, found=found[worst], state=self.states[worst].words, place="after the motion")
 
-    def _force(self, asked: Finding) -> Finding:
+    def _force(self, asked: Judgement) -> Judgement:
         if not has_force_limits(self.study.robot):
-            return asked.unknown("the drives have no limits of their force: give leg.drive.limits")
+            return asked.without_number("the drives have no limits of their force: give leg.drive.limits")
         shares = [motion_shares(path) for path in self._paths]
         return self._factor(
             asked, shares, lambda k: rest_shares(self.study.robot, self.batches[k][1]["actuator_force"])
         )
 
-    def _buckling(self, asked: Finding) -> Finding:
+    def _buckling(self, asked: Judgement) -> Judgement:
         shares = []
         for path in self._paths:
             legs = np.array([leg.euler_share.value for leg in describe_legs(path)])
@@ -323,7 +323,7 @@ class Judge:
             shares.append(legs)
         return self._factor(asked, shares, lambda k: self.batches[k][1]["euler_share"][:, None])
 
-    def _factor(self, asked: Finding, along: list[Array], resting: Callable[[int], Array]) -> Finding:
+    def _factor(self, asked: Judgement, along: list[Array], resting: Callable[[int], Array]) -> Judgement:
         """Least of limits over needs: shares (legs,) `along` the motion with each payload, (P, any) at rest."""
         k, leg = np.unravel_index(first_largest(np.array(along)), np.shape(along))
         most, found = along[k][leg], _with(asked, leg=int(leg) + 1, state=self.loads[k].words, place="on the motion")
@@ -339,39 +339,41 @@ class Judge:
                 found = _with(asked, leg=number, state=label.words, pose=self.points[pose])
         return _with(found, found=1 / most if most > 0 else np.inf, complete=complete, why=why)
 
-    def _stress(self, asked: Finding) -> Finding:
+    def _stress(self, asked: Judgement) -> Judgement:
         found: list[tuple[float, int, str]] = []
         for state, path in zip(self.loads, self._paths, strict=True):
             for leg in describe_legs(path):
                 if leg.stress is None or leg.stress.yield_stress is None:
-                    return asked.unknown(f"section or yield stress of the piston of leg {leg.leg} is not known")
+                    return asked.without_number(f"section or yield stress of the piston of leg {leg.leg} is not known")
                 most = leg.stress.total.value
                 found.append((leg.stress.yield_stress / most if most > 0 else np.inf, leg.leg, state.words))
         least = min(found, key=lambda entry: entry[0])
         return _with(asked, found=least[0], leg=least[1], state=least[2], place="on the motion")
 
-    def _life(self, asked: Finding) -> Finding:
+    def _life(self, asked: Judgement) -> Judgement:
         found: list[tuple[float, int, str]] = []
         for state, path in zip(self.loads, self._paths, strict=True):
             screws = describe_screws(path)
             if not screws:
-                return asked.unknown("the robot has no screws")
+                return asked.without_number("the robot has no screws")
             if missing := [one.leg for one in screws if one.hours is None]:
-                return asked.unknown(f"leg {missing[0]} has no dynamic load rating, or does not turn in the motion")
+                return asked.without_number(
+                    f"leg {missing[0]} has no dynamic load rating, or does not turn in the motion"
+                )
             found += [(3600 * (one.hours or 0.0), one.leg, state.words) for one in screws]
         least = min(found, key=lambda entry: entry[0])
         return _with(asked, found=least[0], leg=least[1], state=least[2], place="the motion repeated")
 
 
-def _with(base: Finding, /, **changes: object) -> Finding:
+def _with(base: Judgement, /, **changes: object) -> Judgement:
     """A finding with more of what was found."""
     return replace(base, **changes)  # type: ignore[arg-type]
 
 
-def _stiffnesses(asked: LeastStiffness) -> list[Finding]:
+def _stiffnesses(asked: LeastStiffness) -> list[Judgement]:
     """Stiffnesses that are asked, in the weakest direction and by axis."""
     return [
-        Finding(
+        Judgement(
             name="stiffness" if axis == "each" else f"stiffness.{axis}",
             unit="N m/rad" if axis in AXES[3:] else "N/m",
             wanted=least,

@@ -18,7 +18,7 @@ COLD, WARM = "cold", "warm"
 
 
 @dataclass(frozen=True, kw_only=True)
-class State:
+class LoadState:
     """A study as it is in one state: ``heat`` "cold", "warm", or "" of a robot without temperatures, ``mass`` [kg].
 
     ``words``: "cold, 25 kg".
@@ -30,18 +30,18 @@ class State:
 
     @property
     def words(self) -> str:
-        """State in words."""
+        """LoadState in words."""
         return ", ".join(filter(None, [self.heat, f"{number(self.mass, 4)} kg"]))
 
 
-def states_of(study: Study) -> list[State]:
+def states_of(study: Study) -> list[LoadState]:
     """States of a study: of a robot with temperatures cold first, of a payload between two masses the most first."""
     robot, wanted = study.robot, cast("Requirement", study.requirement)
     masses = [robot.payload.mass] if wanted.payload is None else sorted({*wanted.payload.tolist()}, reverse=True)
     loaded = [with_payload(robot, mass, wanted.payload_com) for mass in masses]
     heats = {"": robot.heat} if robot.heat is None else {COLD: None, WARM: warm_heat(robot)}
     return [
-        State(study=_with_robot(study, one.replace(heat=heat)), heat=words, mass=mass)
+        LoadState(study=_with_robot(study, one.replace(heat=heat)), heat=words, mass=mass)
         for words, heat in heats.items()
         for mass, one in zip(masses, loaded, strict=True)
     ]

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.analysis.requirements.findings import HOME, Finding
 from flexapod.analysis.requirements.judge import Judge
+from flexapod.analysis.requirements.judgements import HOME, Judgement
 from flexapod.analysis.results.arguments import read_subject
 from flexapod.analysis.results.attributes import attributes
 from flexapod.analysis.results.poses import coordinate_words, pose_coordinates
@@ -89,18 +89,18 @@ def verdict(study: Study | str | Path) -> Dataset:
     return data
 
 
-def verdict_dataset(judge: Judge, found: list[Finding]) -> Dataset:
-    """Findings as a Dataset."""
+def verdict_dataset(judge: Judge, found: list[Judgement]) -> Dataset:
+    """Judgements as a Dataset."""
     values = {
-        name: np.array([getattr(one, name) for one in found])
-        for name in ("wanted", "found", "margin", "kept", "judged", "sure", "home")
+        name: np.array([getattr(one, name) for one in found]) for name in ("wanted", "found", "margin", "sure", "home")
     }
+    values |= {name: np.array([getattr(one, f"is_{name}") for one in found]) for name in ("kept", "judged")}
     values["worst_pose"] = np.array([_as_pose(judge, one.pose) for one in found])
     words = {
         "pose": [one.place or _pose_words(one.pose) for one in found],
         **{name: [getattr(one, name) for one in found] for name in ("state", "part", "unit", "why", "home_state")},
     }
-    poses = len(judge.looked)
+    poses = len(judge.trial_points)
     study = judge.study
     data = dataset(
         values,

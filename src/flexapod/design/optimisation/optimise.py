@@ -14,7 +14,7 @@ from flexapod.analysis.results.variables import Variable, dataset
 from flexapod.analysis.scalar_outputs import OUTPUTS, StudyValues
 from flexapod.common.errors import InputError
 from flexapod.common.resources import one_thread
-from flexapod.design.optimisation.problem import Front, Limit, Problem, read_problem
+from flexapod.design.optimisation.problem import DesignProblem, Front, Limit, read_problem
 from flexapod.design.optimisation.search import (
     Best,
     Evaluation,
@@ -127,7 +127,7 @@ def _front(
 ) -> dict[str, np.ndarray]:
     """Best objectives for targets of a second output, from the one that the best has to the least that can be had."""
     problem = evaluation.problem
-    other = Problem(
+    other = DesignProblem(
         variables=problem.variables, choices=problem.choices, objective=front.output, sense=1, limits=problem.limits,
         front=front,
     )  # fmt: skip
@@ -156,16 +156,16 @@ def _front(
     }
 
 
-def _with_outputs(one: Problem, other: Problem) -> Problem:
+def _with_outputs(one: DesignProblem, other: DesignProblem) -> DesignProblem:
     """A problem that asks for the outputs of another one, too: its objective as a limit that is always kept."""
     free = Limit(other.objective, -np.inf, 1)
-    return Problem(
+    return DesignProblem(
         variables=one.variables, choices=one.choices, objective=one.objective, sense=one.sense,
         limits=(*one.limits, free), front=one.front,
     )  # fmt: skip
 
 
-def _values(problem: Problem, place: np.ndarray) -> np.ndarray:
+def _values(problem: DesignProblem, place: np.ndarray) -> np.ndarray:
     return np.array([v.low + part * (v.high - v.low) for v, part in zip(problem.variables, place, strict=True)])
 
 
@@ -210,7 +210,7 @@ def _described(
     return dataset(values, coords, attributes(found, remarks) | words, FORMS)
 
 
-def _remarks(problem: Problem, follows: Follows | None) -> list[str]:
+def _remarks(problem: DesignProblem, follows: Follows | None) -> list[str]:
     keys = [v.key for v in problem.variables] + [key for c in problem.choices for key in c.rows[0][1]]
     if follows is not None or not any(key.startswith(SIZED) for key in keys):
         return []

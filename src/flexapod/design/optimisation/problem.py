@@ -38,7 +38,7 @@ class Limit(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Variable:
+class DesignVariable:
     """A number that changes between bounds [SI]; what is tied to it changes in proportion."""
 
     key: str
@@ -65,10 +65,10 @@ class Front:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Problem:
+class DesignProblem:
     """Problem of an optimisation; `sense` is 1 for the least of the objective and -1 for the most."""
 
-    variables: tuple[Variable, ...]
+    variables: tuple[DesignVariable, ...]
     choices: tuple[Choice, ...]
     objective: str
     sense: int
@@ -82,7 +82,7 @@ class Problem:
         return tuple(dict.fromkeys([self.objective, *(limit.output for limit in self.limits), *second]))
 
 
-def read_problem(design: Mapping[str, Any] | str | Path, variants: Variants) -> Problem:
+def read_problem(design: Mapping[str, Any] | str | Path, variants: Variants) -> DesignProblem:
     """Read a design from its file or as tables.
 
     Raises
@@ -119,7 +119,7 @@ def read_problem(design: Mapping[str, Any] | str | Path, variants: Variants) -> 
             "are too many lists together", key="variables", value=count, allowed=f"{MOST_ROWS} combinations"
         )
     objective, sense = _objective(data.get("objective"))
-    return Problem(
+    return DesignProblem(
         variables=tuple(variables), choices=tuple(choices), objective=objective, sense=sense,
         limits=tuple(_limits(data.get("constraints", {}))), front=_front(data.get("front")),
     )  # fmt: skip
@@ -130,7 +130,7 @@ def _known(entry: Mapping[str, Any], names: tuple[str, ...], place: str) -> None
         check_known(name, names, place)
 
 
-def _variable(entry: Mapping[str, Any], place: str, variants: Variants) -> Variable:
+def _variable(entry: Mapping[str, Any], place: str, variants: Variants) -> DesignVariable:
     _known(entry, ("key", "low", "high", "ties"), place)
     for name in ("key", "low", "high"):
         if name not in entry:
@@ -150,7 +150,7 @@ def _variable(entry: Mapping[str, Any], place: str, variants: Variants) -> Varia
             "is outside of its bounds", key=key, value=start, allowed=f"{low:g} to {high:g}",
             next_step="Widen the bounds, or start inside with --set",
         )  # fmt: skip
-    return Variable(key=key, low=low, high=high, start=start, ties=ties)
+    return DesignVariable(key=key, low=low, high=high, start=start, ties=ties)
 
 
 def _number(key: str, variants: Variants) -> tuple[float, str]:

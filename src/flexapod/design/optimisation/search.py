@@ -13,7 +13,7 @@ from flexapod.analysis.scalar_outputs import StudyValues
 from flexapod.common.arrays import Array
 from flexapod.common.errors import FlexapodError
 from flexapod.common.tables.key_paths import parse_key
-from flexapod.design.optimisation.problem import Limit, Problem
+from flexapod.design.optimisation.problem import DesignProblem, Limit
 from flexapod.design.variants import Variants
 
 STEP = 1e-4  # of differences, of the ranges
@@ -38,7 +38,7 @@ class Point:
 class Evaluation:
     """Outputs of the design at places of the unit box, each computed once; `calls` counts the studies."""
 
-    problem: Problem
+    problem: DesignProblem
     variants: Variants
     pose: PoseLike
     follows: Follows | None = None
@@ -206,7 +206,7 @@ def best_of_lists(evaluation: Evaluation, limits: Sequence[Limit], start: Array 
     return max(found, key=lambda one: least_margin(one.point, limits))
 
 
-def multipliers(best: Best, problem: Problem, limits: Sequence[Limit]) -> Array:
+def multipliers(best: Best, problem: DesignProblem, limits: Sequence[Limit]) -> Array:
     """Change of the objective for one unit more of each limit's value, (limits,) [SI]; 0 of limits that do not hold it.
 
     Of the conditions of Karush, Kuhn and Tucker, with the bounds that the place lies on.

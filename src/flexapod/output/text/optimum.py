@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 STEPS = {"Hz": 1.0, "m": 1e-6, "N m-1": 1e6, "kg": 1.0}  # a unit of a limit, as engineers count
 
 
-def shown(name: str, value: float) -> str:
+def value_text(name: str, value: float) -> str:
     """A value of an output with its unit."""
     unit = OUTPUTS[name].units
     return text(value, {"1": "", "N m-1": "N/m"}.get(unit, unit), 4)
@@ -39,7 +39,7 @@ def optimum_items(data: Dataset) -> Iterator[Item]:
         yield ""
         name, front = data.attrs["objective_name"], data.attrs["front_name"]
         table = [
-            [shown(front, t), shown(name, v) if np.isfinite(v) else "cannot"]
+            [value_text(front, t), value_text(name, v) if np.isfinite(v) else "cannot"]
             for t, v in zip(data.target.values, data.front_objective.values, strict=True)
         ]
         yield TextTable([f"{front} at most", name], table)
@@ -56,17 +56,19 @@ def optimum_sentences(data: Dataset) -> Iterator[str]:
     if data.attrs["status"] != "kept":
         for output, sense, limit, reached, kept, _ in rows:
             if not kept:
-                yield f"Cannot: {output} {shown(output, reached)} at best, for {shown(output, limit)} at {sense}."
+                best, asked = value_text(output, reached), value_text(output, limit)
+                yield f"Cannot: {output} {best} at best, for {asked} at {sense}."
         return
-    yield f"{name}: {shown(name, float(data.objective))}, before {shown(name, float(data.objective_start))}."
+    yield f"{name}: {value_text(name, float(data.objective))}, before {value_text(name, float(data.objective_start))}."
     for output, sense, limit, reached, _, cost in rows:
         if cost:
             step = STEPS.get(OUTPUTS[output].units, 1.0)
-            more = shown(name, abs(cost) * step)
+            more = value_text(name, abs(cost) * step)
             verb = "costs" if (cost > 0) == (data.attrs["verb"] == "least") else "brings"
-            yield f"{output} is held at {shown(output, limit)}: {shown(output, step)} more {verb} {more}."
+            yield f"{output} is held at {value_text(output, limit)}: {value_text(output, step)} more {verb} {more}."
         else:
-            yield f"{output} {shown(output, reached)} keeps {shown(output, limit)} at {sense} with room to spare."
+            found, asked = value_text(output, reached), value_text(output, limit)
+            yield f"{output} {found} keeps {asked} at {sense} with room to spare."
     for key, value, low, high in zip(*(data[k].values for k in ("variable", "optimum", "low", "high")), strict=True):
         if abs(value - low) < 1e-9 * (high - low) or abs(value - high) < 1e-9 * (high - low):
             yield f"{key} is at its bound."

@@ -45,7 +45,7 @@ def _piston(data: Dataset) -> model.Piston:
     return robot_study(data).robot.legs[0].piston
 
 
-class Column(NamedTuple):
+class TrialColumn(NamedTuple):
     """Column of a table of variants: unit, its value in a simulation, dimensions of a value.
 
     `value`: None of what is not found in a simulation.
@@ -57,31 +57,31 @@ class Column(NamedTuple):
 
 
 COLUMNS = {
-    "verdict": Column("", _verdict),
-    "piston_mass": Column("kg", lambda data: _piston(data).rhoA * _piston(data).length),
-    "payload_vibration": Column("m", partial(residual_vibration, name="com_deviation")),
-    "tip_vibration": Column("m", partial(residual_vibration, name="tip_deflection")),
-    "lowest_frequency": Column("Hz", lambda data: float(modes(robot_study(data)).frequency[0])),
-    "deviation_peak": Column("m", largest_deviation, ("axis",)),
-    "home_sag": Column("m", lambda data: np.abs(data.com_deviation.values[0]), ("axis",)),
-    "tip_peak": Column("m", lambda data: float(np.abs(data.tip_deflection).max())),
-    "force_peak": Column("N", lambda data: float(np.abs(data.actuator_force).max())),
-    "load_share": Column("1", load_share),
-    "travel": Column("m", partial(_spread, dim="time")),
-    "apart": Column("m", partial(_spread, dim="leg")),
-    "stretch_stiffness": Column("N m-1", lambda data: _piston(data).EA / _piston(data).length),
-    "sag": Column("m", dims=("axis",)),
-    "miss": Column("m", dims=("time", "axis")),
-    "miss_peak": Column("m", dims=("axis",)),
-    "lost": Column("J"),
-    "vibration": Column("m", dims=("time", "axis")),
-    "longer": Column("s"),
-    "deviation": Column("m", dims=("roll", "axis")),
-    "off_axis": Column("m", dims=("roll",)),
-    "slope": Column("rad", dims=("roll",)),
-    "shortening": Column("m", dims=("roll",)),
-    "leg_force": Column("N", dims=("roll",)),
-    "stress": Column("Pa", dims=("roll",)),
+    "verdict": TrialColumn("", _verdict),
+    "piston_mass": TrialColumn("kg", lambda data: _piston(data).rhoA * _piston(data).length),
+    "payload_vibration": TrialColumn("m", partial(residual_vibration, name="com_deviation")),
+    "tip_vibration": TrialColumn("m", partial(residual_vibration, name="tip_deflection")),
+    "lowest_frequency": TrialColumn("Hz", lambda data: float(modes(robot_study(data)).frequency[0])),
+    "deviation_peak": TrialColumn("m", largest_deviation, ("axis",)),
+    "home_sag": TrialColumn("m", lambda data: np.abs(data.com_deviation.values[0]), ("axis",)),
+    "tip_peak": TrialColumn("m", lambda data: float(np.abs(data.tip_deflection).max())),
+    "force_peak": TrialColumn("N", lambda data: float(np.abs(data.actuator_force).max())),
+    "load_share": TrialColumn("1", load_share),
+    "travel": TrialColumn("m", partial(_spread, dim="time")),
+    "apart": TrialColumn("m", partial(_spread, dim="leg")),
+    "stretch_stiffness": TrialColumn("N m-1", lambda data: _piston(data).EA / _piston(data).length),
+    "sag": TrialColumn("m", dims=("axis",)),
+    "miss": TrialColumn("m", dims=("time", "axis")),
+    "miss_peak": TrialColumn("m", dims=("axis",)),
+    "lost": TrialColumn("J"),
+    "vibration": TrialColumn("m", dims=("time", "axis")),
+    "longer": TrialColumn("s"),
+    "deviation": TrialColumn("m", dims=("roll", "axis")),
+    "off_axis": TrialColumn("m", dims=("roll",)),
+    "slope": TrialColumn("rad", dims=("roll",)),
+    "shortening": TrialColumn("m", dims=("roll",)),
+    "leg_force": TrialColumn("N", dims=("roll",)),
+    "stress": TrialColumn("Pa", dims=("roll",)),
 }
 """Columns of tables of variants by name."""
 

@@ -13,8 +13,8 @@ HOME = np.zeros(6)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Finding:
-    """Finding for one key: the worst value over poses and states, SI units.
+class Judgement:
+    """Judgement for one key: the worst value over poses and states, SI units.
 
     ``at_most``: whether it is bounded from above; ``found`` NaN where there is no number, ``why`` then says the reason;
     ``complete``: it has a number in all poses and states that count; ``sure``: no other pose can be worse; ``pose``
@@ -44,21 +44,21 @@ class Finding:
         return self.wanted - self.found if self.at_most else self.found - self.wanted
 
     @property
-    def missed(self) -> bool:
+    def is_missed(self) -> bool:
         """Test whether one pose or state misses it, whatever others do."""
         return bool(self.margin < 0)
 
     @property
-    def kept(self) -> bool:
+    def is_kept(self) -> bool:
         """Test whether it is kept: a number everywhere that counts, and none that misses."""
         return self.complete and bool(self.margin >= 0)
 
     @property
-    def judged(self) -> bool:
+    def is_judged(self) -> bool:
         """Test whether it is judged: kept or missed."""
-        return self.kept or self.missed
+        return self.is_kept or self.is_missed
 
-    def unknown(self, why: str) -> Finding:
+    def without_number(self, why: str) -> Judgement:
         """The same without a number, for a reason in words."""
         return replace(self, found=np.nan, complete=False, why=why)
 
