@@ -285,3 +285,22 @@ def test_sag_of_the_nominal_payload_goes_when_cold_and_exact(stage):
     data = judged(cold, **BOX, pose_accuracy_corrected="1 nm", pose_accuracy_calibrated="1 um")
     assert float(data.found.sel(requirement="pose_accuracy_corrected")) < 1e-10
     assert float(data.found.sel(requirement="pose_accuracy_calibrated")) > 1e-5
+
+
+def test_behind_a_singular_pose_the_least_singular_value_is_below_0():
+    """Rows (u, r x u) of the legs, by hand: their determinant changes its sign on the way to a yaw of 120 deg."""
+    study = fx.preset("paper-robot")
+    robot = study.robot
+
+    def determinant(yaw):
+        c, s = np.cos(yaw), np.sin(yaw)
+        arms = robot.platform_joints @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+        legs = robot.home.position + arms - robot.base_joints
+        units = legs / np.linalg.norm(legs, axis=1)[:, None]
+        return np.linalg.det(np.hstack([units, np.cross(arms, units)]))
+
+    assert determinant(0.0) * determinant(np.radians(120)) < 0 < determinant(0.0) * determinant(np.radians(60))
+    assert one(judged(study, rotation={"yaw": "60 deg"}, singularity=0.01), "singularity")["found"] > 0
+    behind = one(judged(study, rotation={"yaw": "120 deg"}, singularity=0.01), "singularity")
+    assert behind["found"] < 0
+    assert not behind["kept"]

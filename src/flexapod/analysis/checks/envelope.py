@@ -165,7 +165,7 @@ def envelope(robot: Robot, box: Box) -> Envelope:
         platform_joint=platform,
         fold=look.most(folds, np.full(robot.count, BETA_LIMIT), "rad"),
         clearance=_clearance(robot, at, look),
-        singularity=_singularity(robot, at, look),
+        singularity=_singularity(at, look),
         lengths=lengths,
         left=_left(lengths),
     )
@@ -252,11 +252,19 @@ def _clearance(robot: Robot, at: kinematics.RigidPoses, look: _Look) -> BoxValue
     return look.value(k, int(nearest.legs[k][0]) + 1, float(nearest.gap[k]), None, np.inf, "m")
 
 
-def _singularity(robot: Robot, at: kinematics.RigidPoses, look: _Look) -> BoxValue:
+def signed_singularity(at: kinematics.RigidPoses) -> Array:
+    """Smallest singular values (P,), negative where the determinant has another sign than at home.
+
+    A singular pose lies between home and such a pose, however large its own value is.
+    """
+    home, found = kinematics.singularity(at.robot, kinematics.home_pose(at.robot)), at.singularity
+    return found.smallest_singular_value * np.where(found.determinant * home.determinant[0] < 0, -1.0, 1.0)
+
+
+def _singularity(at: kinematics.RigidPoses, look: _Look) -> BoxValue:
     if at.reach.lost.any():
         k = int(np.argmax(at.reach.lost))
         return look.value(k, 0, np.nan, 0.0, np.nan, "1")
-    home, found = kinematics.singularity(robot, kinematics.home_pose(robot)), at.singularity
-    signed = found.smallest_singular_value * np.where(found.determinant * home.determinant[0] < 0, -1.0, 1.0)
+    signed = signed_singularity(at)
     k = first_least(signed)
     return look.value(k, 0, float(signed[k]), 0.0, float(signed[k]), "1")

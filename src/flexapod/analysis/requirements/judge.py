@@ -10,6 +10,7 @@ from typing import cast
 import numpy as np
 
 from flexapod import kinematics
+from flexapod.analysis.checks.envelope import signed_singularity
 from flexapod.analysis.checks.reachability import REACHED, REASONS, Codes
 from flexapod.analysis.description.residual_vibration import RestingRobot, expected_vibration
 from flexapod.analysis.description.robot_description import describe_legs
@@ -283,7 +284,7 @@ class Judge:
         at = kinematics.RigidPoses(self.study.robot, self.poses(self.trial_points))
         if at.reach.lost.any():
             return asked.without_number("legs do not reach all poses of the box")
-        least = at.singularity.smallest_singular_value
+        least = signed_singularity(at)
         k = first_largest(-least)
         return _with(asked, found=float(least[k]), pose=self.trial_points[k], home=float(least[0]))
 
