@@ -100,6 +100,9 @@ def path_of(given: object, key: str) -> Path:
     return Path(os.fsdecode(given))
 
 
+LONGEST_NAME = 255  # bytes, of a file or a folder in any usual file system
+
+
 def check_name(path: str | Path, key: str | None = None) -> None:
     """Refuse a name that is not UTF-8: neither results nor reports can hold it, or be written to it.
 
@@ -109,6 +112,9 @@ def check_name(path: str | Path, key: str | None = None) -> None:
         About the option `key`, or about the file.
     """
     name = str(path)
+    if any(len(os.fsencode(part)) > LONGEST_NAME for part in Path(name).parts):
+        where = {"file": f"{name[:40]}..."} if key is None else {"key": key, "value": f"{name[:40]}..."}
+        raise InputError("has a name that is too long", **where, allowed=f"at most {LONGEST_NAME} bytes for each part")
     try:
         name.encode()
     except UnicodeEncodeError:

@@ -16,6 +16,7 @@ NODES = 20  # of a polynomial
 #: rounding makes some 1e-16.
 ENOUGH = 1e-13
 LAST = 3  # coefficients that say what is left out
+NOTHING = 1e-9  # of all pieces together: so short a one is not halved, as two knots may differ by their rounding
 AHEAD = 8  # pieces that are made at once where time goes on
 INSIDE = -np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
 WITH_ENDS = -np.cos(np.pi * np.arange(17) / 16)  # neighbours meet at an end
@@ -126,7 +127,7 @@ class Pieces:
         rough = np.zeros(len(missing), dtype=bool)
         for scale, x in zip(self._scales, series, strict=True):
             rough |= ~(np.abs(x[:, -LAST:]) <= self._enough * scale).all(axis=(1, 2))
-        rough &= last - first > self._shortest
+        rough &= last - first > max(self._shortest, NOTHING * (self._edges[-1] - self._edges[0]))
         for i, k in reversed(list(enumerate(missing))):
             if rough[i]:
                 cut = self._edges[k : k + 2]

@@ -62,7 +62,7 @@ class Variants:
         return found
 
     def numbers(self, key: str) -> list[KeyNumber]:
-        """The numbers that a key stands for: of every leg, and of a list every one that is not 0.
+        """The numbers that a key stands for: of every leg that has it, and of a list every one that is not 0.
 
         Raises
         ------
@@ -71,9 +71,17 @@ class Variants:
         """
         steps = parse_key(key, what="keys")
         found = []
-        for place in self._places(steps):
-            data = copy_data(self.data)
-            given, known = value_at(data, place), {}
+        places = self._places(steps)
+        for place in places:
+            data, known = copy_data(self.data), {}
+            try:
+                given = value_at(data, place)
+            except InputError:
+                if len(places) > 1 and place is not places[-1]:
+                    continue  # another leg has it
+                if found:
+                    return found
+                raise
             read_with_dimensions(copy_data(data), self._files, known)
             for leaf, value in leaves(given, place):
                 dimension = dimension_of(leaf, known)

@@ -23,6 +23,7 @@ from flexapod.app.cli.options import (
     parse_formats,
     robot_study,
 )
+from flexapod.common.errors import InputError
 from flexapod.common.files import write_text
 from flexapod.common.lazy_imports import LazyModule
 from flexapod.output.text import terminal
@@ -96,6 +97,8 @@ def optimise(
     """Find the best values of some numbers of a study within limits, and say which limits cost what."""
     study = robot_study(file, settings)
     check_writable(out)
+    if out is not None and (out / "optimum.toml").absolute() == file.absolute():
+        raise InputError("would replace the study itself", key="--out", value=out, next_step="Choose another folder")
     with as_options(pose="--pose"), terminal.progress_bar(quiet=quiet or json) as say:
         data = design_optimise.optimise(study, design, pose=pose_options.parse_pose(pose), progress=say)
     files: list[Path] = []

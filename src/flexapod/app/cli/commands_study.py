@@ -30,7 +30,7 @@ from flexapod.app.cli.options import (
     refuse_unrequired,
 )
 from flexapod.common.errors import InputError, closest_word, suggest_word
-from flexapod.common.files import write_text
+from flexapod.common.files import check_name, write_text
 from flexapod.common.lazy_imports import LazyModule
 from flexapod.output.text import parts
 from flexapod.output.text.terminal import print_answer
@@ -120,6 +120,7 @@ def new(
         return _example(chosen[0], given[chosen[0]] or "", name, force=force, json=json)
     if name is None:
         raise InputError("is missing", key="NAME.toml", next_step="Give the name of the file to write: robot.toml")
+    check_name(name)
     path = name if name.suffix or name.is_dir() else name.with_suffix(".toml")
     if path.is_dir():
         raise InputError("is a folder", file=path, next_step="Give the name of a file")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tomllib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
@@ -14,6 +13,7 @@ import typer
 from flexapod.common.errors import InputError
 from flexapod.common.files import check_name, temporary_folder
 from flexapod.common.lazy_imports import LazyModule
+from flexapod.common.tables.toml import parse_toml
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -96,7 +96,11 @@ def exit_strictly(found: Dataset | None, *, strict: bool) -> None:
 
 def load_study(file: Path, settings: Sequence[str] | None = None) -> Study | ActuatorStudy:
     """The study of a file, with the values of ``--set KEY=VALUE`` in place of its own."""
-    values = dict(map(parse_setting, settings or ()))
+    values: dict[str, object] = {}
+    for key, value in map(parse_setting, settings or ()):
+        if key in values:
+            raise InputError("is given twice", key=f"--set {key}", value=value, next_step="Give each key once")
+        values[key] = value
     study = model.load(file)
     try:
         return study.with_values(values) if values else study
@@ -107,6 +111,8 @@ def load_study(file: Path, settings: Sequence[str] | None = None) -> Study | Act
 def parse_setting(text: str) -> tuple[str, object]:
     """Key and value of ``KEY=VALUE``: a value of TOML, or else a text, which needs no quotes."""
     key, equals, value = (part.strip() for part in text.partition("="))
+    if len(text) > LONGEST_SETTING:
+        raise InputError("is too long", key="--set", value=f"{text[:40]}...", allowed=f"{LONGEST_SETTING} letters")
     if not equals or not key or not value:
         raise InputError(
             "is no key with a value",
@@ -116,9 +122,12 @@ def parse_setting(text: str) -> tuple[str, object]:
             next_step='For example --set "leg.piston.diameter=70 mm"',
         )
     try:
-        return key, tomllib.loads(f"value = {value}")["value"]
-    except tomllib.TOMLDecodeError:
-        return key, value
+        tables = parse_toml(f"value = {value}", "--set")
+    except InputError as error:
+        if error.what.startswith("is not valid TOML"):
+            return key, value
+        raise InputError(error.what, key=f"--set {key}", allowed=error.allowed) from None
+    return key, tables["value"] if len(tables) == 1 else value  # lines after the first are no value
 
 
 def robot_study(file: Path, settings: Sequence[str] | None = None) -> Study:
@@ -135,6 +144,7 @@ def refuse_existing(file: Path, force: bool) -> None:
         raise InputError("exists already", file=file, next_step="Choose another name, or replace it with --force")
 
 
+LONGEST_SETTING = 2000  # letters of a key and its value
 FORMATS = ("png", "svg", "pdf")  # of figures
 USUAL = "png"
 PROCESSES = min(os.cpu_count() or 1, 4)  # that draw them, where there are

@@ -91,7 +91,14 @@ def parse_demand(given: Mapping[str, str], option: str) -> Demand | None:
 
 def _ends(dimension: str, value: str, key: str) -> tuple[float, float]:
     """Ends of a range: one number is on either side."""
-    ends = [quantity(part.strip(), dimension, key=key) for part in value.split(RANGE)]
+    parts = [part.strip() for part in value.split(RANGE)]
+    units = [read[1] for part in parts if (read := number_and_unit(part)) is not None and float(read[0])]
+    if any(units) and not all(units):
+        raise InputError(
+            "has a unit at one end alone", key=key, value=value, allowed="a unit at both ends, or SI numbers",
+            next_step="For example -5 mm..15 mm",
+        )  # fmt: skip
+    ends = [quantity(part, dimension, key=key) for part in parts]
     low, high = (-ends[0], ends[0]) if len(ends) == 1 else (ends[0], ends[-1])
     if len(ends) > 2 or not low <= 0 <= high or low == high:
         raise InputError(

@@ -10,6 +10,7 @@ import numpy as np
 
 from flexapod.analysis.results.arguments import PoseLike, RobotLike, as_study
 from flexapod.analysis.results.attributes import attributes
+from flexapod.analysis.results.time_history import check_progress
 from flexapod.analysis.results.variables import Variable, dataset
 from flexapod.analysis.scalar_outputs import OUTPUTS, StudyValues
 from flexapod.common.errors import InputError
@@ -102,6 +103,9 @@ def optimise(
     whole = as_study(study)
     if whole.robot.platform_fixed:
         raise InputError("has a platform that is fixed: its tool does not move", key="study")
+    if follows is not None and not callable(follows):
+        raise InputError("cannot be called", key="follows", value=follows, allowed="a function of values by key")
+    check_progress(progress)
     variants = Variants(whole)
     problem = read_problem(design, variants)
     evaluation = Evaluation(problem, variants, pose, follows)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,18 +9,22 @@ from typing import Any, NamedTuple
 
 from flexapod.analysis.scalar_outputs import OUTPUTS
 from flexapod.common.arguments import integer
-from flexapod.common.errors import InputError, check_kind, check_known
-from flexapod.common.files import path_of
+from flexapod.common.errors import InputError, Malformed, check_kind, check_known
+from flexapod.common.files import LARGEST_TEXT, path_of, read_text
+from flexapod.common.tables.key_paths import key_text, parse_key
+from flexapod.common.tables.toml import parse_toml
 from flexapod.common.units import to_si
 from flexapod.design.first_robot.catalogue import SCREWS, Screw
 from flexapod.design.sensitivity import check_outputs
 from flexapod.design.variants import Variants
 from flexapod.model import ScrewDrive
+from flexapod.model.file.key_paths import overlap
 
 DIMENSIONS = {
     "Hz": "frequency", "N m-1": "stiffness", "m": "length", "kg": "mass", "rad": "angle", "N": "force", "Pa": "stress",
 }  # fmt: skip
 TABLES = ("variables", "objective", "constraints", "front")
+FARTHEST = 1000.0  # times the value of the study, that a bound may be: the search goes in parts of the range
 MOST_ROWS = 200  # of all lists together
 
 
@@ -90,14 +93,22 @@ def read_problem(design: Mapping[str, Any] | str | Path, variants: Variants) -> 
     InputError
         A key, a name, a unit or bounds that are none; bounds without the start; nothing to change.
     """
-    if isinstance(design, str | Path):
-        try:
-            data: Mapping[str, Any] = tomllib.loads(path_of(design, "design").read_text(encoding="utf-8"))
-        except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-            raise InputError(f"cannot be read: {error}", file=design) from None
-    else:
+    if not isinstance(design, str | Path):
         check_kind(design, Mapping, "design", "a design file, or its tables")
-        data = design
+        return _problem(design, variants)
+    file = path_of(design, "design")
+    try:
+        text = read_text(file, LARGEST_TEXT)
+    except OSError as error:
+        words = f"cannot be read: {error.strerror}"
+        raise InputError(words, file=file, next_step="See docs/optimise.md for an example") from None
+    try:
+        return _problem(parse_toml(text, str(file)), variants)
+    except InputError as error:
+        raise error.with_location(file=file) from None
+
+
+def _problem(data: Mapping[str, Any], variants: Variants) -> DesignProblem:
     for name in data:
         check_known(name, TABLES, "design")
     entries = data.get("variables")
@@ -118,11 +129,24 @@ def read_problem(design: Mapping[str, Any] | str | Path, variants: Variants) -> 
         raise InputError(
             "are too many lists together", key="variables", value=count, allowed=f"{MOST_ROWS} combinations"
         )
+    _refuse_twice([v.key for v in variables], [key for v in variables for key in v.ties], choices)
     objective, sense = _objective(data.get("objective"))
     return DesignProblem(
         variables=tuple(variables), choices=tuple(choices), objective=objective, sense=sense,
-        limits=tuple(_limits(data.get("constraints", {}))), front=_front(data.get("front")),
+        limits=tuple(_limits(data.get("constraints", {}))), front=_front(data.get("front"), objective),
     )  # fmt: skip
+
+
+def _refuse_twice(keys: list[str], ties: list[str], choices: list[Choice]) -> None:
+    """Refuse a value that two entries give: variables, their ties, lists."""
+    every = [*keys, *ties, *(key for choice in choices for key in choice.rows[0][1])]
+    for k, key in enumerate(every):
+        steps = parse_key(key, what="variables")
+        if twice := [other for other in every[:k] if overlap(parse_key(other, what="variables"), steps)]:
+            raise InputError(
+                f"and {twice[0]} give the same value", key=key, allowed="one entry for each key",
+                next_step="Leave one of them out",
+            )  # fmt: skip
 
 
 def _known(entry: Mapping[str, Any], names: tuple[str, ...], place: str) -> None:
@@ -139,7 +163,10 @@ def _variable(entry: Mapping[str, Any], place: str, variants: Variants) -> Desig
             )
     key = str(entry["key"])
     start, dimension = _number(key, variants)
-    ties = tuple(map(str, entry.get("ties", ())))
+    given = entry.get("ties", [])
+    if not isinstance(given, list | tuple) or not all(isinstance(tied, str) for tied in given):
+        raise InputError("is no list of keys", key=f"{place}.ties", value=given, allowed='["leg.piston.length", ...]')
+    ties = tuple(given)
     for tied in ties:
         _number(tied, variants)
     low, high = (to_si(entry[name], dimension, key=f"{place}.{name}") for name in ("low", "high"))
@@ -150,7 +177,23 @@ def _variable(entry: Mapping[str, Any], place: str, variants: Variants) -> Desig
             "is outside of its bounds", key=key, value=start, allowed=f"{low:g} to {high:g}",
             next_step="Widen the bounds, or start inside with --set",
         )  # fmt: skip
+    if max(abs(low), abs(high)) > FARTHEST * abs(start):
+        raise InputError(
+            "is too far from the value of the study", key=place, value=[entry["low"], entry["high"]],
+            allowed=f"at most {FARTHEST:g} times {start:g}",
+        )  # fmt: skip
+    for name, end in (("low", low), ("high", high)):
+        _refuse_value({key: end}, variants, key=f"{place}.{name}", value=entry[name])
     return DesignVariable(key=key, low=low, high=high, start=start, ties=ties)
+
+
+def _refuse_value(values: Mapping[str, object], variants: Variants, *, key: str, value: object) -> None:
+    """Refuse what no study file may hold; what is wrong only beside other values may be right with those."""
+    try:
+        variants.study_with({parse_key(name, what=key): given for name, given in values.items()})
+    except InputError as error:
+        if isinstance(error, Malformed) or error.what == "is out of range":
+            raise InputError(error.what, key=key, value=value, allowed=error.allowed) from None
 
 
 def _number(key: str, variants: Variants) -> tuple[float, str]:
@@ -160,6 +203,8 @@ def _number(key: str, variants: Variants) -> tuple[float, str]:
     if len(values) != 1:
         what = "is 0" if not found else "has several values"
         raise InputError(f"{what}: it cannot vary in proportion", key=key, next_step="Name one number: leg[1]...")
+    if isinstance(found[0].steps[-1], int) and not key.endswith("]"):
+        raise InputError("is a list of numbers", key=key, next_step=f"Name one of them: {key_text(found[0].steps)}")
     return found[0].value, found[0].dimension
 
 
@@ -178,6 +223,8 @@ def _choice(entry: Mapping[str, Any], place: str, variants: Variants) -> Choice:
         raise InputError(
             "is no list of values of a key", key=place, allowed='key = "leg.piston.material", values = [...]'
         )
+    for k, value in enumerate(values, start=1):
+        _refuse_value({key: value}, variants, key=f"{place}.values[{k}]", value=value)
     return Choice(name=key, rows=tuple((f"{key} = {value}", {key: value}) for value in values))
 
 
@@ -220,19 +267,25 @@ def _limits(table: Any) -> list[Limit]:
         check_outputs([name])
         check_kind(bounds, Mapping, key, 'least = "25 Hz" or most = "10 um"')
         _known(bounds, ("least", "most"), key)
+        if not bounds:
+            raise InputError("limits nothing", key=key, allowed='least = "25 Hz" or most = "10 um"')
         dimension = DIMENSIONS.get(OUTPUTS[name].units, "number")
         found += [
             Limit(name, to_si(bounds[verb], dimension, key=f"{key}.{verb}"), sense)
             for verb, sense in (("least", 1), ("most", -1))
             if verb in bounds
         ]
+        if len(bounds) == 2 and found[-2].value > found[-1].value:
+            raise InputError("is not a range", key=key, value=dict(bounds), allowed="least below most")
     return found
 
 
-def _front(table: Any) -> Front | None:
+def _front(table: Any, objective: str) -> Front | None:
     if table is None:
         return None
     check_kind(table, Mapping, "front", 'output = "static_deviation_size", count = 15')
     _known(table, ("output", "count"), "front")
     check_outputs([str(table.get("output", ""))])
+    if table["output"] == objective:
+        raise InputError("is the objective itself", key="front.output", value=objective, allowed="another output")
     return Front(output=str(table["output"]), count=integer(table.get("count", 15), "front.count", 2, 100))

@@ -11,7 +11,7 @@ import numpy as np
 from flexapod.analysis.results.arguments import PoseLike
 from flexapod.analysis.scalar_outputs import StudyValues
 from flexapod.common.arrays import Array
-from flexapod.common.errors import FlexapodError
+from flexapod.common.errors import FlexapodError, check_kind
 from flexapod.common.tables.key_paths import parse_key
 from flexapod.design.optimisation.problem import DesignProblem, Limit
 from flexapod.design.variants import Variants
@@ -55,7 +55,11 @@ class Evaluation:
             found[variable.key] = value
             for tied in variable.ties:
                 found[tied] = self.variants.numbers(tied)[0].value * value / variable.start
-        return found | dict(self.follows(dict(found))) if self.follows else found
+        if self.follows is None:
+            return found
+        more = self.follows(dict(found))
+        check_kind(more, Mapping, "follows", "a function that returns values by key")
+        return found | dict(more)
 
     def at(self, place: Array, rows: tuple[int, ...]) -> Point:
         """Outputs of a place."""

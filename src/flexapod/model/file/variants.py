@@ -80,20 +80,26 @@ def parse_values(values: object) -> dict[tuple[Step, ...], object]:
 
 def _plain(key: str, value: object) -> object:
     """A value as data: arrays and rows as lists, numbers of NumPy as numbers."""
-    plain = _scalars(to_plain_data(value))
+    plain = _scalars(to_plain_data(value), key)
     if plain is None:
         raise InputError("has no value", key=key, next_step="Leave the key out: the study keeps its own value")
     return plain
 
 
-def _scalars(value: Any) -> Any:
+def _scalars(value: Any, key: str) -> Any:
     if isinstance(value, Mapping):
-        return {str(name): _scalars(item) for name, item in value.items()}
+        return {str(name): _scalars(item, key) for name, item in value.items()}
     if isinstance(value, list):
-        return [_scalars(item) for item in value]
+        return [_scalars(item, key) for item in value]
     if isinstance(value, Path):
         return str(value)
-    return value.item() if hasattr(value, "item") and not getattr(value, "shape", ()) else value
+    if hasattr(value, "item") and not getattr(value, "shape", ()):
+        return value.item()
+    if isinstance(value, bool | int | float | str) or value is None:
+        return value
+    raise InputError(
+        "is no value of a study file", key=key, value=value, allowed="numbers, texts, lists and tables of them"
+    )
 
 
 def with_values(study: S, values: Mapping[str, object]) -> S:

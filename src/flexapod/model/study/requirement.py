@@ -84,6 +84,8 @@ class Ranges(Table):
                 raise InputError(
                     "begins where it should end", key=name, value=[low, high], allowed="the lower end first"
                 )
+            if low == high:
+                raise InputError("has no width", key=name, value=[low, high], allowed="ends on either side of home")
             if low > 0 or high < 0:
                 raise InputError(
                     "does not hold home",
