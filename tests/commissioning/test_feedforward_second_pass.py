@@ -7,10 +7,11 @@ from tests.helpers.moving import moving
 
 import flexapod as fx
 from flexapod.commissioning.feedforward.modal_path import path_vibration
-from flexapod.commissioning.feedforward.second_pass import error_sentence, linear_error
+from flexapod.commissioning.feedforward.second_pass import _displaced, error_sentence, linear_error
 from flexapod.commissioning.feedforward.shaping import shape_study
-from flexapod.kinematics import poses
+from flexapod.kinematics import RigidPoses, poses
 from flexapod.kinematics.rotations import matrix
+from flexapod.solve.rigid_motion import rigid_motion
 
 pytestmark = pytest.mark.consistency
 
@@ -65,3 +66,20 @@ def test_a_shaped_study_names_its_error() -> None:
     assert 1e-4 < found.error < 2e-3
     assert "by a second pass" in found.sentence and "does not decide" not in found.sentence
     assert "does not decide" in shape_study(fx.preset("machine-hexapod"), "zv").sentence
+
+
+def test_accelerations_on_the_way_are_those_of_the_velocities() -> None:
+    """Of a linear motion without acceleration of its own, on a path that turns: by differences in time."""
+    study = fx.preset("paper-robot")
+    study = study.replace(motion=fx.model.AxisMotion(type="yaw", amplitude=0.2, duration=0.5, hold=0.1))
+    at = path_vibration(study, 0.5, 0.51).model
+    t = np.linspace(0.0, 0.5, 2001)
+    rate = 1e-3 * np.random.default_rng(4).normal(size=at.flat.shape[2])
+    z, v = (t - 0.25)[:, None] * rate, np.tile(rate, (len(t), 1))
+    rigid = rigid_motion(at.locked.system, RigidPoses(at.locked.robot, poses(study.robot, study.motion, t)))
+    moved, still = _displaced(at, t, rigid, z, v)[1], _displaced(at, t, rigid, 0 * z, 0 * v)[1]
+    near = np.abs(t - 0.25) < 0.02  # where what is added is small
+    for name, rates in (("u", moved.u - still.u), ("v", moved.v - still.v)):
+        slope = np.gradient(rates, t, axis=0)[near]
+        added = (getattr(moved, f"{name}_dot") - getattr(still, f"{name}_dot"))[near]
+        np.testing.assert_allclose(added, slope, rtol=0, atol=2e-2 * np.abs(slope).max())
