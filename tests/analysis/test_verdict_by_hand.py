@@ -200,9 +200,6 @@ def test_carriages_leave_either_end(end: float) -> None:
     assert found.limit == (0.6 if end > 0 else 0.0)
 
 
-@pytest.mark.xfail(
-    reason="only the pistons count at rest, and the screws along the motion alone", raises=AssertionError
-)
 def test_screws_count_at_rest_in_the_corners(stage: Study) -> None:
     """A motion of 1 mm and a box of 30 mm: a fourth of Euler's load, half allowed, of the shaft drawn out most."""
     small = stage.with_values({"motion.amplitude": "1 mm", "motion.duration": "20 s"})
@@ -215,7 +212,6 @@ def test_screws_count_at_rest_in_the_corners(stage: Study) -> None:
     assert number(data, "buckling_factor") == pytest.approx(expected, rel=3e-3)
 
 
-@pytest.mark.xfail(reason="terms of no pose at all have no shape: IndexError", raises=IndexError)
 def test_a_payload_that_buckles_all_poses_is_not_judged() -> None:
     data = judged(fx.preset("paper-robot").with_values({"payload.mass": 1e4}), pose_accuracy_calibrated="1 um")
     assert not data.judged.any()

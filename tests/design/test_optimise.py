@@ -165,6 +165,17 @@ def test_ties_move_in_proportion():
         (design({}, objective="com_deviation_peak"), "com_deviation_rms"),
         ({"variables": []}, "nothing that may change"),
         (design({}, {"catalogue": "nuts"}), "screws"),
+        (design({}, {"key": "leg.piston.diameter", "low": "-15 mm", "high": "60 mm"}), "out of range"),
+        (design({}, {"key": "leg.piston.diameter", "low": "15 mm", "high": 1e300}), "too far"),
+        (design({}, {"key": "payload.com", "low": "0.3 m", "high": "0.5 m"}), r"payload.com\[2\]"),
+        (design({}, {"key": "leg.piston.material", "values": ["steel", 5]}), "aluminium"),
+        (design({"first_frequency": {}}), "limits nothing"),
+        (design({"first_frequency": {"least": "50 Hz", "most": "20 Hz"}}), "not a range"),
+        (design({}, *[{"key": "leg.piston.diameter", "low": "15 mm", "high": "60 mm"}] * 2), "the same value"),
+        (
+            design({}, {"key": "leg.piston.diameter", "low": "15 mm", "high": "60 mm", "ties": "leg.piston.length"}),
+            "list of keys",
+        ),
     ],
 )
 def test_refused(given, words):

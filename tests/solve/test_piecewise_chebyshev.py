@@ -60,6 +60,15 @@ def test_a_rough_function_is_computed_as_it_is():
     assert compute.instants < 4 * len(t)  # what was tried is a geometric series that ends below len(t)
 
 
+def test_a_jump_between_knots_that_rounding_parts_ends():
+    """Two tables of one instant may name it with other last digits; no piece between them is ever smooth."""
+    there = 0.3
+    knots = np.array([0.0, there, np.nextafter(np.nextafter(there, 1), 1), 1.0])
+    pieces = Pieces(lambda t: [np.where(t[:, None] <= np.nextafter(there, 1), t[:, None], 2.0)], knots)
+    t = np.linspace(0.0, 1.0, 2001)
+    np.testing.assert_allclose(pieces(t)[0][:, 0], np.where(t < there, t, 2.0), rtol=0, atol=1e-13)
+
+
 def table_motion():
     time = np.linspace(0, 0.4, 5)
     pose = np.outer(np.sin(np.pi * time / 0.4) ** 2, [0, 0, 0.02, 0.1, 0, 0])

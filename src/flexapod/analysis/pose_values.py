@@ -10,7 +10,7 @@ from flexapod import kinematics, model
 from flexapod.analysis.checks.estimates import buckling_loads
 from flexapod.analysis.checks.reachability import REACHED, Codes, leg_limits, rigid_codes, slider_limits
 from flexapod.analysis.error_budget.rows import budget_rows_by_pose, names_of_rows
-from flexapod.analysis.error_budget.rules import Budget, error_terms
+from flexapod.analysis.error_budget.rules import TERMS, Budget, error_terms
 from flexapod.analysis.modes_at_poses import rest_codes
 from flexapod.analysis.results.bodies import clearance, joint_angle_limits, joint_angles
 from flexapod.common.arrays import Array, Mask
@@ -147,8 +147,10 @@ def _budgets(study: model.Study, locked: LockedPoses, wanted: PoseRequest) -> Va
     parts = names_of_rows(study)
     terms: Values = {}
     if wanted.terms:
-        terms["error_terms"] = np.array([error_terms(table, parts) for table, _ in tables])
-        terms["systematic"] = np.array([whole for _, whole in tables])
+        terms["error_terms"] = np.array([error_terms(table, parts) for table, _ in tables]).reshape(
+            -1, len(TERMS), len(parts), 6
+        )
+        terms["systematic"] = np.array([whole for _, whole in tables]).reshape(-1, 6)
     if not wanted.budget:
         return terms
     found = [Budget(rows=table, whole={"systematic": whole}) for table, whole in tables]

@@ -16,7 +16,7 @@ NODES = 20  # of a polynomial
 #: rounding makes some 1e-16.
 ENOUGH = 1e-13
 LAST = 3  # coefficients that say what is left out
-NOTHING = 1e-9  # of all pieces together: so short a one is not halved, as two knots may differ by their rounding
+NOTHING = 1e-9  # of all pieces together: nearer knots are one, apart by rounding, and so short a piece is not halved
 AHEAD = 8  # pieces that are made at once where time goes on
 INSIDE = -np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
 WITH_ENDS = -np.cos(np.pi * np.arange(17) / 16)  # neighbours meet at an end
@@ -25,6 +25,13 @@ WITH_ENDS = -np.cos(np.pi * np.arange(17) / 16)  # neighbours meet at an end
 def largest(values: Array) -> float:
     """Largest size of values."""
     return float(np.abs(values).max(initial=0.0))
+
+
+def _apart(knots: Array) -> Array:
+    """Knots without those that only rounding parts from the one before; both ends stay."""
+    found = knots[np.concatenate([[True], np.diff(knots) > NOTHING * (knots[-1] - knots[0])])]
+    found[-1] = knots[-1]
+    return found
 
 
 class Pieces:
@@ -62,11 +69,11 @@ class Pieces:
         halvings: int = 1,
         scale: Callable[[Array], Array | float] = largest,
     ) -> None:
-        self._compute, self._edges, self._nodes = compute, knots, nodes
+        self._compute, self._edges, self._nodes = compute, _apart(knots), nodes
         self._to_series = np.linalg.inv(chebvander(nodes, len(nodes) - 1))
         self._enough, self._least, self._shortest, self._halvings = enough, least, shortest, halvings
         self._scale = scale
-        self._series: list[list[Array] | None] = [None] * (len(knots) - 1)
+        self._series: list[list[Array] | None] = [None] * (len(self._edges) - 1)
         self._scales: list[Array | float] = []
         self._shapes: list[tuple[int, ...]] = []
 

@@ -27,6 +27,12 @@ _ALLOWED_THRUST, _ALLOWED_SPEED = 0.5, 0.8  # THK A-694, A-696
 MILLION = 1e6  # turns to which a dynamic load rating refers
 
 
+def buckling_shares(screw: ScrewDrive, loaded: Array, thrust: Array) -> Array:
+    """Push [N] over what a shaft of `loaded` length [m] bears; where both ends hold pull counts, too."""
+    pushed = np.abs(thrust) if screw.mounting == "fixed-fixed" else np.maximum(thrust, 0.0)
+    return pushed / buckling_thrust(screw, loaded)
+
+
 def buckling_thrust(screw: ScrewDrive, loaded: Array) -> Array:
     """Thrust that the shaft may bear [N], half of its Euler load, Eq. (T15.41).
 

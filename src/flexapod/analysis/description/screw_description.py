@@ -10,6 +10,7 @@ import numpy as np
 
 from flexapod.analysis.checks.screws import (
     back_efficiency,
+    buckling_shares,
     buckling_thrust,
     critical_speed,
     half_loads,
@@ -88,9 +89,8 @@ def describe_screw(
     """
     screw: ScrewDrive = leg.screw  # type: ignore[assignment]
     along = length - leg.begins
-    allowed = buckling_thrust(screw, along)
-    pushed = np.abs(thrust) if screw.mounting == "fixed-fixed" else np.maximum(thrust, 0.0)
-    buckling = maximum(t, pushed / allowed)
+    shares = buckling_shares(screw, along, thrust)
+    buckling = maximum(t, shares)
     speed, torque = np.abs(rate) / screw.per_turn, motor_torque(screw, thrust, rate, accel)
     rms, constant = float(np.sqrt(np.trapezoid(torque**2, t) / (t[-1] - t[0]))), screw.motor.torque_constant
     load, rating = half_loads(screw.nut, thrust), screw.nut.static_load
@@ -99,7 +99,7 @@ def describe_screw(
         leg=i + 1,
         thrust=maximum(t, np.abs(thrust)),
         buckling=buckling,
-        buckling_thrust=float(allowed[first_largest(pushed / allowed)]),
+        buckling_thrust=float(buckling_thrust(screw, along)[first_largest(shares)]),
         speed=maximum(t, speed * screw.rotor.ratio),
         critical=float(speed.max() / critical_speed(screw)),
         torque=maximum(t, np.abs(torque)),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod import kinematics
-from flexapod.analysis.checks.screws import critical_speed, drag_torque
+from flexapod.analysis.checks.screws import buckling_shares, critical_speed, drag_torque
 from flexapod.analysis.description.hydraulic_description import describe_hydraulics
 from flexapod.analysis.description.screw_description import describe_screws
 from flexapod.analysis.results.rigid_path import RigidPath
@@ -38,6 +38,15 @@ def rest_shares(robot: Robot, force: Array) -> Array:
     """Forces of drives at rest (P, legs) [N] over their limits, (P, legs); 0 of drives without limits."""
     limits = np.array([_force_limits(leg) for leg in robot.legs])
     return np.maximum(force, 0.0) / limits[:, 0] + np.maximum(-force, 0.0) / limits[:, 1]
+
+
+def shaft_shares(robot: Robot, length: Array, force: Array) -> Array:
+    """Thrusts of screws at rest over what their shafts bear without buckling, of legs (P, legs) [m], [N]; else 0."""
+    found = np.zeros(force.shape)
+    for i, leg in enumerate(robot.legs):
+        if leg.screw is not None:
+            found[:, i] = buckling_shares(leg.screw, length[:, i] - leg.begins, force[:, i])
+    return found
 
 
 def motion_shares(path: RigidPath) -> Array:

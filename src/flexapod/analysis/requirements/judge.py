@@ -24,6 +24,7 @@ from flexapod.analysis.requirements.drives import (
     motion_shares,
     rate_limits,
     rest_shares,
+    shaft_shares,
     speeds,
 )
 from flexapod.analysis.requirements.errors import ErrorTerms
@@ -322,7 +323,13 @@ class Judge:
             for screw in describe_screws(path):
                 legs[screw.leg - 1] = max(legs[screw.leg - 1], screw.buckling.value)
             shares.append(legs)
-        return self._factor(asked, shares, lambda k: self.batches[k][1]["euler_share"][:, None])
+        robot, length = self.study.robot, kinematics.RigidPoses(self.study.robot, self.poses(self.points)).reach.length
+
+        def resting(k: int) -> Array:
+            values = self.batches[k][1]
+            return np.column_stack([shaft_shares(robot, length, values["actuator_force"]), values["euler_share"]])
+
+        return self._factor(asked, shares, resting)
 
     def _factor(self, asked: Judgement, along: list[Array], resting: Callable[[int], Array]) -> Judgement:
         """Least of limits over needs: shares (legs,) `along` the motion with each payload, (P, any) at rest."""
@@ -336,7 +343,7 @@ class Judge:
             if np.nanmax(shares, initial=0.0) > most:
                 pose, leg = np.unravel_index(np.nanargmax(shares), shares.shape)
                 most = float(shares[pose, leg])
-                number = int(leg) + 1 if shares.shape[1] > 1 else 0
+                number = int(leg) + 1 if leg < self.study.robot.count else 0  # the last of pistons: of some leg
                 found = _with(asked, leg=number, state=label.words, pose=self.points[pose])
         return _with(found, found=1 / most if most > 0 else np.inf, complete=complete, why=why)
 
