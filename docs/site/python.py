@@ -30,6 +30,12 @@ TASKS: dict[str, tuple[str, tuple[str, ...]]] = {
         "How far the tool is from where it should be, and why.",
         ("budget", "accuracy", "play"),
     ),
+    "Decisions": (
+        "Does a machine keep what is required, which number matters, which values are best: "
+        "[requirements](../../how-to/does-my-box-fit.md), [sensitivities](../../sensitivity.md), "
+        "[optima](../../optimise.md).",
+        ("verdict", "sensitivity", "optimise"),
+    ),
     "Linear systems": (
         "A robot about rest, its response to frequencies, responses that were measured; loops about it: "
         "[`fx.control`](control.md).",

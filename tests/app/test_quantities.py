@@ -19,6 +19,8 @@ QUANTITIES = {
     ("frf", "--pose"): ("yaw=0.05", "yaw=50mrad", "yaw=50 N"),
     ("damp", "--pose"): ("surge=2e-3", "surge=2 mm", "surge=2 deg"),
     ("budget", "--pose"): ("heave=0.02", "heave=20 mm", "heave=20 s"),
+    ("sensitivity", "--pose"): ("heave=0.02", "heave=20 mm", "heave=20 kg"),
+    ("optimise", "--pose"): ("heave=0.02", "heave=20 mm", "heave=20 kg"),
     ("export", "--pose"): ("heave=0.02", "heave=2 cm", "heave=20 kg"),
     ("export", "--step"): ("5e-4", "0.5ms", "0.5 mm"),
     ("frf", "--from"): ("20", "0.02 kHz", "20 s"),
@@ -38,12 +40,27 @@ MORE = {
     "map": ("--x", "heave=-0.01..0.01:3", "--y", "surge=0..1mm:2"),
     "export": ("--format", "abaqus", "--elements", "4"),
     "frf": ("--points", "5"),
+    "sensitivity": ("--key", "payload.mass", "--output", "first_frequency"),
+    "optimise": ("design.toml", "--quiet"),
 }
+DESIGN = """
+[[variables]]
+key = "leg.piston.diameter"
+low = "20 mm"
+high = "40 mm"
+
+[objective]
+minimise = "piston_mass"
+
+[constraints]
+first_frequency = { least = "20 Hz" }
+"""
 #: Words that are no quantities: names, files, addresses, directions and ratios.
 OTHERS = {
     "file", "sweep_file", "name", "table", "--out", "--preset", "--example", "--notebook", "--markdown", "--schema",
     "--format", "--input", "--output", "--inputs", "--outputs", "--drives", "--friction", "--uff", "--mat",
     "--direction", "--scheduler", "--only", "--html", "--fidelity", "--commands", "--host", "--name", "--set",
+    "design", "--key",
 }  # fmt: skip
 #: Numbers that are counts, and two ratios.
 NUMBERS = {
@@ -68,6 +85,7 @@ def test_every_option_of_every_command_is_a_quantity_or_known_to_be_none():
 def test_a_number_without_a_unit_is_in_si_and_a_unit_is_read(flexapod, study, folder, command, option):
     """Both ways the same answer, digit for digit; a unit of something else is refused with the option's name."""
     file = study(*BRIEF)
+    (folder / "design.toml").write_text(DESIGN, encoding="utf-8")
     bare, with_unit, wrong = QUANTITIES[command, option]
     if option == "--step":
         arguments = (command, file, "--format", "c")

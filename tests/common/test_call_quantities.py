@@ -20,6 +20,11 @@ pytestmark = pytest.mark.unit
 ROBOT = fx.preset("paper-robot").replace(simulation={"fidelity": "lumped", "step": 1e-3, "duration": 0.02})
 SCREWS = fx.preset("machine-hexapod")
 BEAM = fx.preset("paper-actuator").replace(simulation={"modes": 1, "step": 2e-3, "duration": 0.02})
+DESIGN = {
+    "variables": [{"key": "leg.piston.diameter", "low": "20 mm", "high": "40 mm"}],
+    "objective": {"minimise": "piston_mass"},
+    "constraints": {"first_frequency": {"least": "20 Hz"}},
+}
 WHOLE = {"output_step": 5e-3, "duration": 0.02}
 
 
@@ -78,9 +83,11 @@ CASES = {
     "modes.pose": ([0.01, 0, 0, 0, 0, 0.02], ["10 mm", 0, 0, 0, 0, "20 mrad"], ["10 mm", 0, 0, 0, 0, "20 mm"],
         lambda x: fx.modes(SCREWS, x)),
     "modes.load": (*LOADS, lambda x: fx.modes(SCREWS, load=x)),
+    "optimise.pose": (*HEAVE, lambda x: fx.optimise(ROBOT, DESIGN, pose=x)),
     "parts.pose": (*HEAVE, lambda x: fx.parts(SCREWS, x)),
     "play.load": (*LOADS, lambda x: fx.play(SCREWS, load=x)),
     "shape.modes": ([16.0], ["16 Hz"], ["16 s"], lambda x: fx.shape(ROBOT, modes=x).motion.pose),
+    "sensitivity.pose": (*HEAVE, lambda x: fx.sensitivity(SCREWS, "payload.mass", "first_frequency", x)),
     "shape.pose": (*HEAVE, lambda x: fx.shape(ROBOT, modes=1, pose=x).motion.pose),
     "simulate.load": (*LOADS, lambda x: fx.simulate(ROBOT, load=x)),
     "simulate.step": (2e-3, "2 ms", "2 mm", lambda x: fx.simulate(ROBOT, step=x, output_step=4e-3)),
@@ -168,9 +175,9 @@ CASES = {
 OTHERS = set(
     """
     A B C D D_rate accuracy actuator as_built at axes axial_modes basis budget commands control controller controllers
-    corrections count damping data delay_samples denominator depth derivative direction draws drives elements
-    engines fidelity force format frequencies friction function gain gains high initial input inputs integral
-    into jacobian keep kind law least limit low magnify modes most motion name names noise numerator order out
+    corrections count damping data delay_samples denominator depth derivative design direction draws drives elements
+    engines fidelity follows force format frequencies friction function gain gains high initial input inputs integral
+    into jacobian keep keys kind law least limit low magnify modes most motion name names noise numerator order out
     output outputs parts path place poisson progress proportional quantise ratio residual
     retry_failed rho_inf robot robust samples saturate scheduler section seed self sensor shapes sources speed
     states stiffness store stroke study subject sweep system text tilt title tolerance tracker trials

@@ -107,8 +107,7 @@ def sensitivity(
     whole = as_study(study)
     if whole.robot.platform_fixed:
         raise InputError("has a platform that is fixed: its tool does not move", key="study")
-    names = check_outputs(outputs)
-    variants = Variants(whole)
+    names, variants = check_outputs(outputs), Variants(whole)
     given = None if keys is None else list(dict.fromkeys(names_of(keys, "keys")))
     asked = variants.written_keys(TABLES) if given is None else given
     numbers = {key: variants.numbers(key) for key in asked}

@@ -13,7 +13,6 @@ import typer
 from flexapod.common.errors import InputError
 from flexapod.common.files import check_name, temporary_folder
 from flexapod.common.lazy_imports import LazyModule
-from flexapod.common.tables.toml import parse_toml
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
     from flexapod import model
     from flexapod.analysis import store
     from flexapod.analysis.results.time_history import Report
+    from flexapod.common.tables import toml
     from flexapod.model import ActuatorStudy, Study
     from flexapod.output.report import figures as report_figures
     from flexapod.output.report import report as report_report
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from flexapod.output.text import verdict as text_verdict
 else:
     store = LazyModule("flexapod.analysis.store")
+    toml = LazyModule("flexapod.common.tables.toml")
     model = LazyModule("flexapod.model")
     report_figures = LazyModule("flexapod.output.report.figures")
     report_report = LazyModule("flexapod.output.report.report")
@@ -122,7 +123,7 @@ def parse_setting(text: str) -> tuple[str, object]:
             next_step='For example --set "leg.piston.diameter=70 mm"',
         )
     try:
-        tables = parse_toml(f"value = {value}", "--set")
+        tables = toml.parse_toml(f"value = {value}", "--set")
     except InputError as error:
         if error.what.startswith("is not valid TOML"):
             return key, value
