@@ -154,12 +154,24 @@ def turned(home, at, value, text):
     return {"rotation": replaced(rotation, at, value, text) if at else value * (rotation / rotation.max())}
 
 
+def ends(name):
+    """A range about home: one number is both of its ends."""
+
+    def found(ranges, at, value, text):
+        old = getattr(ranges, name)
+        return {name: replaced(old, at, value, text) if at else np.array([-value, value])}
+
+    return found
+
+
 #: What stands in a text in another way than as a field of its own.
 SPECIAL = {
     **{("Robot", end): places(end) for end in ENDS},
     ("Robot", "leg"): legs,
     ("Joint", "stiffness"): stiffness,
     ("Leg", "springs"): springs,
+    **{("TravelRanges", name): ends(name) for name in ("each", "surge", "sway", "heave")},
+    **{("RotationRanges", name): ends(name) for name in ("each", "roll", "pitch", "yaw")},
     ("Home", "rotation"): turned,
     **{(name, "wrench"): wrench for name in ("Load", "ActuatorLoad")},
     **{("Carriage", kind): lambda part, at, x, text: {"axis": replaced(part.axis, at, x, text)}
